@@ -1,0 +1,57 @@
+//! An axis-aligned box.
+
+use glam::DVec3;
+
+/// An axis-aligned box in world space, never empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Bounds {
+    /// The box of a sphere.
+    #[must_use]
+    pub fn of_sphere(center: DVec3, radius: f64) -> Self {
+        Self { min: center - radius, max: center + radius }
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The corner with the smallest coordinates.
+    #[must_use]
+    pub fn min(&self) -> DVec3 {
+        self.min
+    }
+
+    /// The corner with the largest coordinates.
+    #[must_use]
+    pub fn max(&self) -> DVec3 {
+        self.max
+    }
+
+    /// The middle.
+    #[must_use]
+    pub fn center(&self) -> DVec3 {
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// The edge lengths.
+    #[must_use]
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        let ends = [self.min, self.max];
+        std::array::from_fn(|i| {
+            DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z)
+        })
+    }
+}

@@ -1,0 +1,47 @@
+//! Placing a camera so that it sees a whole box.
+
+use glam::{DVec2, DVec3};
+
+use crate::basis::OrthonormalBasis;
+use crate::bounds::Bounds;
+
+/// How much of the picture's half width and height the box may fill.
+const FILL: f64 = 0.95;
+
+/// The corners of a box, seen from its middle, along u, v and w.
+fn corners_in_camera(bounds: &Bounds, basis: &OrthonormalBasis) -> [DVec3; 8] {
+    let center = bounds.center();
+    bounds.corners().map(|corner| {
+        let offset = corner - center;
+        DVec3::new(offset.dot(basis.u()), offset.dot(basis.v()), offset.dot(basis.w()))
+    })
+}
+
+/// How far back from the middle of the box an eye must stand to see all eight corners, if the view
+/// plane at distance 1 reaches to `tangents`.
+pub(super) fn perspective_distance(
+    bounds: &Bounds,
+    basis: &OrthonormalBasis,
+    tangents: DVec2,
+) -> f64 {
+    let tangents = tangents * FILL;
+    corners_in_camera(bounds, basis)
+        .iter()
+        .map(|corner| corner.z + (corner.x.abs() / tangents.x).max(corner.y.abs() / tangents.y))
+        .fold(0.0, f64::max)
+}
+
+/// The half extent, of the given aspect ratio, that shows the whole box, and how far back from its
+/// middle the view plane must stand so that the box lies in front of it.
+pub(super) fn parallel_extent(
+    bounds: &Bounds,
+    basis: &OrthonormalBasis,
+    aspect: f64,
+) -> (DVec2, f64) {
+    let half = corners_in_camera(bounds, basis)
+        .iter()
+        .fold(DVec3::ZERO, |half, corner| half.max(corner.abs()));
+    let half_height = half.y.max(half.x / aspect) / FILL;
+    // Twice the half depth leaves as much room in front of the box as the box is deep.
+    (DVec2::new(half_height * aspect, half_height), 2.0 * half.z)
+}

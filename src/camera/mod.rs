@@ -1,0 +1,109 @@
+//! Cameras: which ray belongs to a relative location?
+//!
+//! Each camera is one Rust file here, one WGSL part `shaders/camera_NAME.wgsl`, and one row of
+//! [`camera_table`]. `ARCHITECTURE.md` says how to add one.
+
+use glam::{DVec2, DVec3};
+
+use crate::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::ray::Ray;
+
+mod framing;
+mod orthographic;
+mod pinhole;
+mod pose;
+
+pub use orthographic::OrthographicCamera;
+#[cfg(feature = "scene-file")]
+pub use orthographic::OrthographicParameters;
+pub use pinhole::PinholeCamera;
+#[cfg(feature = "scene-file")]
+pub use pinhole::PinholeParameters;
+pub use pose::{CameraError, Pose};
+
+/// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
+pub trait Camera: std::fmt::Debug + Send + Sync {
+    /// Which row of the camera table this is.
+    fn kind(&self) -> CameraKind;
+
+    /// The ray that belongs to `location`, in the world; its direction has unit length.
+    fn ray_in_world(&self, location: DVec2) -> Ray;
+
+    /// What the WGSL part of this camera needs to answer the same question.
+    fn vectors(&self) -> CameraVectors;
+}
+
+/// Four vectors in the world, in f64, that say everything about a camera once its kind is known.
+///
+/// What `right`, `up` and `forward` mean is for the camera's own two files to agree on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraVectors {
+    /// Where the camera is.
+    pub origin: DVec3,
+    /// From the middle of the view plane to its edge at x = +1.
+    pub right: DVec3,
+    /// From the middle of the view plane to its edge at y = +1.
+    pub up: DVec3,
+    /// Into the picture.
+    pub forward: DVec3,
+}
+
+/// The one list of cameras. A row is: variant, type, name in files and of the WGSL part, and the
+/// type that reads the camera's table in a scene file.
+macro_rules! camera_table {
+    ($apply:ident) => {
+        $apply! {
+            /// Every ray starts at the eye; things shrink with distance.
+            Pinhole, PinholeCamera, "pinhole", PinholeParameters;
+            /// Every ray has the same direction; things keep their size.
+            Orthographic, OrthographicCamera, "orthographic", OrthographicParameters;
+        }
+    };
+}
+#[cfg(any(feature = "gpu", feature = "scene-file"))]
+pub(crate) use camera_table;
+
+macro_rules! define_kind {
+    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        /// The cameras that exist.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum CameraKind {
+            $($(#[$doc])* $variant,)+
+        }
+
+        impl CameraKind {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// The name in scene files.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+        }
+    };
+}
+camera_table!(define_kind);
+
+/// Refuses a length that kernels could not square.
+fn checked_length(parameter: &'static str, value: f64) -> Result<f64, CameraError> {
+    if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
+        Ok(value)
+    } else {
+        Err(CameraError::Length { parameter, value })
+    }
+}
+
+fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraError> {
+    let half_extent = half_extent.into();
+    checked_length("half extent in x", half_extent.x)?;
+    checked_length("half extent in y", half_extent.y)?;
+    Ok(half_extent)
+}
+
+fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
+    checked_length("aspect ratio", aspect)
+}

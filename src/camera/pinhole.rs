@@ -1,0 +1,178 @@
+//! The perspective camera: every ray starts at the eye.
+
+use glam::DVec2;
+
+use super::{
+    Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
+    checked_length, framing,
+};
+use crate::bounds::Bounds;
+use crate::ray::Ray;
+
+/// A pinhole camera.
+///
+/// The ray of the relative location (x, y) starts at the eye and has the direction
+/// `x·u·hx + y·v·hy − distance·w`, where (hx, hy) is the half extent of the view plane and `distance`
+/// is how far the view plane is from the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinholeCamera {
+    pose: Pose,
+    distance: f64,
+    half_extent: DVec2,
+}
+
+impl PinholeCamera {
+    /// A camera with every parameter given, in scene units.
+    ///
+    /// # Errors
+    /// If the distance or a half extent is not a length greater than zero.
+    pub fn new(
+        pose: Pose,
+        distance: f64,
+        half_extent: impl Into<DVec2>,
+    ) -> Result<Self, CameraError> {
+        Ok(Self {
+            pose,
+            distance: checked_length("view-plane distance", distance)?,
+            half_extent: checked_half_extent(half_extent)?,
+        })
+    }
+
+    /// A camera with a vertical field of view, for a film of the given aspect ratio (width over
+    /// height).
+    ///
+    /// # Errors
+    /// If the angle is not between 0 and π, or the aspect ratio is not greater than zero.
+    pub fn with_vertical_fov(
+        pose: Pose,
+        fov_radians: f64,
+        aspect: f64,
+    ) -> Result<Self, CameraError> {
+        Self::new(pose, 1.0, tangents(fov_radians, aspect)?)
+    }
+
+    /// A camera that keeps the orientation of `pose` and moves so that it sees the whole box.
+    ///
+    /// # Errors
+    /// As [`PinholeCamera::with_vertical_fov`], and if the eye would have to stand too far away.
+    pub fn framing(
+        bounds: &Bounds,
+        pose: Pose,
+        fov_radians: f64,
+        aspect: f64,
+    ) -> Result<Self, CameraError> {
+        let tangents = tangents(fov_radians, aspect)?;
+        let basis = pose.basis();
+        let distance = framing::perspective_distance(bounds, &basis, tangents);
+        let pose = pose.moved_to(bounds.center() + basis.w() * distance)?;
+        Self::new(pose, 1.0, tangents)
+    }
+}
+
+/// The half extent of the view plane at distance 1.
+fn tangents(fov_radians: f64, aspect: f64) -> Result<DVec2, CameraError> {
+    if !(fov_radians > 0.0 && fov_radians < std::f64::consts::PI) {
+        return Err(CameraError::FieldOfView { radians: fov_radians });
+    }
+    let half_height = (fov_radians / 2.0).tan();
+    Ok(DVec2::new(half_height * checked_aspect(aspect)?, half_height))
+}
+
+impl Camera for PinholeCamera {
+    fn kind(&self) -> CameraKind {
+        CameraKind::Pinhole
+    }
+
+    fn ray_in_world(&self, location: DVec2) -> Ray {
+        let basis = self.pose.basis();
+        let toward = location.x * basis.u() * self.half_extent.x
+            + location.y * basis.v() * self.half_extent.y
+            - self.distance * basis.w();
+        // At least `distance` long, so never zero.
+        Ray { origin: self.pose.origin(), direction: toward / toward.length() }
+    }
+
+    fn vectors(&self) -> CameraVectors {
+        let basis = self.pose.basis();
+        CameraVectors {
+            origin: self.pose.origin(),
+            right: basis.u() * self.half_extent.x,
+            up: basis.v() * self.half_extent.y,
+            forward: -self.distance * basis.w(),
+        }
+    }
+}
+
+/// The table `[camera.pinhole]` of a scene file.
+#[cfg(feature = "scene-file")]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PinholeParameters {
+    /// Where the camera is; without it, the camera frames the scene.
+    pub eye: Option<[f64; 3]>,
+    /// The point it looks at.
+    pub look_at: Option<[f64; 3]>,
+    /// The direction it looks in, instead of `look_at`.
+    pub direction: Option<[f64; 3]>,
+    /// Which way is up.
+    pub up: [f64; 3],
+    /// How far the view plane is from the eye.
+    pub distance: Option<f64>,
+    /// Half width and half height of the view plane.
+    pub half_extent: Option<[f64; 2]>,
+    /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
+    pub vertical_fov: Option<f64>,
+}
+
+#[cfg(feature = "scene-file")]
+impl Default for PinholeParameters {
+    fn default() -> Self {
+        Self {
+            eye: None,
+            look_at: None,
+            direction: None,
+            up: [0.0, 1.0, 0.0],
+            distance: None,
+            half_extent: None,
+            vertical_fov: None,
+        }
+    }
+}
+
+#[cfg(feature = "scene-file")]
+impl PinholeParameters {
+    /// The vertical field of view, in degrees, where a file gives none.
+    pub const DEFAULT_FOV_DEGREES: f64 = 30.0;
+
+    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    ///
+    /// # Errors
+    /// If a value is out of range, or values exclude each other.
+    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<PinholeCamera, CameraError> {
+        use super::pose::{Placement, PoseParameters};
+
+        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
+        let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
+        let fov = self.vertical_fov.unwrap_or(Self::DEFAULT_FOV_DEGREES).to_radians();
+        match (placement, self.half_extent, self.distance) {
+            (_, Some(_), _) if self.vertical_fov.is_some() => Err(CameraError::Parameters {
+                message: "`vertical_fov` and `half_extent` exclude each other; keep one",
+            }),
+            (Placement::Fixed(pose), Some(half_extent), distance) => {
+                PinholeCamera::new(pose, distance.unwrap_or(1.0), half_extent)
+            }
+            (_, None, Some(_)) => Err(CameraError::Parameters {
+                message: "`distance` needs a `half_extent`; a field of view needs neither",
+            }),
+            (Placement::Framed(_), Some(_), _) => Err(CameraError::Parameters {
+                message: "`half_extent` needs an `eye`; to frame the whole scene give `vertical_fov`",
+            }),
+            (Placement::Fixed(pose), None, None) => {
+                PinholeCamera::with_vertical_fov(pose, fov, aspect)
+            }
+            (Placement::Framed(pose), None, None) => {
+                PinholeCamera::framing(bounds, pose, fov, aspect)
+            }
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Where a camera is and how it is turned.
+
+use glam::DVec3;
+
+use crate::basis::{BasisError, OrthonormalBasis};
+use crate::math::{MAX_LENGTH, MIN_LENGTH};
+
+/// Position and orientation of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    origin: DVec3,
+    basis: OrthonormalBasis,
+}
+
+/// Why there is no such camera.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// The eye and the point it looks at are one point.
+    #[error("the eye and the look-at point are both {eye}; move one of them")]
+    EyeAtTarget {
+        /// The point.
+        eye: DVec3,
+    },
+    /// `up` points along the view, so it does not say which way is up.
+    #[error("up {up} is parallel to the direction of view; tilt it")]
+    UpParallelToView {
+        /// The vector as given.
+        up: DVec3,
+    },
+    /// A vector that must have a direction is zero.
+    #[error("{parameter} is the zero vector, which has no direction")]
+    Zero {
+        /// Which parameter.
+        parameter: &'static str,
+    },
+    /// A component of a point or vector is NaN or infinite, or a point lies too far away.
+    #[error(
+        "{parameter} is {value}; every component must be finite and at most {MAX_LENGTH:e} in size"
+    )]
+    Vector {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The vector as given.
+        value: DVec3,
+    },
+    /// A length is NaN, infinite, zero, negative or too small or large for f32 kernels.
+    #[error(
+        "the {parameter} is {value}; it must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
+    )]
+    Length {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The value as given.
+        value: f64,
+    },
+    /// A field of view is not an angle between 0 and π.
+    #[error("the vertical field of view is {} degrees; it must lie between 0 and 180", radians.to_degrees())]
+    FieldOfView {
+        /// The angle as given.
+        radians: f64,
+    },
+    /// Two parameters that exclude each other were given, or one was left out.
+    #[error("{message}")]
+    Parameters {
+        /// Which, and what to do.
+        message: &'static str,
+    },
+}
+
+impl Pose {
+    /// At `eye`, turned towards `look_at`; `up` fixes the roll and need not be perpendicular or unit.
+    ///
+    /// # Errors
+    /// If the two points coincide, `up` is zero or parallel to the view, or a component is NaN,
+    /// infinite or more than [`MAX_LENGTH`].
+    pub fn looking_at(
+        eye: impl Into<DVec3>,
+        look_at: impl Into<DVec3>,
+        up: impl Into<DVec3>,
+    ) -> Result<Self, CameraError> {
+        let (eye, look_at, up) = (eye.into(), look_at.into(), up.into());
+        checked_point("the eye", eye)?;
+        checked_point("the look-at point", look_at)?;
+        if eye == look_at {
+            return Err(CameraError::EyeAtTarget { eye });
+        }
+        let basis = OrthonormalBasis::looking_at(eye, look_at, up)
+            .map_err(|error| camera_error(error, up))?;
+        Ok(Self { origin: eye, basis })
+    }
+
+    /// At `eye`, looking along `direction`.
+    ///
+    /// # Errors
+    /// As [`Pose::looking_at`], and if `direction` is zero.
+    pub fn looking_along(
+        eye: impl Into<DVec3>,
+        direction: impl Into<DVec3>,
+        up: impl Into<DVec3>,
+    ) -> Result<Self, CameraError> {
+        let (eye, direction, up) = (eye.into(), direction.into(), up.into());
+        checked_point("the eye", eye)?;
+        if !direction.is_finite() {
+            return Err(CameraError::Vector { parameter: "the direction", value: direction });
+        }
+        if direction == DVec3::ZERO {
+            return Err(CameraError::Zero { parameter: "the direction" });
+        }
+        let basis = OrthonormalBasis::from_vectors(-direction, up)
+            .map_err(|error| camera_error(error, up))?;
+        Ok(Self { origin: eye, basis })
+    }
+
+    /// The same orientation at another place.
+    pub(super) fn moved_to(self, origin: DVec3) -> Result<Self, CameraError> {
+        checked_point("the eye", origin)?;
+        Ok(Self { origin, ..self })
+    }
+
+    /// Where the camera is.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// u right, v up, w backwards.
+    #[must_use]
+    pub fn basis(&self) -> OrthonormalBasis {
+        self.basis
+    }
+}
+
+fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
+    // False for NaN as well.
+    if value.to_array().iter().all(|x| x.abs() <= MAX_LENGTH) {
+        Ok(())
+    } else {
+        Err(CameraError::Vector { parameter, value })
+    }
+}
+
+/// Eye, target and direction are checked before a basis is built, so what is left concerns `up`.
+fn camera_error(error: BasisError, up: DVec3) -> CameraError {
+    match error {
+        BasisError::NotFinite { .. } => CameraError::Vector { parameter: "up", value: up },
+        BasisError::Zero { .. } => CameraError::Zero { parameter: "up" },
+        BasisError::Parallel { .. } => CameraError::UpParallelToView { up },
+    }
+}
+
+/// Eye, target and up as a scene file gives them.
+///
+/// Without an eye the camera is placed so that it sees the whole scene.
+#[cfg(feature = "scene-file")]
+pub(super) struct PoseParameters {
+    pub(super) eye: Option<[f64; 3]>,
+    pub(super) look_at: Option<[f64; 3]>,
+    pub(super) direction: Option<[f64; 3]>,
+    pub(super) up: [f64; 3],
+}
+
+/// What [`PoseParameters`] come to.
+#[cfg(feature = "scene-file")]
+pub(super) enum Placement {
+    /// The camera stands where the file says.
+    Fixed(Pose),
+    /// The file gives the orientation; the place follows from what must be seen.
+    Framed(Pose),
+}
+
+#[cfg(feature = "scene-file")]
+impl PoseParameters {
+    pub(super) fn placement(&self) -> Result<Placement, CameraError> {
+        match (self.eye, self.look_at, self.direction) {
+            (Some(eye), Some(look_at), None) => {
+                Pose::looking_at(eye, look_at, self.up).map(Placement::Fixed)
+            }
+            (Some(eye), None, Some(direction)) => {
+                Pose::looking_along(eye, direction, self.up).map(Placement::Fixed)
+            }
+            (Some(_), None, None) => Err(CameraError::Parameters {
+                message: "an `eye` needs a `look_at` point or a `direction`",
+            }),
+            (_, Some(_), Some(_)) => Err(CameraError::Parameters {
+                message: "`look_at` and `direction` exclude each other; keep one",
+            }),
+            (None, Some(_), None) => Err(CameraError::Parameters {
+                message: "`look_at` needs an `eye`; to frame the whole scene give a `direction`",
+            }),
+            (None, None, direction) => {
+                let direction = direction.unwrap_or([0.0, 0.0, -1.0]);
+                Pose::looking_along(DVec3::ZERO, direction, self.up).map(Placement::Framed)
+            }
+        }
+    }
+}

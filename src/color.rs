@@ -1,0 +1,118 @@
+//! Linear-light colour, and sRGB at the edges.
+
+/// A colour in linear light with the Rec. 709 primaries; 1 is display white. Not clamped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearRgb(pub [f32; 3]);
+
+impl LinearRgb {
+    /// Black.
+    pub const BLACK: Self = Self([0.0; 3]);
+    /// White.
+    pub const WHITE: Self = Self([1.0; 3]);
+
+    /// Decodes 8-bit sRGB.
+    #[must_use]
+    pub fn from_srgb8(bytes: [u8; 3]) -> Self {
+        Self(bytes.map(decode_srgb8))
+    }
+
+    /// Encodes as 8-bit sRGB; what lies outside [0, 1] is clamped, NaN becomes 0.
+    ///
+    /// The exact inverse of [`LinearRgb::from_srgb8`] on all bytes.
+    #[must_use]
+    pub fn to_srgb8(self) -> [u8; 3] {
+        self.0.map(encode_srgb8)
+    }
+
+    /// Reads a CSS colour: a name, `#rgb`, `#rrggbb`, `rgb(…)` and the other forms of CSS Color 4, all
+    /// rounded to eight bits of sRGB.
+    ///
+    /// # Errors
+    /// If the text is no colour, or a colour that is not opaque.
+    #[cfg(feature = "scene-file")]
+    pub fn from_css(text: &str) -> Result<Self, ColorError> {
+        let color = csscolorparser::parse(text)
+            .map_err(|_| ColorError::Unknown { text: text.to_owned() })?;
+        if color.a < 1.0 {
+            return Err(ColorError::NotOpaque { text: text.to_owned() });
+        }
+        let [r, g, b, _] = color.to_rgba8();
+        Ok(Self::from_srgb8([r, g, b]))
+    }
+}
+
+/// Why a text is no colour.
+#[cfg(feature = "scene-file")]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColorError {
+    /// Neither a CSS name nor hex digits nor a CSS function.
+    #[error("`{text}` is no colour; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")]
+    Unknown {
+        /// The text as given.
+        text: String,
+    },
+    /// Has an alpha below 1.
+    #[error("`{text}` is not opaque; colours here have no alpha")]
+    NotOpaque {
+        /// The text as given.
+        text: String,
+    },
+}
+
+fn decode_srgb8(byte: u8) -> f32 {
+    decode_srgb(f64::from(byte) / 255.0) as f32
+}
+
+/// IEC 61966-2-1, electro-optical transfer function.
+fn decode_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// IEC 61966-2-1, the inverse of [`decode_srgb`], rounded to the nearest byte.
+fn encode_srgb8(linear: f32) -> u8 {
+    let linear = f64::from(linear).clamp(0.0, 1.0);
+    let encoded =
+        if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    // `as` saturates, and turns NaN (which clamp lets through) into 0.
+    (encoded * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_survives_the_round_trip() {
+        for byte in 0..=255 {
+            assert_eq!(LinearRgb::from_srgb8([byte; 3]).to_srgb8(), [byte; 3]);
+        }
+    }
+
+    #[test]
+    fn known_values_of_the_transfer_function() {
+        assert_eq!(LinearRgb::from_srgb8([0, 255, 0]), LinearRgb([0.0, 1.0, 0.0]));
+        // 188 is the byte nearest to half the light.
+        assert_eq!(LinearRgb([0.5; 3]).to_srgb8(), [188; 3]);
+    }
+
+    #[test]
+    fn out_of_range_values_are_clamped() {
+        assert_eq!(LinearRgb([-1.0, 2.0, f32::NAN]).to_srgb8(), [0, 255, 0]);
+    }
+
+    #[cfg(feature = "scene-file")]
+    #[test]
+    fn css_names_and_hex_are_the_same_bytes() {
+        for (text, bytes) in [
+            ("powderblue", [0xb0, 0xe0, 0xe6]),
+            ("#b0e0e6", [0xb0, 0xe0, 0xe6]),
+            ("green", [0, 0x80, 0]),
+            ("#F00", [255, 0, 0]),
+        ] {
+            assert_eq!(LinearRgb::from_css(text).unwrap(), LinearRgb::from_srgb8(bytes), "{text}");
+        }
+        assert!(matches!(LinearRgb::from_css("gren"), Err(ColorError::Unknown { .. })));
+        assert!(matches!(LinearRgb::from_css("#ff000080"), Err(ColorError::NotOpaque { .. })));
+    }
+}

@@ -1,0 +1,63 @@
+//! Ray traces spheres with WGSL compute shaders, without a display, and checks its pictures against a
+//! CPU reference.
+//!
+//! A [`Scene`] holds spheres that have been checked. A [`Camera`](camera::Camera) answers which ray
+//! belongs to a place in the picture, a [`Film`](film::Film) has the picture's size, and
+//! [`Settings`](settings::Settings) say how hits become colours. From these four, [`cpu::render`] makes
+//! an [`Image`](image::Image) in f64, slowly and simply, and the module `gpu` makes the same image with
+//! compute shaders: [`gpu::Headless`] on a device of its own, [`gpu::Renderer`] inside the frame of a
+//! program that already uses wgpu.
+//!
+//! ```
+//! use pinhole::camera::{PinholeCamera, Pose};
+//! use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Sphere, cpu};
+//!
+//! let scene = Scene::new(&[Sphere::new([0.0, 0.0, 0.0], 1.0, LinearRgb::from_srgb8([255, 0, 0]))])?;
+//! let film = Film::new(64, 48)?;
+//! let pose = Pose::looking_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
+//! let camera = PinholeCamera::with_vertical_fov(pose, 0.5, film.aspect())?;
+//! let image = cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::ALL)?;
+//! assert_eq!(image.id().unwrap()[24 * 64 + 32], 0);
+//! assert!((image.depth().unwrap()[24 * 64 + 32] - 4.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Features
+//! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs the CPU reference on all
+//! cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `cli` (default) is the program.
+//! An embedder wants `default-features = false, features = ["gpu"]`.
+//!
+//! # Units
+//! World space is right-handed, lengths are in scene units, angles in radians. Colours are linear
+//! light. Depth is measured along the ray. `CONTRIBUTING.md` has the rest.
+#![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
+
+pub use glam;
+
+pub mod basis;
+pub mod bounds;
+pub mod camera;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
+pub mod color;
+pub mod cpu;
+pub mod film;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+pub mod image;
+pub mod io;
+pub mod math;
+pub mod ray;
+pub mod scene;
+#[cfg(feature = "scene-file")]
+pub mod scene_file;
+pub mod settings;
+pub mod sphere;
+
+pub use color::LinearRgb;
+pub use film::Film;
+pub use image::{Image, LayerSet};
+pub use scene::Scene;
+pub use settings::{Settings, Shading};
+pub use sphere::Sphere;

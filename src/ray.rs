@@ -1,0 +1,32 @@
+//! A ray and where it hit.
+
+use glam::DVec3;
+
+/// A half-line, in f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where the ray starts.
+    pub origin: DVec3,
+    /// Which way it goes; unit length.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// The point at distance `t` from the origin.
+    #[must_use]
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.direction
+    }
+}
+
+/// The nearest intersection of a ray with a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance from the ray's origin, along the ray, in scene units; greater than zero.
+    pub t: f64,
+    /// Index of the sphere, in input order.
+    pub id: u32,
+    /// Unit normal of the sphere at the hit, pointing away from its centre (also when the ray meets
+    /// the far wall from inside).
+    pub normal: DVec3,
+}

@@ -1,0 +1,31 @@
+//! How hits and misses become colours.
+
+use crate::color::LinearRgb;
+
+/// How a sphere's surface is coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Shading {
+    /// The sphere's own colour, everywhere.
+    Flat,
+    /// Lambert's cosine law with the light at the eye: the colour times the cosine of the angle
+    /// between the ray and the normal.
+    #[default]
+    Headlight,
+}
+
+/// What a render needs to know beside scene, camera and film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How surfaces are coloured.
+    pub shading: Shading,
+    /// The colour where no sphere is hit.
+    pub background: LinearRgb,
+}
+
+impl Default for Settings {
+    /// Headlight over white.
+    fn default() -> Self {
+        Self { shading: Shading::default(), background: LinearRgb::WHITE }
+    }
+}
