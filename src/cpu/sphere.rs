@@ -1,0 +1,63 @@
+//! One ray against one sphere.
+
+use glam::DVec3;
+
+use crate::ray::Ray;
+
+/// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
+/// there, which points away from the centre; `None` for a miss.
+///
+/// From inside, the first point is on the far wall. By Pythagoras: the centre's foot point on the ray
+/// lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent ray hits.
+///
+/// The normal is taken from the same right triangle, not from the hit point, which far away from a
+/// small sphere is nothing but rounding.
+pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, DVec3)> {
+    let to_center = center - ray.origin;
+    let b = to_center.dot(ray.direction);
+    let foot_to_center = to_center - b * ray.direction;
+    let half_chord_squared = radius * radius - foot_to_center.length_squared();
+    if half_chord_squared < 0.0 {
+        return None;
+    }
+    let half_chord = half_chord_squared.sqrt();
+    [-half_chord, half_chord]
+        .into_iter()
+        .find(|from_foot| b + from_foot > 0.0)
+        .map(|from_foot| (b + from_foot, (from_foot * ray.direction - foot_to_center) / radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn along_z(x: f64, z: f64) -> Ray {
+        Ray { origin: DVec3::new(x, 0.0, z), direction: DVec3::Z }
+    }
+
+    #[test]
+    fn known_answers() {
+        let near = Some(-DVec3::Z);
+        let far = Some(DVec3::Z);
+        for (case, ray, t, normal) in [
+            ("from outside: the near wall", along_z(0.0, -5.0), Some(3.0), near),
+            ("from the centre: the far wall", along_z(0.0, 0.0), Some(2.0), far),
+            ("from inside: the far wall", along_z(0.0, 1.0), Some(1.0), far),
+            ("behind", along_z(0.0, 5.0), None, None),
+            ("beside", along_z(2.5, -5.0), None, None),
+            ("tangent", along_z(2.0, -5.0), Some(5.0), Some(DVec3::X)),
+            ("leaving from the wall", along_z(0.0, 2.0), None, None),
+            ("entering from the wall: the far wall", along_z(0.0, -2.0), Some(4.0), far),
+        ] {
+            let hit = intersect(&ray, DVec3::ZERO, 2.0);
+            assert_eq!(hit.map(|h| h.0), t, "{case}");
+            assert_eq!(hit.map(|h| h.1), normal, "{case}");
+        }
+    }
+
+    #[test]
+    fn a_far_and_tiny_sphere_has_a_unit_normal() {
+        let (_, normal) = intersect(&along_z(0.0, -1.0), DVec3::ZERO, 1e-16).unwrap();
+        assert!((normal.length() - 1.0).abs() < 1e-12, "{normal}");
+    }
+}

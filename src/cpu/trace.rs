@@ -1,0 +1,26 @@
+//! Nearest hit by trying every sphere. Twin of `shaders/trace.wgsl`.
+
+use glam::DVec3;
+
+use super::sphere::intersect;
+use crate::ray::{Hit, Ray};
+use crate::scene::Scene;
+
+/// The nearest sphere in front of the ray's origin; of several at the same distance, the one with the
+/// smallest id.
+#[must_use]
+pub fn trace(scene: &Scene, ray_in_world: &Ray) -> Option<Hit> {
+    let ray = Ray { origin: ray_in_world.origin - scene.origin(), ..*ray_in_world };
+    let mut nearest: Option<Hit> = None;
+    for (id, &[x, y, z, radius]) in scene.spheres().iter().enumerate() {
+        let center = DVec3::new(x.into(), y.into(), z.into());
+        let Some((t, normal)) = intersect(&ray, center, radius.into()) else {
+            continue;
+        };
+        // Ids ascend, so `<` leaves a tie to the smaller id.
+        if nearest.is_none_or(|hit| t < hit.t) {
+            nearest = Some(Hit { t, id: id as u32, normal });
+        }
+    }
+    nearest
+}
