@@ -1,0 +1,5 @@
+struct Ray {
+    origin: vec3f,
+    // Unit length, up to rounding.
+    direction: vec3f,
+}

@@ -1,0 +1,24 @@
+// From hits to pixels. Twin: src/cpu/shade.rs.
+
+@group(1) @binding(0) var<storage, read> spheres: array<vec4f>;
+// Linear colour of each sphere; the fourth component is unused.
+@group(1) @binding(1) var<storage, read> colors: array<vec4f>;
+
+@compute @workgroup_size(8, 8)
+fn shade(@builtin(global_invocation_id) invocation: vec3u) {
+    if (any(invocation.xy >= frame.tile_size)) {
+        return;
+    }
+    let hit = hits[hit_index(invocation.xy)];
+    // Not only `hit.id == NO_ID`: an index from a buffer is checked before it is used.
+    if (hit.id >= frame.sphere_count) {
+        write_color(invocation.xy, frame.background);
+        write_layers(invocation.xy, NO_HIT, vec3f(0.0), NO_ID);
+        return;
+    }
+    let ray = camera_ray(relative_location(frame.tile_origin + invocation.xy));
+    let sphere = spheres[hit.id];
+    let normal = sphere_normal(ray, sphere, intersect_sphere(ray, sphere));
+    write_color(invocation.xy, surface_color(colors[hit.id].rgb, normal, ray));
+    write_layers(invocation.xy, hit.t, normal, hit.id);
+}

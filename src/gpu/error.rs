@@ -1,0 +1,139 @@
+//! What can go wrong on a device, and turning wgpu's errors into values.
+
+use std::time::Duration;
+
+use crate::camera::CameraKind;
+use crate::image::ImageTooLarge;
+
+/// Why the GPU path cannot do what it was asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// No driver offers an adapter.
+    #[error(
+        "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
+    )]
+    NoAdapter,
+    /// No adapter has a name that contains the wanted text.
+    #[error("no adapter's name contains `{wanted}`; {}", list(available))]
+    UnknownAdapter {
+        /// The text as given.
+        wanted: String,
+        /// Names of the adapters that exist.
+        available: Vec<String>,
+    },
+    /// The adapter gives no device with the limits that the kernels need.
+    #[error("adapter {adapter} gives no device: {message}")]
+    NoDevice {
+        /// Name of the adapter.
+        adapter: String,
+        /// wgpu's reason.
+        message: String,
+    },
+    /// A buffer would be larger than a limit of the device.
+    #[error("{what} needs {needed} bytes, but {limit_name} of this device is {limit}")]
+    Limit {
+        /// What the buffer holds.
+        what: &'static str,
+        /// Bytes needed.
+        needed: u64,
+        /// wgpu's name of the limit.
+        limit_name: &'static str,
+        /// The limit's value in bytes.
+        limit: u64,
+    },
+    /// A target texture is not what the renderer was built for.
+    #[error("the {layer} target is {found}; it must be {expected}")]
+    Target {
+        /// Which target.
+        layer: &'static str,
+        /// What was given.
+        found: String,
+        /// What is needed.
+        expected: String,
+    },
+    /// The renderer was built without this camera.
+    #[error("this renderer has no pipeline for the {} camera; name it in RendererOptions", camera.name())]
+    NoCamera {
+        /// The camera's kind.
+        camera: CameraKind,
+    },
+    /// `record` was called before `Frame::set_view`.
+    #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
+    NoView,
+    /// The device ran out of memory.
+    #[error("the device is out of memory; choose a smaller size or fewer spheres")]
+    OutOfMemory,
+    /// The device did not finish in time.
+    #[error("the device did not finish within {} seconds", waited.as_secs())]
+    Timeout {
+        /// How long was waited.
+        waited: Duration,
+    },
+    /// The device is gone.
+    #[error("the device was lost: {message}")]
+    DeviceLost {
+        /// The driver's reason.
+        message: String,
+    },
+    /// A shader or a command was refused: a defect of this crate or of a driver.
+    #[error("wgpu reports: {message}")]
+    Device {
+        /// wgpu's message; places in shaders are given as file and line.
+        message: String,
+    },
+    /// The picture does not fit into host memory.
+    #[error(transparent)]
+    Image(#[from] ImageTooLarge),
+}
+
+fn list(available: &[String]) -> String {
+    if available.is_empty() {
+        "there are no adapters".to_owned()
+    } else {
+        format!("there are: {}", available.join(", "))
+    }
+}
+
+impl GpuError {
+    pub(super) fn from_wgpu(error: &wgpu::Error) -> Self {
+        match error {
+            wgpu::Error::OutOfMemory { .. } => Self::OutOfMemory,
+            other => Self::Device { message: other.to_string() },
+        }
+    }
+}
+
+/// Runs `create` so that errors of the device come back as values, and never reach the handler of a
+/// host that lent us the device.
+pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, GpuError> {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let created = create();
+    // Scopes nest, so they are popped in reverse; the first error wins.
+    for scope in [internal, validation, memory] {
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(GpuError::from_wgpu(&error));
+        }
+    }
+    Ok(created)
+}
+
+/// Refuses a buffer that the device could not create or bind.
+pub(super) fn check_storage_size(
+    device: &wgpu::Device,
+    what: &'static str,
+    needed: u64,
+) -> Result<(), GpuError> {
+    let limits = device.limits();
+    for (limit_name, limit) in [
+        ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+        ("max_buffer_size", limits.max_buffer_size),
+    ] {
+        if needed > limit {
+            return Err(GpuError::Limit { what, needed, limit_name, limit });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,218 @@
+//! What changes from picture to picture: targets, camera, film, settings.
+
+use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
+
+use super::error::{GpuError, check_storage_size, scoped};
+use super::records;
+use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
+use super::scene_buffers::SceneBuffers;
+use super::tiles::Tile;
+use crate::camera::{Camera, CameraKind};
+use crate::film::Film;
+use crate::settings::Settings;
+
+/// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'a> {
+    /// Of the format that the renderer's [`ColorTarget`](super::ColorTarget) names.
+    pub color: &'a TextureView,
+    /// Present exactly if the renderer was built with `data_layers`.
+    pub data: Option<DataTargets<'a>>,
+}
+
+/// Textures for the data layers.
+#[derive(Clone, Copy, Debug)]
+pub struct DataTargets<'a> {
+    /// `R32Float`: distance along the ray, in scene units; 1e30 for a miss.
+    pub depth: &'a TextureView,
+    /// `Rgba32Float`: unit normal in the world, pointing away from the sphere's centre; zero for a miss.
+    pub normal: &'a TextureView,
+    /// `R32Uint`: index of the sphere in input order; `u32::MAX` for a miss.
+    pub id: &'a TextureView,
+}
+
+/// One view into one set of targets. Per frame: a frame that was recorded must have been submitted
+/// before it is given another view.
+#[derive(Debug)]
+pub struct Frame {
+    uniform: Buffer,
+    group: BindGroup,
+    target_group: BindGroup,
+    size: [u32; 2],
+    view: Option<View>,
+}
+
+/// What recording needs to know of the view.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) camera: CameraKind,
+    /// Of the part of the targets that is rendered.
+    pub(super) size: [u32; 2],
+}
+
+impl Frame {
+    /// A frame that renders into the given targets.
+    ///
+    /// # Errors
+    /// If a target is not of the format, size or usage that the renderer needs, or if the hits of one
+    /// picture (eight bytes a pixel) do not fit into a binding or into the device's memory.
+    pub fn new(
+        renderer: &Renderer,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        let views = checked_targets(renderer, targets)?;
+        let texture = targets.color.texture();
+        let size = [texture.width(), texture.height()];
+        let hit_bytes = u64::from(size[0]) * u64::from(size[1]) * size_of::<records::Hit>() as u64;
+        check_storage_size(device, "the buffer of hits", hit_bytes)?;
+        scoped(device, || {
+            let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole frame"),
+                size: size_of::<records::Frame>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let hits = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole hits"),
+                size: hit_bytes,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            });
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole frame"),
+                layout: &renderer.layouts.frame,
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 1, resource: hits.as_entire_binding() },
+                ],
+            });
+            let entries: Vec<_> = (0..)
+                .zip(views)
+                .map(|(binding, view)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: wgpu::BindingResource::TextureView(view),
+                })
+                .collect();
+            let target_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole targets"),
+                layout: &renderer.layouts.targets,
+                entries: &entries,
+            });
+            Self { uniform, group, target_group, size, view: None }
+        })
+    }
+
+    /// Sets what the next recording shows: the whole film, which must have the size of the targets.
+    ///
+    /// The new values are queued on `queue`; they hold from its next submission on.
+    ///
+    /// # Errors
+    /// If the film and the targets differ in size.
+    pub fn set_view(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        settings: &Settings,
+    ) -> Result<(), GpuError> {
+        let film_size = [film.width(), film.height()];
+        if film_size != self.size {
+            return Err(GpuError::Target {
+                layer: "color",
+                found: describe_size(self.size),
+                expected: format!("as large as the film, {}", describe_size(film_size)),
+            });
+        }
+        let tile = Tile { origin: [0, 0], size: film_size };
+        self.set_tile(queue, scene, camera, film, tile, settings);
+        Ok(())
+    }
+
+    /// As [`Frame::set_view`], for a part of the film that is no larger than the targets.
+    pub(super) fn set_tile(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        tile: Tile,
+        settings: &Settings,
+    ) {
+        let record = records::Frame::new(
+            &camera.vectors(),
+            scene.origin(),
+            scene.sphere_count(),
+            film,
+            tile,
+            settings,
+        );
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&record));
+        self.view = Some(View { camera: camera.kind(), size: tile.size });
+    }
+
+    pub(super) fn view(&self) -> Option<View> {
+        self.view
+    }
+
+    /// Group 0 of every kernel.
+    pub(super) fn group(&self) -> &BindGroup {
+        &self.group
+    }
+
+    /// Group 2 of `shade`.
+    pub(super) fn target_group(&self) -> &BindGroup {
+        &self.target_group
+    }
+}
+
+/// The targets in the order of their bindings.
+fn checked_targets<'a>(
+    renderer: &Renderer,
+    targets: &Targets<'a>,
+) -> Result<Vec<&'a TextureView>, GpuError> {
+    let mut wanted = vec![("color", targets.color, renderer.color.texture_format())];
+    match targets.data {
+        Some(data) if renderer.data_layers => wanted.extend([
+            ("depth", data.depth, DEPTH_FORMAT),
+            ("normal", data.normal, NORMAL_FORMAT),
+            ("id", data.id, ID_FORMAT),
+        ]),
+        None if !renderer.data_layers => {}
+        found => {
+            let state = |present| if present { "present" } else { "absent" }.to_owned();
+            return Err(GpuError::Target {
+                layer: "data",
+                found: state(found.is_some()),
+                expected: state(renderer.data_layers) + ", as in the renderer's options",
+            });
+        }
+    }
+    let size = targets.color.texture().size();
+    for &(layer, view, format) in &wanted {
+        let texture = view.texture();
+        let refused =
+            |found: String, expected: String| Err(GpuError::Target { layer, found, expected });
+        if texture.format() != format {
+            return refused(format!("{:?}", texture.format()), format!("{format:?}"));
+        }
+        if !texture.usage().contains(wgpu::TextureUsages::STORAGE_BINDING) {
+            return refused(format!("{:?}", texture.usage()), "usable as STORAGE_BINDING".into());
+        }
+        if texture.size() != size {
+            return refused(
+                describe_size([texture.width(), texture.height()]),
+                format!(
+                    "as large as the color target, {}",
+                    describe_size([size.width, size.height])
+                ),
+            );
+        }
+    }
+    Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
+}
+
+fn describe_size([width, height]: [u32; 2]) -> String {
+    format!("{width}x{height}")
+}

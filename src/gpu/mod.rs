@@ -1,0 +1,27 @@
+//! The compute-shader renderer. The only module that names wgpu.
+//!
+//! State is split by how long it lives: [`Renderer`] holds pipelines, [`SceneBuffers`] a scene on a
+//! device, [`Frame`] what changes from picture to picture. [`Renderer::record`] writes into the
+//! caller's encoder and textures and never submits; [`Headless`], which owns a device of its own,
+//! is built on exactly that.
+
+pub use wgpu;
+
+pub mod adapter;
+mod error;
+mod frame;
+mod headless;
+mod layouts;
+mod readback;
+mod records;
+mod renderer;
+mod scene_buffers;
+mod shaders;
+mod tile_textures;
+mod tiles;
+
+pub use error::GpuError;
+pub use frame::{DataTargets, Frame, Targets};
+pub use headless::Headless;
+pub use renderer::{ColorTarget, Renderer, RendererOptions};
+pub use scene_buffers::SceneBuffers;

@@ -1,0 +1,213 @@
+//! Composes kernels: an explicit list of WGSL parts per kernel, concatenated.
+//!
+//! WGSL has no modules and does not care about the order of declarations, so "these parts" is a
+//! complete module system for a folder of this size. This is the only file that knows how it is done.
+
+use super::renderer::ColorTarget;
+use crate::camera::{CameraKind, camera_table};
+
+/// One WGSL file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    file: &'static str,
+    source: &'static str,
+}
+
+macro_rules! part {
+    ($($piece:literal),+) => {
+        Part {
+            file: concat!($($piece),+),
+            source: include_str!(concat!("../../shaders/", $($piece),+)),
+        }
+    };
+}
+
+/// An entry point, and the parts that it is composed of.
+#[derive(Clone, Debug)]
+pub(super) struct Kernel {
+    pub(super) entry_point: &'static str,
+    parts: Vec<Part>,
+}
+
+/// Finds the nearest sphere of every ray.
+pub(super) fn trace_kernel(camera: CameraKind) -> Kernel {
+    let mut parts = common_parts(camera).to_vec();
+    parts.push(part!("trace.wgsl"));
+    Kernel { entry_point: "trace", parts }
+}
+
+/// Turns hits into colour and, if wanted, data layers.
+pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: bool) -> Kernel {
+    let mut parts = common_parts(camera).to_vec();
+    parts.extend([
+        part!("shade.wgsl"),
+        part!("shading.wgsl"),
+        match color {
+            ColorTarget::Srgb8 => part!("color_rgba8unorm.wgsl"),
+            ColorTarget::Linear16 => part!("color_rgba16float.wgsl"),
+            ColorTarget::Linear32 => part!("color_rgba32float.wgsl"),
+        },
+        if data_layers { part!("layers_all.wgsl") } else { part!("layers_none.wgsl") },
+    ]);
+    Kernel { entry_point: "shade", parts }
+}
+
+fn common_parts(camera: CameraKind) -> [Part; 6] {
+    [
+        part!("records.wgsl"),
+        part!("frame.wgsl"),
+        part!("film.wgsl"),
+        part!("ray.wgsl"),
+        camera_part(camera),
+        part!("sphere.wgsl"),
+    ]
+}
+
+macro_rules! define_camera_part {
+    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        fn camera_part(camera: CameraKind) -> Part {
+            match camera {
+                $(CameraKind::$variant => part!("camera_", $name, ".wgsl"),)+
+            }
+        }
+    };
+}
+camera_table!(define_camera_part);
+
+impl Kernel {
+    /// The entry point and the parts that distinguish this kernel from others.
+    pub(super) fn name(&self) -> String {
+        let varying = ["camera_", "color_", "layers_"];
+        self.parts
+            .iter()
+            .filter(|part| varying.iter().any(|prefix| part.file.starts_with(prefix)))
+            .fold(self.entry_point.to_owned(), |name, part| {
+                name + " " + part.file.trim_end_matches(".wgsl")
+            })
+    }
+
+    /// The composed WGSL.
+    pub(super) fn source(&self) -> String {
+        self.parts.iter().flat_map(|part| [part.source, "\n"]).collect()
+    }
+
+    /// Replaces every place `wgsl:LINE:COLUMN` in a message of naga's by a place in a part.
+    pub(super) fn with_places_in_parts(&self, message: &str) -> String {
+        let mut pieces = message.split("wgsl:");
+        let mut text = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+            match piece[..digits].parse().ok().and_then(|line| self.place(line)) {
+                Some((file, line)) => text += &format!("{file}:{line}{}", &piece[digits..]),
+                None => text += &format!("wgsl:{piece}"),
+            }
+        }
+        text
+    }
+
+    /// The part, and the line in it, that a line of the composed WGSL comes from; lines count from 1.
+    fn place(&self, line: usize) -> Option<(&'static str, usize)> {
+        let mut first = 1;
+        for part in &self.parts {
+            // One more for the line end that `source` adds.
+            let lines = part.source.matches('\n').count() + 1;
+            if (first..first + lines).contains(&line) {
+                return Some((part.file, line - first + 1));
+            }
+            first += lines;
+        }
+        None
+    }
+}
+
+/// Every kernel that can be composed.
+#[cfg(test)]
+pub(super) fn all_kernels() -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for &camera in CameraKind::ALL {
+        kernels.push(trace_kernel(camera));
+        for &color in ColorTarget::ALL {
+            for data_layers in [false, true] {
+                kernels.push(shade_kernel(camera, color, data_layers));
+            }
+        }
+    }
+    kernels
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use super::*;
+
+    fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
+        let source = kernel.source();
+        let readable = |message: String| kernel.with_places_in_parts(&message);
+        let module = naga::front::wgsl::parse_str(&source)
+            .map_err(|error| readable(error.emit_to_string(&source)))?;
+        naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            // Nothing beyond WebGPU's core.
+            naga::valid::Capabilities::empty(),
+        )
+        .validate(&module)
+        .map_err(|error| readable(error.emit_to_string(&source)))?;
+        Ok(module)
+    }
+
+    #[test]
+    fn every_kernel_composes_and_validates() {
+        let kernels = all_kernels();
+        assert_eq!(kernels.len(), CameraKind::ALL.len() * (1 + 2 * ColorTarget::ALL.len()));
+        for kernel in kernels {
+            let module =
+                validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));
+            let entry = &module.entry_points[0];
+            assert_eq!(module.entry_points.len(), 1, "{}", kernel.name());
+            assert_eq!(entry.name, kernel.entry_point);
+            assert_eq!(entry.workgroup_size, [8, 8, 1]);
+        }
+    }
+
+    #[test]
+    fn an_error_names_the_part_and_its_line() {
+        let broken =
+            Part { file: "broken.wgsl", source: "// first\n// second\nconst x: f32 = y;\n" };
+        let parts = vec![part!("ray.wgsl"), broken, part!("film.wgsl")];
+        let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+        assert!(message.contains("broken.wgsl:3:"), "{message}");
+    }
+
+    #[test]
+    fn every_shader_file_is_used_short_and_listed() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
+        let used: BTreeSet<&str> =
+            all_kernels().iter().flat_map(|k| k.parts.iter().map(|p| p.file)).collect();
+        let files: BTreeSet<String> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.ends_with(".wgsl"))
+            .collect();
+        assert_eq!(used, files.iter().map(String::as_str).collect());
+        for file in &files {
+            assert!(
+                readme.contains(&format!("`{file}`")),
+                "shaders/README.md does not list {file}"
+            );
+            let lines = std::fs::read_to_string(folder.join(file)).unwrap().lines().count();
+            assert!(lines <= 100, "{file} has {lines} lines; one idea per file");
+        }
+    }
+
+    #[test]
+    fn every_entry_point_has_a_twin_on_the_cpu() {
+        let twins = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cpu");
+        for kernel in all_kernels() {
+            let twin = twins.join(kernel.entry_point).with_extension("rs");
+            assert!(twin.exists(), "{} is missing", twin.display());
+        }
+    }
+}

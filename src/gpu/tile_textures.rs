@@ -1,0 +1,90 @@
+//! The textures of one tile of a headless render.
+
+use wgpu::Device;
+
+use super::error::GpuError;
+use super::frame::{DataTargets, Targets};
+use super::readback::ReadableTexture;
+use super::records::NO_HIT;
+use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use super::tiles::Tile;
+use crate::image::Image;
+
+#[derive(Debug)]
+pub(super) struct TileTextures {
+    color: ReadableTexture,
+    data: Option<DataTextures>,
+}
+
+#[derive(Debug)]
+struct DataTextures {
+    depth: ReadableTexture,
+    normal: ReadableTexture,
+    id: ReadableTexture,
+}
+
+impl TileTextures {
+    pub(super) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
+        let texture = |label, format| ReadableTexture::new(device, label, format, size);
+        Self {
+            color: texture("pinhole color", ColorTarget::Linear32.texture_format()),
+            data: data_layers.then(|| DataTextures {
+                depth: texture("pinhole depth", DEPTH_FORMAT),
+                normal: texture("pinhole normal", NORMAL_FORMAT),
+                id: texture("pinhole id", ID_FORMAT),
+            }),
+        }
+    }
+
+    pub(super) fn targets(&self) -> Targets<'_> {
+        Targets {
+            color: self.color.view(),
+            data: self.data.as_ref().map(|data| DataTargets {
+                depth: data.depth.view(),
+                normal: data.normal.view(),
+                id: data.id.view(),
+            }),
+        }
+    }
+
+    pub(super) fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
+        let data = self.data.as_ref().map(|data| [&data.depth, &data.normal, &data.id]);
+        std::iter::once(&self.color).chain(data.into_iter().flatten())
+    }
+
+    /// Copies the mapped buffers to the tile's place in the image, and unmaps them.
+    pub(super) fn read_into(&self, image: &mut Image, tile: Tile) -> Result<(), GpuError> {
+        let [x, y] = tile.origin.map(|start| start as usize);
+        let columns = x..x + tile.size[0] as usize;
+        let mut rows = image.rows_mut();
+        let rows = &mut rows[y..];
+        self.color.read_rows(tile.size, |j, rgba: &[[f32; 4]]| {
+            for (pixel, [r, g, b, _]) in rows[j].color[columns.clone()].iter_mut().zip(rgba) {
+                *pixel = [*r, *g, *b];
+            }
+        })?;
+        let Some(data) = &self.data else {
+            return Ok(());
+        };
+        data.depth.read_rows(tile.size, |j, depths: &[f32]| {
+            let Some(row) = &mut rows[j].depth else {
+                return;
+            };
+            for (pixel, t) in row[columns.clone()].iter_mut().zip(depths) {
+                *pixel = if *t >= NO_HIT { f32::INFINITY } else { *t };
+            }
+        })?;
+        data.normal.read_rows(tile.size, |j, normals: &[[f32; 4]]| {
+            let Some(row) = &mut rows[j].normal else {
+                return;
+            };
+            for (pixel, [x, y, z, _]) in row[columns.clone()].iter_mut().zip(normals) {
+                *pixel = [*x, *y, *z];
+            }
+        })?;
+        data.id.read_rows(tile.size, |j, ids: &[u32]| {
+            let Some(row) = &mut rows[j].id else { return };
+            row[columns.clone()].copy_from_slice(ids);
+        })
+    }
+}
