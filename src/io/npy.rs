@@ -1,0 +1,53 @@
+//! Writes layers as NumPy arrays.
+
+use std::io;
+
+use npyz::{AutoSerialize, WriterBuilder};
+
+use crate::image::{Image, Layer};
+
+/// A layer as an `.npy` file: shape (H, W) or (H, W, 3), float32, or uint32 for ids; C order, row 0 at
+/// the top.
+///
+/// # Errors
+/// If the image was rendered without this layer.
+pub fn encode(image: &Image, layer: Layer) -> Result<Vec<u8>, NpyError> {
+    let missing = || NpyError::MissingLayer { layer };
+    let (height, width) = (u64::from(image.height()), u64::from(image.width()));
+    let bytes = match layer {
+        Layer::Color => array(image.color().as_flattened(), &[height, width, 3]),
+        Layer::Normal => {
+            array(image.normal().ok_or_else(missing)?.as_flattened(), &[height, width, 3])
+        }
+        Layer::Depth => array(image.depth().ok_or_else(missing)?, &[height, width]),
+        Layer::Id => array(image.id().ok_or_else(missing)?, &[height, width]),
+    };
+    bytes.map_err(|error| NpyError::Encoder { message: error.to_string() })
+}
+
+/// Why a layer cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NpyError {
+    /// It is not part of the image.
+    #[error("the image has no layer {layer}; ask for it when rendering")]
+    MissingLayer {
+        /// Which layer.
+        layer: Layer,
+    },
+    /// The encoder's reason.
+    #[error("the layer cannot be written as npy: {message}")]
+    Encoder {
+        /// The reason.
+        message: String,
+    },
+}
+
+fn array<T: AutoSerialize + Copy>(values: &[T], shape: &[u64]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(values.len() * size_of::<T>() + 128);
+    let mut writer =
+        npyz::WriteOptions::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?;
+    writer.extend(values.iter().copied())?;
+    writer.finish()?;
+    Ok(bytes)
+}

@@ -1,0 +1,367 @@
+//! Scene files: TOML text in; film, camera, settings and spheres out. No file system.
+//!
+//! `examples/three-spheres.toml` shows every part with comments.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{self, SeqAccess, Visitor};
+use toml::Spanned;
+
+use crate::bounds::Bounds;
+use crate::camera::{self, Camera, CameraError, camera_table};
+use crate::color::LinearRgb;
+use crate::film::{Film, YAxis};
+use crate::scene::{Scene, SceneError};
+use crate::settings::{Settings, Shading};
+use crate::sphere::Sphere;
+
+/// What a scene file says.
+#[derive(Debug)]
+pub struct SceneFile {
+    /// The picture's size.
+    pub film: Film,
+    /// Shading and background.
+    pub settings: Settings,
+    data: Option<Placed<Data>>,
+    camera: Placed<CameraParameters>,
+    spheres: Vec<Placed<Sphere>>,
+}
+
+/// A reference to a file with spheres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Data {
+    /// The path, relative to the scene file.
+    pub file: String,
+    /// Which frame of a trajectory, from 0.
+    pub frame: usize,
+    /// What every radius is multiplied by.
+    pub radius_scale: f64,
+}
+
+/// What is wrong with a scene file, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}, column {column}: {message}")]
+pub struct SceneFileError {
+    /// From 1.
+    pub line: usize,
+    /// From 1, in characters.
+    pub column: usize,
+    /// What is wrong, and what to do.
+    pub message: String,
+}
+
+/// A value and its place in the text.
+#[derive(Clone, Copy, Debug)]
+struct Placed<T> {
+    value: T,
+    place: Place,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    line: usize,
+    column: usize,
+}
+
+impl Place {
+    /// Where nothing more precise is known.
+    const START: Self = Self { line: 1, column: 1 };
+
+    fn error(self, message: impl fmt::Display) -> SceneFileError {
+        SceneFileError { line: self.line, column: self.column, message: message.to_string() }
+    }
+}
+
+impl SceneFile {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// The first thing in the text that is not as it should be.
+    pub fn parse(text: &str) -> Result<Self, SceneFileError> {
+        let document: Document = toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            place(text, start).error(explain(error.message()))
+        })?;
+        let film_place = place(text, document.film.span().start);
+        let FilmTable { width, height, y } = document.film.into_inner();
+        let film = Film::new(width, height).map_err(|error| film_place.error(error))?;
+        let defaults = Settings::default();
+        Ok(Self {
+            film: film.with_y_axis(y),
+            settings: Settings {
+                shading: document.shading.unwrap_or(defaults.shading),
+                background: document.background.map_or(defaults.background, |color| color.0),
+            },
+            data: data(text, document.data, document.frame, document.radius_scale)?,
+            camera: Placed {
+                place: place(text, document.camera.span().start),
+                value: document.camera.into_inner(),
+            },
+            spheres: document
+                .spheres
+                .into_iter()
+                .map(|sphere| Placed {
+                    place: place(text, sphere.span().start),
+                    value: sphere.into_inner().sphere(),
+                })
+                .collect(),
+        })
+    }
+
+    /// The scene: the file's own spheres, then those of its data.
+    ///
+    /// # Errors
+    /// The first sphere that is out of range, with its place if it stands in this file.
+    pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
+        let own = self.spheres.iter().map(|sphere| sphere.value);
+        let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
+        Scene::new(&spheres).map_err(|error| self.placed(&error))
+    }
+
+    fn placed(&self, error: &SceneError) -> SceneFileError {
+        let Some(index) = error.index() else {
+            return Place::START.error(error);
+        };
+        match self.spheres.get(index) {
+            Some(sphere) => sphere.place.error(error),
+            None => {
+                let in_data = index - self.spheres.len();
+                let place = self.data.as_ref().map_or(Place::START, |data| data.place);
+                place.error(format!("{error} (it is sphere {in_data} of the data)"))
+            }
+        }
+    }
+
+    /// The file with more spheres, if there is one.
+    #[must_use]
+    pub fn data(&self) -> Option<&Data> {
+        self.data.as_ref().map(|data| &data.value)
+    }
+
+    /// The camera, for a film of this shape; without a fixed place it frames the scene.
+    ///
+    /// # Errors
+    /// If a parameter is out of range, or parameters exclude each other.
+    pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
+        // An empty scene is as good as a unit cube.
+        let unit_cube = Bounds::of_sphere(scene.origin(), 0.5);
+        self.camera
+            .value
+            .camera(film.aspect(), &scene.bounds().unwrap_or(unit_cube))
+            .map_err(|error| self.camera.place.error(error))
+    }
+}
+
+impl Default for SceneFile {
+    /// An empty scene file: everything by default, no spheres.
+    fn default() -> Self {
+        Self {
+            film: Film::default(),
+            settings: Settings::default(),
+            data: None,
+            camera: Placed { value: CameraParameters::default(), place: Place::START },
+            spheres: Vec::new(),
+        }
+    }
+}
+
+fn data(
+    text: &str,
+    file: Option<Spanned<String>>,
+    frame: Option<Spanned<usize>>,
+    radius_scale: Option<Spanned<f64>>,
+) -> Result<Option<Placed<Data>>, SceneFileError> {
+    let Some(file) = file else {
+        let orphan = |key, start| {
+            place(text, start).error(format!("`{key}` concerns `data`, which is not given"))
+        };
+        return match (frame, radius_scale) {
+            (Some(frame), _) => Err(orphan("frame", frame.span().start)),
+            (_, Some(scale)) => Err(orphan("radius_scale", scale.span().start)),
+            (None, None) => Ok(None),
+        };
+    };
+    if let Some(scale) = &radius_scale {
+        let value = *scale.get_ref();
+        if !(value.is_finite() && value > 0.0) {
+            return Err(place(text, scale.span().start).error(format!(
+                "`radius_scale` is {value}; it must be finite and greater than 0"
+            )));
+        }
+    }
+    Ok(Some(Placed {
+        place: place(text, file.span().start),
+        value: Data {
+            file: file.into_inner(),
+            frame: frame.map_or(0, Spanned::into_inner),
+            radius_scale: radius_scale.map_or(1.0, Spanned::into_inner),
+        },
+    }))
+}
+
+/// Line and column of a byte of the text.
+fn place(text: &str, byte: usize) -> Place {
+    let before = text.get(..byte).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |end| end + 1);
+    Place {
+        line: before.matches('\n').count() + 1,
+        column: before[line_start..].chars().count() + 1,
+    }
+}
+
+/// Puts serde's words for an unknown key or name into a user's, with a suggestion.
+fn explain(message: &str) -> String {
+    let (what, rest) = match message.split_once(" `") {
+        Some(("unknown field", rest)) => ("key", rest),
+        Some(("unknown variant", rest)) => ("name", rest),
+        _ if message.starts_with("wanted exactly 1 element") => {
+            return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
+        }
+        // toml's messages of its own are good, but may span lines.
+        _ => return message.split_whitespace().collect::<Vec<_>>().join(" "),
+    };
+    // unknown field `widht`, expected one of `width`, `height`
+    let mut quoted = rest.split('`').step_by(2);
+    let unknown = quoted.next().unwrap_or_default();
+    let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
+    let nearest = known.iter().copied().max_by(|a, b| {
+        strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
+    });
+    match nearest.filter(|name| strsim::jaro_winkler(name, unknown) > 0.75) {
+        Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
+        None => format!("unknown {what} `{unknown}`; known here: {}", known.join(", ")),
+    }
+}
+
+/// The file's tables, as serde reads them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default = "default_film")]
+    film: Spanned<FilmTable>,
+    #[serde(default = "default_camera")]
+    camera: Spanned<CameraParameters>,
+    background: Option<ColorValue>,
+    shading: Option<Shading>,
+    #[serde(default)]
+    spheres: Vec<Spanned<SphereTable>>,
+    data: Option<Spanned<String>>,
+    frame: Option<Spanned<usize>>,
+    radius_scale: Option<Spanned<f64>>,
+}
+
+fn default_film() -> Spanned<FilmTable> {
+    Spanned::new(0..0, FilmTable::default())
+}
+
+fn default_camera() -> Spanned<CameraParameters> {
+    Spanned::new(0..0, CameraParameters::default())
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct FilmTable {
+    width: u32,
+    height: u32,
+    y: YAxis,
+}
+
+impl Default for FilmTable {
+    fn default() -> Self {
+        let film = Film::default();
+        Self { width: film.width(), height: film.height(), y: film.y_axis() }
+    }
+}
+
+macro_rules! define_camera_parameters {
+    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        /// The table `[camera.NAME]`.
+        #[derive(Clone, Copy, Debug, Deserialize)]
+        enum CameraParameters {
+            $(#[serde(rename = $name)] $variant(camera::$parameters),)+
+        }
+
+        impl CameraParameters {
+            fn camera(
+                &self,
+                aspect: f64,
+                bounds: &Bounds,
+            ) -> Result<Box<dyn Camera>, CameraError> {
+                match self {
+                    $(Self::$variant(parameters) => {
+                        Ok(Box::new(parameters.camera(aspect, bounds)?))
+                    })+
+                }
+            }
+        }
+    };
+}
+camera_table!(define_camera_parameters);
+
+impl Default for CameraParameters {
+    fn default() -> Self {
+        Self::Pinhole(camera::PinholeParameters::default())
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SphereTable {
+    center: [f64; 3],
+    radius: f64,
+    #[serde(default)]
+    color: ColorValue,
+}
+
+impl SphereTable {
+    fn sphere(self) -> Sphere {
+        Sphere { center: self.center, radius: self.radius, color: self.color.0 }
+    }
+}
+
+/// A CSS colour, or a linear triple.
+struct ColorValue(LinearRgb);
+
+impl Default for ColorValue {
+    fn default() -> Self {
+        Self(LinearRgb::from_srgb8([0xcc; 3]))
+    }
+}
+
+impl<'de> Deserialize<'de> for ColorValue {
+    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ColorVisitor;
+
+        impl<'de> Visitor<'de> for ColorVisitor {
+            type Value = ColorValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<ColorValue, E> {
+                LinearRgb::from_css(text).map(ColorValue).map_err(E::custom)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<ColorValue, A::Error> {
+                let mut rgb = [0.0; 3];
+                for (i, value) in rgb.iter_mut().enumerate() {
+                    *value =
+                        seq.next_element()?.ok_or_else(|| de::Error::invalid_length(i, &self))?;
+                }
+                if seq.next_element::<f32>()?.is_some() {
+                    return Err(de::Error::invalid_length(4, &self));
+                }
+                if !rgb.iter().all(|c: &f32| c.is_finite() && *c >= 0.0) {
+                    return Err(de::Error::custom(format_args!(
+                        "the color {rgb:?} has a component that is negative or not finite"
+                    )));
+                }
+                Ok(ColorValue(LinearRgb(rgb)))
+            }
+        }
+
+        deserializer.deserialize_any(ColorVisitor)
+    }
+}
