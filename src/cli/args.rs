@@ -1,0 +1,75 @@
+//! Arguments as they are typed. What they mean is checked in [`super::render`].
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Ray traces spheres with compute shaders, without a display.
+#[derive(Debug, Parser)]
+#[command(version, about, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(after_help = "Exit codes: 0 done; 1 the job failed; 2 wrong usage.")]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Render a scene file or a data file
+    Render(RenderArgs),
+    /// Write the scene file of three spheres into this folder and render it
+    Demo(DemoArgs),
+    /// List adapters, drivers, limits and features
+    Info(InfoArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArgs {
+    /// A scene file (.toml), or a data file (.xyz, .extxyz), which is framed by itself
+    #[arg(value_name = "SCENE_OR_DATA")]
+    pub(super) input: PathBuf,
+    /// The picture (.png), or - for PNG on standard output
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(super) output: PathBuf,
+    /// Size in pixels, such as 800x600 [default: the scene's, or 800x600]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<String>,
+    #[command(flatten)]
+    pub(super) device: DeviceArgs,
+    /// Which frame of a trajectory, counted from 0 [default: the scene's, or 0]
+    #[arg(long, value_name = "N")]
+    pub(super) frame: Option<usize>,
+    /// Also write a layer (color, depth, normal, id) as a NumPy array; may be repeated
+    #[arg(long = "layer", value_name = "LAYER=FILE.npy")]
+    pub(super) layers: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DemoArgs {
+    #[command(flatten)]
+    pub(super) device: DeviceArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DeviceArgs {
+    /// What renders: a GPU if there is an adapter, a GPU, or the CPU reference
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub(super) backend: Backend,
+    /// The adapter whose name contains this text [default: $`WGPU_ADAPTER_NAME`, or the best one]
+    #[arg(long, value_name = "NAME")]
+    pub(super) adapter: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Backend {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InfoArgs {
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}

@@ -1,0 +1,152 @@
+//! `pinhole info`.
+
+use std::io::{self, Write};
+
+use anyhow::Context;
+use serde::Serialize;
+
+use super::args::InfoArgs;
+use super::failure::Failure;
+
+/// What is known of this program and the machine.
+#[derive(Serialize)]
+struct Info {
+    /// Of the program.
+    version: &'static str,
+    /// The best first; `render` takes the one that is `chosen`.
+    adapters: Vec<AdapterReport>,
+}
+
+#[derive(Serialize)]
+struct AdapterReport {
+    name: String,
+    backend: String,
+    device_type: String,
+    driver: String,
+    driver_info: String,
+    chosen: bool,
+    limits: Limits,
+    features: Features,
+}
+
+/// The limits that bound pictures and scenes.
+#[derive(Serialize)]
+struct Limits {
+    max_texture_dimension_2d: u64,
+    max_buffer_size: u64,
+    max_storage_buffer_binding_size: u64,
+    max_storage_buffers_per_shader_stage: u64,
+    max_storage_textures_per_shader_stage: u64,
+    max_compute_workgroups_per_dimension: u64,
+    max_compute_invocations_per_workgroup: u64,
+    max_compute_workgroup_storage_size: u64,
+}
+
+/// The optional features that bear on tracing.
+#[derive(Serialize)]
+struct Features {
+    timestamp_query: bool,
+    subgroup: bool,
+    shader_f64: bool,
+    ray_query: bool,
+}
+
+pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let info = Info { version: env!("CARGO_PKG_VERSION"), adapters: adapters() };
+    let text = if args.json {
+        serde_json::to_string_pretty(&info).context("the report")? + "\n"
+    } else {
+        readable(&info)
+    };
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        // The reader has seen enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => Ok(result.context("standard output: cannot be written")?),
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn adapters() -> Vec<AdapterReport> {
+    use crate::gpu::adapter;
+
+    let adapters = adapter::adapters();
+    // The same choice as `render` makes, also when WGPU_ADAPTER_NAME asks for another adapter.
+    let chosen = adapter::index_of_choice(&adapters, None).ok();
+    let is_chosen = |index| chosen == Some(index);
+    adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index))).collect()
+}
+
+#[cfg(feature = "gpu")]
+fn report(adapter: &crate::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport {
+    use crate::gpu::wgpu;
+
+    let info = adapter.get_info();
+    let limits = adapter.limits();
+    let features = adapter.features();
+    let has = |feature| features.contains(feature);
+    AdapterReport {
+        name: info.name,
+        backend: format!("{:?}", info.backend),
+        device_type: format!("{:?}", info.device_type),
+        driver: info.driver,
+        driver_info: info.driver_info,
+        chosen,
+        limits: Limits {
+            max_texture_dimension_2d: limits.max_texture_dimension_2d.into(),
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            max_storage_buffers_per_shader_stage: limits
+                .max_storage_buffers_per_shader_stage
+                .into(),
+            max_storage_textures_per_shader_stage: limits
+                .max_storage_textures_per_shader_stage
+                .into(),
+            max_compute_workgroups_per_dimension: limits
+                .max_compute_workgroups_per_dimension
+                .into(),
+            max_compute_invocations_per_workgroup: limits
+                .max_compute_invocations_per_workgroup
+                .into(),
+            max_compute_workgroup_storage_size: limits.max_compute_workgroup_storage_size.into(),
+        },
+        features: Features {
+            timestamp_query: has(wgpu::Features::TIMESTAMP_QUERY),
+            subgroup: has(wgpu::Features::SUBGROUP),
+            shader_f64: has(wgpu::Features::SHADER_F64),
+            ray_query: has(wgpu::Features::EXPERIMENTAL_RAY_QUERY),
+        },
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn adapters() -> Vec<AdapterReport> {
+    Vec::new()
+}
+
+fn readable(info: &Info) -> String {
+    let mut text = format!("pinhole {}\n", info.version);
+    if info.adapters.is_empty() {
+        text += "no Vulkan, Metal or DX12 adapter was found; `render` uses the CPU reference\n";
+        text += "a software adapter on Debian and Ubuntu: apt install mesa-vulkan-drivers\n";
+    }
+    for adapter in &info.adapters {
+        let mark = if adapter.chosen { ", used by `render`" } else { "" };
+        text += &format!(
+            "\n{} ({}, {}{mark})\n  driver: {} {}\n",
+            adapter.name, adapter.backend, adapter.device_type, adapter.driver, adapter.driver_info
+        );
+        for (group, values) in [
+            ("limits", serde_json::to_value(&adapter.limits)),
+            ("features", serde_json::to_value(&adapter.features)),
+        ] {
+            text += &format!("  {group}\n");
+            let Ok(serde_json::Value::Object(values)) = values else {
+                continue;
+            };
+            for (name, value) in values {
+                text += &format!("    {name}: {value}\n");
+            }
+        }
+    }
+    text
+}

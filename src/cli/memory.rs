@@ -1,0 +1,46 @@
+//! Whether a picture fits into the machine, asked before it is begun.
+
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+use super::failure::Failure;
+use crate::film::Film;
+use crate::image::LayerSet;
+
+/// Bytes per pixel that encoding and reading back take beside the image itself.
+const ENCODING_BYTES_PER_PIXEL: u64 = 16;
+
+/// Refuses a picture that this machine, or the control group that the program runs in, cannot hold.
+pub(super) fn check(film: &Film, layers: LayerSet) -> Result<(), Failure> {
+    let per_pixel = layers.bytes_per_pixel() + ENCODING_BYTES_PER_PIXEL;
+    let needed = film.pixel_count().saturating_mul(per_pixel);
+    let available = available();
+    if needed > available {
+        return Err(Failure::usage(format!(
+            "a picture of {}x{} needs {} of memory, and {} are free; choose a smaller size",
+            film.width(),
+            film.height(),
+            readable(needed),
+            readable(available)
+        )));
+    }
+    Ok(())
+}
+
+fn available() -> u64 {
+    let what = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let system = System::new_with_specifics(what);
+    let in_group = system
+        .cgroup_limits()
+        .map_or(u64::MAX, |limits| limits.total_memory.saturating_sub(limits.rss));
+    match system.available_memory() {
+        // Not known on this system; then the allocation itself decides.
+        0 => u64::MAX,
+        free => free.min(in_group),
+    }
+}
+
+fn readable(bytes: u64) -> String {
+    const MIB: f64 = (1 << 20) as f64;
+    let mib = bytes as f64 / MIB;
+    if mib < 1024.0 { format!("{mib:.0} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+}

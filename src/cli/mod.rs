@@ -1,0 +1,62 @@
+//! The program: raw arguments, then a checked job made of library types, then its run.
+//!
+//! The only module that sees clap, prints, or touches the file system.
+#![expect(clippy::print_stderr, clippy::print_stdout, reason = "this is where the program speaks")]
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+mod args;
+mod demo;
+mod failure;
+mod info;
+mod input;
+mod memory;
+mod output;
+mod render;
+
+use args::{Arguments, Command};
+
+/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage.
+#[must_use]
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error),
+    };
+    let result = match arguments.command {
+        Command::Render(args) => render::run(&args),
+        Command::Demo(args) => demo::run(&args),
+        Command::Info(args) => info::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+/// Prints help or version as clap has them, and an error as one line.
+fn explain(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            print!("{error}");
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprint!("{error}");
+            failure::USAGE.into()
+        }
+        _ => {
+            let text = error.to_string();
+            let message = text.split("\n\nUsage:").next().unwrap_or_default();
+            let message = message.split("\n\nFor more information").next().unwrap_or_default();
+            eprintln!("{}", message.split_whitespace().collect::<Vec<_>>().join(" "));
+            failure::USAGE.into()
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! `pinhole render`.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+
+use super::args::{Backend, DeviceArgs, RenderArgs};
+use super::failure::Failure;
+use super::input::{self, Format, Input};
+use super::memory;
+use super::output::Outputs;
+use crate::cpu;
+#[cfg(feature = "gpu")]
+use crate::gpu::{GpuError, Headless};
+use crate::image::{Image, LayerSet};
+
+/// A render, checked as far as it can be before the input is read.
+struct Job {
+    input: PathBuf,
+    format: Format,
+    outputs: Outputs,
+    size: Option<(u32, u32)>,
+    frame: Option<usize>,
+    device: Device,
+}
+
+/// What renders.
+pub(super) enum Device {
+    /// The CPU reference.
+    Cpu,
+    /// An adapter, or if there is none at all and `or_cpu` is set, the CPU reference.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
+    Adapter { name: Option<String>, or_cpu: bool },
+}
+
+impl Device {
+    pub(super) fn new(args: &DeviceArgs) -> Result<Self, Failure> {
+        let name = args.adapter.clone();
+        match (args.backend, &name) {
+            (Backend::Cpu, None) => Ok(Self::Cpu),
+            (Backend::Cpu, Some(_)) => {
+                Err(Failure::usage("--adapter and --backend cpu exclude each other; drop one"))
+            }
+            (Backend::Gpu, _) => Ok(Self::Adapter { name, or_cpu: false }),
+            // Who names an adapter wants that one.
+            (Backend::Auto, _) => Ok(Self::Adapter { or_cpu: name.is_none(), name }),
+        }
+    }
+}
+
+impl Job {
+    fn new(args: &RenderArgs) -> Result<Self, Failure> {
+        Ok(Self {
+            input: args.input.clone(),
+            format: Format::of(&args.input).map_err(Failure::Usage)?,
+            outputs: Outputs::new(&args.output, &args.layers)?,
+            size: args.size.as_deref().map(parse_size).transpose()?,
+            frame: args.frame,
+            device: Device::new(&args.device)?,
+        })
+    }
+}
+
+pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let job = Job::new(args)?;
+    let input = input::load(&job.input, job.format, job.size, job.frame)?;
+    for note in &input.notes {
+        eprintln!("note: {note}");
+    }
+    let layers = job.outputs.layers().fold(LayerSet::COLOR, LayerSet::with);
+    let image = render(&input, layers, &job.device)?;
+    job.outputs.write(&image)?;
+    Ok(())
+}
+
+/// Renders on the device, and says so if that is not what the user would expect.
+pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
+    memory::check(&input.film, layers)?;
+    match device {
+        Device::Cpu => on_cpu(input, layers),
+        #[cfg(feature = "gpu")]
+        Device::Adapter { name, or_cpu } => match Headless::open(name.as_deref()) {
+            Ok(headless) => on_gpu(&headless, input, layers),
+            Err(GpuError::NoAdapter) if *or_cpu => {
+                eprintln!(
+                    "note: no Vulkan, Metal or DX12 adapter was found; \
+                     rendering on the CPU reference, which is slower"
+                );
+                on_cpu(input, layers)
+            }
+            Err(error @ GpuError::UnknownAdapter { .. }) => Err(Failure::Usage(error.into())),
+            Err(error) => Err(Failure::Job(error.into())),
+        },
+        #[cfg(not(feature = "gpu"))]
+        Device::Adapter { or_cpu: true, .. } => on_cpu(input, layers),
+        #[cfg(not(feature = "gpu"))]
+        Device::Adapter { or_cpu: false, .. } => Err(Failure::usage(
+            "this program was built without the feature `gpu`; use --backend cpu",
+        )),
+    }
+}
+
+fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {
+    let Input { scene, camera, film, settings, .. } = input;
+    let image = cpu::render(scene, camera.as_ref(), film, settings, layers);
+    Ok(image.context("the CPU reference")?)
+}
+
+#[cfg(feature = "gpu")]
+fn on_gpu(headless: &Headless, input: &Input, layers: LayerSet) -> Result<Image, Failure> {
+    let Input { scene, camera, film, settings, .. } = input;
+    headless.render(scene, camera.as_ref(), film, settings, layers).map_err(|error| {
+        let adapter = headless.adapter_info().name.clone();
+        let remedy = if matches!(error, GpuError::Limit { .. }) {
+            "; --backend cpu has no such limit"
+        } else {
+            ""
+        };
+        Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}"))
+    })
+}
+
+/// `WxH`
+fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+    let sides = text.split_once(['x', 'X']);
+    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
+        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
+    )
+}
