@@ -1,0 +1,78 @@
+//! Rules of ARCHITECTURE.md that a text search can guard.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                found.push((path, text));
+            }
+        }
+    }
+    assert!(!found.is_empty(), "no sources in {folder}");
+    found
+}
+
+/// Files below `folder` that contain one of the words, but for those that end with `except`.
+fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
+    for (path, text) in sources(folder) {
+        if except.iter().any(|end| path.ends_with(end)) {
+            continue;
+        }
+        for word in words {
+            assert!(!text.contains(word), "{} contains {word}", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_reference_and_the_gpu_do_not_know_each_other() {
+    assert_absent("src/cpu", &["gpu", "wgpu", "wgsl::"], &[]);
+    assert_absent("src/gpu", &["crate::cpu", "cpu::"], &[]);
+}
+
+#[test]
+fn only_the_gpu_module_and_the_program_name_wgpu() {
+    for folder in ["src/camera", "src/cpu", "src/io"] {
+        assert_absent(folder, &["wgpu"], &[]);
+    }
+}
+
+#[test]
+fn only_headless_submits_polls_and_waits() {
+    assert_absent("src", &[".submit(", ".poll(", "map_async"], &["gpu/headless.rs"]);
+}
+
+#[test]
+fn readers_and_writers_touch_no_files() {
+    assert_absent("src/io", &["std::fs", "File::"], &[]);
+    assert_absent(
+        "src",
+        &["std::fs"],
+        &["cli/input.rs", "cli/output.rs", "cli/demo.rs", "gpu/shaders.rs"],
+    );
+}
+
+#[test]
+fn only_the_program_sees_clap() {
+    for (path, text) in sources("src") {
+        let in_program = path.components().any(|c| c.as_os_str() == "cli");
+        assert!(in_program || !text.contains("clap::"), "{}", path.display());
+    }
+}
+
+#[test]
+fn files_are_short() {
+    for (path, text) in sources("src") {
+        let lines = text.lines().count();
+        assert!(lines <= 450, "{} has {lines} lines; one idea per file", path.display());
+    }
+}

@@ -1,0 +1,20 @@
+//! Tests that need no adapter and start no program.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::float_cmp,
+    reason = "tests; where floats are compared, the answer is exact"
+)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod basis;
+mod camera;
+mod comparator;
+mod invariants;
+mod perspective;
+mod reference;
+mod scene;
+mod scene_file;
+mod xyz;

@@ -1,0 +1,205 @@
+//! Scene files: what they may say, and what is wrong with them.
+
+use glam::{DVec2, DVec3};
+use pinhole::camera::CameraKind;
+use pinhole::film::YAxis;
+use pinhole::scene_file::SceneFile;
+use pinhole::{LinearRgb, Shading, glam};
+
+fn parse(text: &str) -> SceneFile {
+    SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Whatever is wrong, wherever it shows.
+fn message(text: &str) -> String {
+    let error = match SceneFile::parse(text) {
+        Err(error) => error,
+        Ok(file) => match file.scene(&[]) {
+            Err(error) => error,
+            Ok(scene) => file.camera(&file.film, &scene).unwrap_err(),
+        },
+    };
+    error.to_string()
+}
+
+#[test]
+fn an_empty_file_is_a_picture_of_nothing() {
+    let file = parse("");
+    assert_eq!([file.film.width(), file.film.height()], [800, 600]);
+    let scene = file.scene(&[]).unwrap();
+    assert!(scene.is_empty());
+    assert_eq!(file.camera(&file.film, &scene).unwrap().kind(), CameraKind::Pinhole);
+}
+
+#[test]
+fn the_example_says_what_it_should() {
+    let file = parse(include_str!("../../examples/three-spheres.toml"));
+    assert_eq!(file.settings.shading, Shading::Flat);
+    assert_eq!(file.settings.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
+    assert_eq!(file.film.y_axis(), YAxis::Down);
+    let scene = file.scene(&[]).unwrap();
+    assert_eq!(
+        scene.spheres(),
+        [[-4.0, 0.0, 0.0, 2.0], [4.0, 0.0, 0.0, 2.0], [0.0, 0.0, 3.0, 2.0]]
+    );
+    let vectors = file.camera(&file.film, &scene).unwrap().vectors();
+    assert_eq!(vectors.origin, DVec3::new(0.0, 1.0, -8.0));
+    assert_eq!(vectors.right, DVec3::X);
+}
+
+#[test]
+fn colors_in_three_ways() {
+    let file = parse(
+        "[[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor='tomato'\n\
+         [[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor='#ff6347'\n\
+         [[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor=[0.25, 1, 3.5]\n",
+    );
+    let scene = file.scene(&[]).unwrap();
+    assert_eq!(scene.colors()[0], LinearRgb::from_srgb8([255, 99, 71]));
+    assert_eq!(scene.colors()[0], scene.colors()[1]);
+    assert_eq!(scene.colors()[2], LinearRgb([0.25, 1.0, 3.5]));
+}
+
+#[test]
+fn data_comes_behind_the_files_own_spheres() {
+    let file = parse(
+        "data = 'a.xyz'\nframe = 3\nradius_scale = 0.5\n[[spheres]]\ncenter=[0,0,0]\nradius=1\n",
+    );
+    let data = file.data().unwrap();
+    assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", 3, 0.5));
+    let more = pinhole::Sphere::new([5.0, 0.0, 0.0], 2.0, LinearRgb::BLACK);
+    assert_eq!(file.scene(&[more]).unwrap().spheres()[1], [5.0, 0.0, 0.0, 2.0]);
+
+    let bad = pinhole::Sphere { radius: -2.0, ..more };
+    let error = file.scene(&[more, bad]).unwrap_err();
+    assert_eq!((error.line, error.column), (1, 8));
+    assert!(error.message.starts_with("sphere 2: its radius is -2"), "{error}");
+    assert!(error.message.ends_with("(it is sphere 1 of the data)"), "{error}");
+}
+
+#[test]
+fn a_camera_without_an_eye_frames_the_scene() {
+    for camera in ["", "[camera.pinhole]\nvertical_fov = 50\n", "[camera.orthographic]\n"] {
+        let file = parse(&format!("{camera}[[spheres]]\ncenter=[10,20,30]\nradius=2\n"));
+        let scene = file.scene(&[]).unwrap();
+        let camera = file.camera(&file.film, &scene).unwrap();
+        let ray = camera.ray_in_world(DVec2::ZERO);
+        assert!((ray.direction - DVec3::NEG_Z).length() < 1e-12);
+        assert!((ray.origin - DVec3::new(10.0, 20.0, ray.origin.z)).length() < 1e-9);
+        assert!(ray.origin.z > 32.0);
+    }
+}
+
+#[test]
+fn errors_name_place_and_remedy() {
+    const SPHERE: &str = "[[spheres]]\ncenter=[0,0,0]\nradius=1\n";
+    for (text, expected) in [
+        (
+            "backgroud = 'red'\n",
+            "line 1, column 1: unknown key `backgroud`; did you mean `background`?",
+        ),
+        (
+            "[film]\nwidth = 8\nheigth = 6\n",
+            "line 3, column 1: unknown key `heigth`; did you mean `height`?",
+        ),
+        (
+            "[camera.pinhole]\nfocus = 3\n",
+            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov",
+        ),
+        ("[camera.pinhol]\n", "line 1, column 9: unknown name `pinhol`; did you mean `pinhole`?"),
+        (
+            "shading = 'phong'\n",
+            "line 1, column 11: unknown name `phong`; known here: flat, headlight",
+        ),
+        ("[film]\ny = 'dwon'\n", "line 2, column 5: unknown name `dwon`; did you mean `down`?"),
+        (
+            "[film]\nwidth = 0\n",
+            "line 1, column 1: the size 0x600 has no pixel; width and height must be at least 1",
+        ),
+        (
+            "background = 'gren'\n",
+            "line 1, column 14: `gren` is no colour; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
+        ),
+        ("frame = 3\n", "line 1, column 9: `frame` concerns `data`, which is not given"),
+        (
+            "data = 'a.xyz'\nradius_scale = -1.0\n",
+            "line 2, column 16: `radius_scale` is -1; it must be finite and greater than 0",
+        ),
+        (
+            "[camera.pinhole]\neye = [1, 1, 1]\nlook_at = [1, 1, 1]\n",
+            "line 1, column 2: the eye and the look-at point are both [1, 1, 1]; move one of them",
+        ),
+        (
+            "[camera.pinhole]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\n",
+            "line 1, column 2: up [0, 1, 0] is parallel to the direction of view; tilt it",
+        ),
+        (
+            "[camera.pinhole]\neye = [0, 5, 0]\n",
+            "line 1, column 2: an `eye` needs a `look_at` point or a `direction`",
+        ),
+        (
+            "[camera.pinhole]\nvertical_fov = 180\n",
+            "line 1, column 2: the vertical field of view is 180 degrees; it must lie between 0 and 180",
+        ),
+        (
+            "[camera.orthographic]\nhalf_extent = [1, 1]\n",
+            "line 1, column 2: `half_extent` needs an `eye`; to frame the whole scene leave both out",
+        ),
+    ] {
+        assert_eq!(message(text), expected);
+    }
+    for (text, expected) in [
+        (
+            format!("{SPHERE}\n[[spheres]]\ncenter=[0,0,0]\nradius=nan\n"),
+            "line 5, column 1: sphere 1: its radius is NaN; ",
+        ),
+        (
+            format!("{SPHERE}\n[[spheres]]\ncenter=[0,0,0]\nradius=-1\n"),
+            "line 5, column 1: sphere 1: its radius is -1; ",
+        ),
+        (
+            format!("{SPHERE}[[spheres]]\ncenter=[0,inf,0]\nradius=1\n"),
+            "line 4, column 1: sphere 1: its center is (0, inf, 0); ",
+        ),
+        ("[[spheres]]\ncenter=[0,0]\nradius=1\n".into(), "line 2, column 8: "),
+        ("[[spheres]]\nradius=1\n".into(), "line 1, column 1: missing field `center`"),
+        ("[film\n".into(), "line 1, column 6: "),
+        ("x = = 1\n".into(), "line 1, column 5: "),
+        ("[film]\nwidth = -5\n".into(), "line 2, column 9: "),
+        (
+            "[camera.pinhole]\n[camera.orthographic]\n".into(),
+            "line 1, column 2: a scene has one camera; ",
+        ),
+        ("background = [1, 2]\n".into(), "line 1, column 14: "),
+        ("background = [1, -2, 0]\n".into(), "line 1, column 14: "),
+    ] {
+        let found = message(&text);
+        assert!(found.starts_with(expected), "{found} does not start with {expected}");
+        assert!(!found.contains('\n'), "{found}");
+    }
+}
+
+#[test]
+fn noise_never_panics() {
+    let seed = include_str!("../../examples/three-spheres.toml");
+    let mut random = fastrand::Rng::with_seed(13);
+    for _ in 0..3_000 {
+        let mut text: Vec<char> = seed.chars().collect();
+        for _ in 0..random.usize(1..6) {
+            let at = random.usize(..text.len());
+            match random.u8(..3) {
+                0 => text[at] = *random.choice(&['"', '[', ']', '=', '\n', '-', 'é', '9']).unwrap(),
+                1 => drop(text.remove(at)),
+                _ => text.truncate(at.max(1)),
+            }
+            if text.is_empty() {
+                break;
+            }
+        }
+        if let Ok(file) = SceneFile::parse(&text.into_iter().collect::<String>()) {
+            if let Ok(scene) = file.scene(&[]) {
+                let _ = file.camera(&file.film, &scene);
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The XYZ reader: good files, bad files, and files that are noise.
+
+use pinhole::LinearRgb;
+use pinhole::io::xyz::{XyzError, read};
+
+const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
+
+fn message(text: &str) -> String {
+    read(text.as_bytes(), 0).unwrap_err().to_string()
+}
+
+#[test]
+fn a_molecule() {
+    let frame = read(WATER.as_bytes(), 0).unwrap();
+    assert_eq!(frame.spheres.len(), 3);
+    assert_eq!(frame.spheres[1].center, [0.76, 0.0, -0.5]);
+    assert_eq!(frame.spheres[0].radius, 1.5);
+    assert_eq!(frame.spheres[0].color, LinearRgb::from_srgb8([255, 13, 13]));
+    assert!(frame.unknown_species.is_empty());
+}
+
+#[test]
+fn frames_of_a_trajectory() {
+    let text = format!("{WATER}1\nlone\nHe 1 2 3\n\n2\n\nNa 0 0 0\nCl 2.8 0 0\n\n");
+    let atoms = |frame| read(text.as_bytes(), frame).map(|f| f.spheres.len());
+    assert_eq!([atoms(0), atoms(1), atoms(2)], [Ok(3), Ok(1), Ok(2)]);
+    assert_eq!(atoms(3), Err(XyzError::NoSuchFrame { wanted: 3, frames: 3 }));
+}
+
+#[test]
+fn ways_to_write_a_file() {
+    for (case, text) in [
+        ("no line end at the end", "1\n\nO 0 0 0"),
+        ("Windows line ends", "1\r\n\r\nO 0 0 0\r\n"),
+        ("tabs", " 1 \n\nO\t0\t0\t0\n"),
+        ("more columns", "1\n\nO 0 0 0 0.1 0.2 0.3 note\n"),
+        ("exponents of Fortran", "1\n\nO 0.0D+00 0d0 0E0\n"),
+        ("blank lines before and behind", "\n\n1\n\nO 0 0 0\n\n \n"),
+        ("an empty species list key", "1\nProperties2=x\nO 0 0 0\n"),
+    ] {
+        let frame = read(text.as_bytes(), 0).unwrap_or_else(|error| panic!("{case}: {error}"));
+        assert_eq!(frame.spheres[0].center, [0.0; 3], "{case}");
+    }
+    assert_eq!(read(b"0\nnothing\n", 0).unwrap().spheres, []);
+}
+
+#[test]
+fn extended_columns_in_any_order() {
+    let text = "2\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1:color:R:3:species:S:1 Time=0.5\n\
+                7 1 2 3 0.25 1 0 0.2 Fe\n8 4 5 6 0.5 0 0 0 C\n";
+    let frame = read(text.as_bytes(), 0).unwrap();
+    assert_eq!(frame.spheres[0].center, [1.0, 2.0, 3.0]);
+    assert_eq!(frame.spheres[0].radius, 0.25);
+    assert_eq!(frame.spheres[0].color, LinearRgb::from_srgb8([255, 0, 51]));
+    assert_eq!(frame.spheres[1].radius, 0.5);
+
+    let by_number = "1\nproperties=\"Z:I:1:pos:R:3\" pbc='T T F'\n8 0 0 0\n";
+    let frame = read(by_number.as_bytes(), 0).unwrap();
+    assert_eq!(frame.spheres[0].radius, 1.5);
+}
+
+#[test]
+fn unknown_species_are_reported_once_each() {
+    let frame = read(b"4\n\nA 0 0 0\nO 0 0 0\nB 0 0 0\nA 1 1 1\n", 0).unwrap();
+    // B is boron.
+    assert_eq!(frame.unknown_species, ["A"]);
+}
+
+#[test]
+fn errors_name_line_and_remedy() {
+    for (text, expected) in [
+        ("", "line 0: `` is no number of atoms"),
+        ("three\n", "line 1: `three` is no number of atoms"),
+        ("-1\n\n", "line 1: `-1` is no number of atoms"),
+        ("3\n\nO 0 0 0\nH 0 0 1\n", "line 1: frame 0 declares 3 atoms, but the file ends after 2"),
+        ("3\n", "line 1: frame 0 declares 3 atoms, but the file ends after 0"),
+        (
+            "1\n\nO 0 0 0\nH 0 0 1\n",
+            "line 4: `H 0 0 1` is no number of atoms; frame 0 declares 1 atoms on line 1",
+        ),
+        ("1\n\nO 0 zero 0\n", "line 3: the y coordinate is `zero`, which is no finite number"),
+        ("1\n\nO 0 0 nan\n", "line 3: the z coordinate is `nan`, which is no finite number"),
+        ("1\n\nO inf 0 0\n", "line 3: the x coordinate is `inf`, which is no finite number"),
+        ("1\n\nO 0 0\n", "line 3: the z coordinate is missing; the line has 3 columns"),
+        ("1\n\n\n", "line 3: the species is missing; the line has 0 columns"),
+        ("1\nProperties=species:S:1\nO 0 0 0\n", "line 2: Properties lacks pos:R:3"),
+        ("1\nProperties=pos:R:3\n0 0 0\n", "line 2: Properties has neither species:S:1 nor Z:I:1"),
+        (
+            "1\nProperties=species:S\nO 0 0 0\n",
+            "line 2: Properties=species:S is no list of name:type:columns triples",
+        ),
+    ] {
+        assert_eq!(message(text), expected);
+    }
+    assert_eq!(read(b"1\n\nO \xff 0 0\n", 0), Err(XyzError::NotText { line: 3 }));
+}
+
+/// A count that no memory could hold must not be believed.
+#[test]
+fn an_absurd_count_is_only_a_wrong_count() {
+    let text = format!("{}\n\nO 0 0 0\n", u64::MAX);
+    assert!(message(&text).contains("the file ends after 1"), "{}", message(&text));
+}
+
+#[test]
+fn noise_never_panics() {
+    let extended = "1\nProperties=species:S:1:pos:R:3:radius:R:1 a='b c' d=\"e\"\nO 1 2 3 4\n";
+    let mut random = fastrand::Rng::with_seed(12);
+    for seed in [WATER, extended] {
+        for _ in 0..20_000 {
+            let mut bytes = seed.as_bytes().to_vec();
+            for _ in 0..random.usize(1..6) {
+                let at = random.usize(..bytes.len());
+                match random.u8(..4) {
+                    0 => bytes[at] = random.u8(..),
+                    1 => drop(bytes.remove(at)),
+                    2 => bytes.insert(at, *random.choice(b"\n\t \"'=:-.e09").unwrap()),
+                    _ => bytes.truncate(at.max(1)),
+                }
+                if bytes.is_empty() {
+                    break;
+                }
+            }
+            let _ = read(&bytes, random.usize(..3));
+        }
+    }
+}

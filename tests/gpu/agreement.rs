@@ -1,0 +1,38 @@
+//! The GPU's picture is the CPU reference's picture.
+
+use libtest_mimic::Trial;
+use pinhole::LayerSet;
+
+use crate::headless;
+use crate::scenes;
+use crate::support::compare::compare;
+
+/// The most pixels, in parts of all, whose id may be one of two right ones.
+const MAX_AMBIGUOUS: f64 = 1e-3;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    scenes::all()
+        .into_iter()
+        .map(|(name, view)| {
+            Trial::test(format!("agreement::{name}"), move || {
+                let image = headless()?.render(
+                    &view.scene,
+                    view.camera.as_ref(),
+                    &view.film,
+                    &view.settings,
+                    LayerSet::ALL,
+                )?;
+                let comparison = compare(&view, &view.reference(), &image);
+                if let Some(first) = comparison.violations.first() {
+                    let count = comparison.violations.len();
+                    return Err(format!("{count} violations, the first is {first:?}").into());
+                }
+                let ambiguous = comparison.ambiguous as f64 / view.film.pixel_count() as f64;
+                if ambiguous > MAX_AMBIGUOUS {
+                    return Err(format!("{ambiguous} of all pixels are ambiguous").into());
+                }
+                Ok(())
+            })
+        })
+        .collect()
+}

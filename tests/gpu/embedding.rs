@@ -1,0 +1,224 @@
+//! Recording into a foreign device's textures inside a foreign encoder.
+
+use libtest_mimic::Trial;
+use pinhole::camera::CameraKind;
+use pinhole::film::Film;
+use pinhole::gpu::{
+    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets,
+    adapter, wgpu,
+};
+use pinhole::image::NO_ID;
+
+use crate::support::View;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("embedding::a_foreign_encoder_gets_the_spheres_in_its_texture", foreign_frame),
+        trial("embedding::one_encoder_holds_several_views", several_views),
+        trial("embedding::unfit_targets_are_refused", unfit_targets),
+        trial("embedding::what_is_not_ready_is_refused", not_ready),
+    ]
+}
+
+/// A host program with a device of its own, with no more than WebGPU's default limits.
+struct Host {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+}
+
+impl Host {
+    fn new() -> Self {
+        let adapter = adapter::choose(None).unwrap();
+        let descriptor = wgpu::DeviceDescriptor::default();
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+        Self { device, queue }
+    }
+
+    fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("host"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        })
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// The bytes of a texture of four bytes a pixel, after running the encoder.
+    fn submit_and_read(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        texture: &wgpu::Texture,
+    ) -> Vec<u8> {
+        let row = (texture.width() * 4).next_multiple_of(256);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row * texture.height()),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: None,
+                },
+            },
+            texture.size(),
+        );
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
+        self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let bytes = buffer.get_mapped_range(..).unwrap();
+        let used = texture.width() as usize * 4;
+        bytes.chunks(row as usize).flat_map(|row| row[..used].to_vec()).collect()
+    }
+}
+
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn three_spheres() -> View {
+    View::three_spheres()
+}
+
+fn size_of_film(film: &Film) -> [u32; 2] {
+    [film.width(), film.height()]
+}
+
+/// The bytes that the CPU reference gives, from its ids, so that no rounding is involved.
+fn expected_bytes(view: &View) -> Vec<u8> {
+    let reference = view.reference();
+    let background = view.settings.background;
+    let color = |id: &u32| {
+        if *id == NO_ID { background } else { view.scene.colors()[*id as usize] }
+    };
+    let rgba = |id| {
+        let [r, g, b] = color(id).to_srgb8();
+        [r, g, b, 255]
+    };
+    reference.id().unwrap().iter().flat_map(rgba).collect()
+}
+
+/// A render pass of the host's.
+fn clear(encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::GREEN),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    });
+}
+
+fn foreign_frame(_: &'static Headless) {
+    let host = Host::new();
+    let view = three_spheres();
+    let size = size_of_film(&view.film);
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
+    let target_view = view_of(&target);
+    let targets = Targets { color: &target_view, data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    frame.set_view(&host.queue, &scene, view.camera.as_ref(), &view.film, &view.settings).unwrap();
+
+    // The host's own work in the same encoder, on the same texture: a clear before, a copy after.
+    let mut encoder = host.encoder();
+    clear(&mut encoder, &target_view);
+    renderer.record(&mut encoder, &scene, &frame).unwrap();
+    let bytes = host.submit_and_read(encoder, &target);
+
+    assert_eq!(bytes.len(), size[0] as usize * size[1] as usize * 4);
+    assert!(bytes == expected_bytes(&view), "the texture differs from the reference");
+}
+
+fn several_views(_: &'static Headless) {
+    let host = Host::new();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let views = [three_spheres(), View::three_spheres_orthographic()];
+    // One scene, two frames, one submission.
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).unwrap();
+    let mut encoder = host.encoder();
+    let textures: Vec<wgpu::Texture> = views
+        .iter()
+        .map(|view| {
+            let size = size_of_film(&view.film);
+            let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
+            let targets = Targets { color: &view_of(&target), data: None };
+            let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+            let View { camera, film, settings, .. } = view;
+            frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+            renderer.record(&mut encoder, &scene, &frame).unwrap();
+            target
+        })
+        .collect();
+    let first = host.submit_and_read(encoder, &textures[0]);
+    let second = host.submit_and_read(host.encoder(), &textures[1]);
+    assert!(first == expected_bytes(&views[0]), "pinhole");
+    assert!(second == expected_bytes(&views[1]), "orthographic");
+}
+
+fn unfit_targets(_: &'static Headless) {
+    let host = Host::new();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let refusal = |texture: &wgpu::Texture| {
+        let targets = Targets { color: &view_of(texture), data: None };
+        Frame::new(&renderer, &host.device, &targets).map(|_| ()).unwrap_err().to_string()
+    };
+    let wrong_format = host.texture([8, 8], wgpu::TextureFormat::Rgba16Float);
+    let message = refusal(&wrong_format);
+    assert!(message.contains("Rgba16Float") && message.contains("Rgba8Unorm"), "{message}");
+
+    let with_data = RendererOptions { data_layers: true, ..RendererOptions::default() };
+    let with_data = Renderer::new(&host.device, &with_data).unwrap();
+    let good = host.texture([8, 8], ColorTarget::Srgb8.texture_format());
+    let targets = Targets { color: &view_of(&good), data: None };
+    let error = Frame::new(&with_data, &host.device, &targets).map(|_| ()).unwrap_err();
+    assert!(matches!(error, GpuError::Target { layer: "data", .. }), "{error}");
+
+    // Nothing of this reached the host's device, or it would have panicked.
+}
+
+fn not_ready(_: &'static Headless) {
+    let host = Host::new();
+    let options =
+        RendererOptions { cameras: vec![CameraKind::Orthographic], ..RendererOptions::default() };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let view = three_spheres();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let small = host.texture([8, 8], wgpu::TextureFormat::Rgba8Unorm);
+    let targets = Targets { color: &view_of(&small), data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let mut encoder = host.encoder();
+    assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
+
+    let mut set_view = |film: &Film| {
+        frame.set_view(&host.queue, &scene, view.camera.as_ref(), film, &view.settings)
+    };
+    assert!(matches!(set_view(&view.film), Err(GpuError::Target { .. })));
+    set_view(&Film::new(8, 8).unwrap()).unwrap();
+    assert_eq!(
+        renderer.record(&mut encoder, &scene, &frame),
+        Err(GpuError::NoCamera { camera: CameraKind::Pinhole })
+    );
+}

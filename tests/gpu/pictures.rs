@@ -1,0 +1,64 @@
+//! Pictures whose every byte is known.
+
+use libtest_mimic::Trial;
+use pinhole::film::YAxis;
+use pinhole::gpu::Headless;
+use pinhole::{Image, LayerSet};
+
+use crate::support::View;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("pictures::three_spheres_have_exactly_their_colors", exact_colors),
+        trial("pictures::a_picture_does_not_change_from_run_to_run", same_again),
+        trial("pictures::turning_y_over_turns_the_picture_over", turned_over),
+        trial("pictures::colors_do_not_depend_on_the_data_layers", layers_change_nothing),
+    ]
+}
+
+fn render(headless: &Headless, view: &View, layers: LayerSet) -> Image {
+    let View { scene, camera, film, settings } = view;
+    headless.render(scene, camera.as_ref(), film, settings, layers).unwrap()
+}
+
+fn exact_colors(headless: &'static Headless) {
+    for view in [View::three_spheres(), View::three_spheres_orthographic()] {
+        assert_eq!([view.film.width(), view.film.height()], [800, 600]);
+        let image = render(headless, &view, LayerSet::ALL);
+        for (color, id) in image.color().iter().zip(image.id().unwrap()) {
+            let expected = match id {
+                0 => [0xff, 0, 0],
+                1 => [0, 0x80, 0],
+                2 => [0, 0, 0xff],
+                _ => [0xb0, 0xe0, 0xe6],
+            };
+            assert_eq!(pinhole::LinearRgb(*color).to_srgb8(), expected, "sphere {id}");
+        }
+    }
+}
+
+fn same_again(headless: &'static Headless) {
+    let view = View::three_spheres();
+    let first = render(headless, &view, LayerSet::ALL);
+    assert_eq!(first, render(headless, &view, LayerSet::ALL));
+}
+
+fn turned_over(headless: &'static Headless) {
+    let mut view = View::three_spheres();
+    let down = render(headless, &view, LayerSet::ALL);
+    view.film = view.film.with_y_axis(YAxis::Up);
+    let up = render(headless, &view, LayerSet::ALL);
+    let width = view.film.width() as usize;
+    let rows = |image: &Image| image.id().unwrap().chunks(width).map(<[u32]>::to_vec).collect();
+    let (down, up): (Vec<_>, Vec<_>) = (rows(&down), rows(&up));
+    assert_ne!(down, up);
+    assert!(down.iter().eq(up.iter().rev()));
+}
+
+fn layers_change_nothing(headless: &'static Headless) {
+    let view = View::three_spheres();
+    let color_only = render(headless, &view, LayerSet::COLOR);
+    assert_eq!(color_only.depth(), None);
+    assert_eq!(color_only.color(), render(headless, &view, LayerSet::ALL).color());
+}

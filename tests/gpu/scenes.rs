@@ -1,0 +1,201 @@
+//! Scenes on which every back end must agree.
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::film::YAxis;
+use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere};
+
+use crate::support::View;
+
+/// Name and view of every scene.
+pub(crate) fn all() -> Vec<(&'static str, View)> {
+    vec![
+        ("three_spheres", View::three_spheres()),
+        ("three_spheres_orthographic", View::three_spheres_orthographic()),
+        ("inside_a_sphere", inside_a_sphere()),
+        ("tangent_rays", tangent_rays()),
+        ("coincident_spheres", coincident_spheres()),
+        ("nested_spheres", nested_spheres()),
+        ("behind_the_camera", behind_the_camera()),
+        ("tiny_radii", tiny_radii()),
+        ("huge_radius", huge_radius()),
+        ("radii_over_four_decades", radii_over_four_decades()),
+        ("lengths_of_two_to_the_50", scaled_by_a_power_of_two(50)),
+        ("lengths_of_two_to_the_minus_50", scaled_by_a_power_of_two(-50)),
+        ("far_from_the_origin", far_from_the_origin()),
+        ("one_pixel", random_with_size(1, 1)),
+        ("one_column", random_with_size(1, 5000)),
+        ("one_row", random_with_size(333, 1)),
+        ("no_multiple_of_eight", random_with_size(61, 43)),
+        ("wider_than_a_texture", three_wide(16_400, 2)),
+        ("more_than_one_tile", three_wide(2100, 2003)),
+        ("more_than_one_slice", more_than_one_slice()),
+        ("no_spheres", no_spheres()),
+        ("random_pinhole_y_up", random_1000(YAxis::Up, Lens::Pinhole)),
+        ("random_pinhole_y_down", random_1000(YAxis::Down, Lens::Pinhole)),
+        ("random_orthographic_y_up", random_1000(YAxis::Up, Lens::Orthographic)),
+        ("random_orthographic_y_down", random_1000(YAxis::Down, Lens::Orthographic)),
+    ]
+}
+
+#[derive(Clone, Copy)]
+enum Lens {
+    Pinhole,
+    Orthographic,
+}
+
+const FLAT: Settings =
+    Settings { shading: Shading::Flat, background: LinearRgb([0.25, 0.5, 0.75]) };
+const HEADLIGHT: Settings = Settings { shading: Shading::Headlight, ..FLAT };
+
+fn view(
+    spheres: &[Sphere],
+    camera: impl Camera + 'static,
+    (width, height): (u32, u32),
+    settings: Settings,
+) -> View {
+    let scene = Scene::new(spheres).unwrap();
+    View { scene, camera: Box::new(camera), film: Film::new(width, height).unwrap(), settings }
+}
+
+fn sphere(center: [f64; 3], radius: f64) -> Sphere {
+    // A color that is different for every sphere near another.
+    let mix = |k: f64| (center[0] * k + center[1] * 1.7 + center[2] * 2.3 + radius).sin().abs();
+    Sphere::new(center, radius, LinearRgb([mix(1.0) as f32, mix(3.1) as f32, mix(7.7) as f32]))
+}
+
+fn pinhole(eye: [f64; 3], look_at: [f64; 3], fov_degrees: f64, aspect: f64) -> PinholeCamera {
+    let pose = Pose::looking_at(eye, look_at, [0.1, 1.0, 0.2]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, fov_degrees.to_radians(), aspect).unwrap()
+}
+
+fn inside_a_sphere() -> View {
+    let spheres =
+        [sphere([0.0; 3], 10.0), sphere([0.0, 0.0, -5.0], 1.0), sphere([2.0, 1.0, -11.0], 3.0)];
+    view(&spheres, pinhole([0.0, 1.0, 2.0], [0.0, 0.0, -5.0], 90.0, 1.0), (64, 64), HEADLIGHT)
+}
+
+/// Every number is exact in f32, and the third and the last but two of the rays are exact tangents.
+fn tangent_rays() -> View {
+    let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let camera = OrthographicCamera::new(pose, [4.0, 1.0]).unwrap();
+    view(&[sphere([0.0; 3], 1.5)], camera, (8, 1), HEADLIGHT)
+}
+
+fn coincident_spheres() -> View {
+    let mut spheres: Vec<Sphere> = (0..40)
+        .map(|i| sphere([f64::from(i % 8) - 3.5, f64::from(i / 8) - 2.0, 0.0], 0.7))
+        .collect();
+    // Each again, in reverse order and another color: the smaller id must win.
+    let again: Vec<Sphere> =
+        spheres.iter().rev().map(|s| Sphere { color: LinearRgb::WHITE, ..*s }).collect();
+    spheres.extend(again);
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 50.0, 1.5), (96, 64), FLAT)
+}
+
+fn nested_spheres() -> View {
+    let spheres: Vec<Sphere> =
+        (1..=12).map(|i| sphere([0.0, 0.0, f64::from(i) * 0.1], f64::from(i) * 0.25)).collect();
+    // Inside the larger half of them.
+    view(&spheres, pinhole([0.3, 0.1, 1.6], [0.0; 3], 100.0, 1.0), (64, 64), HEADLIGHT)
+}
+
+fn behind_the_camera() -> View {
+    let spheres =
+        [sphere([0.0, 0.0, 5.0], 1.0), sphere([0.5, 0.0, 1.5], 0.4), sphere([0.0, 0.0, -6.0], 1.0)];
+    view(&spheres, pinhole([0.0; 3], [0.0, 0.0, -1.0], 60.0, 1.0), (64, 64), HEADLIGHT)
+}
+
+fn tiny_radii() -> View {
+    let spheres: Vec<Sphere> = (0..100)
+        .map(|i| sphere([f64::from(i % 10) * 1e-5, f64::from(i / 10) * 1e-5, 0.0], 4e-6))
+        .collect();
+    let center = [4.5e-5, 4.5e-5, 0.0];
+    let eye = [4.5e-5, 4.5e-5, 2e-4];
+    view(&spheres, pinhole(eye, center, 30.0, 1.0), (96, 96), HEADLIGHT)
+}
+
+/// A ground that is a sphere of radius 10⁶, and pebbles on it.
+fn huge_radius() -> View {
+    let mut spheres = vec![sphere([0.0, -1e6, 0.0], 1e6)];
+    spheres.extend((0..25).map(|i| sphere([f64::from(i % 5) - 2.0, 0.3, -f64::from(i / 5)], 0.3)));
+    view(&spheres, pinhole([0.5, 1.5, 5.0], [0.0, 0.0, -2.0], 50.0, 1.5), (96, 64), HEADLIGHT)
+}
+
+fn radii_over_four_decades() -> View {
+    let mut random = fastrand::Rng::with_seed(4);
+    let spheres: Vec<Sphere> = (0..800)
+        .map(|_| {
+            let radius = 10_f64.powf(random.f64() * 4.0 - 4.0);
+            sphere([0; 3].map(|_| random.f64() * 6.0 - 3.0), radius * 0.5)
+        })
+        .collect();
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0, 1.25), (120, 96), HEADLIGHT)
+}
+
+fn scaled_by_a_power_of_two(power: i32) -> View {
+    let scale = 2_f64.powi(power);
+    let spheres =
+        [sphere([0.0, 0.0, 0.0], scale), sphere([scale, 0.5 * scale, -2.0 * scale], 1.5 * scale)];
+    let camera = pinhole([scale, 2.0 * scale, 6.0 * scale], [0.0; 3], 45.0, 1.0);
+    view(&spheres, camera, (64, 64), HEADLIGHT)
+}
+
+fn far_from_the_origin() -> View {
+    let mut random = fastrand::Rng::with_seed(6);
+    let at = [1e6 + 0.3, -2e6 - 0.7, 3e6 + 0.1];
+    let mut near = |size: f64| at.map(|x| x + (random.f64() - 0.5) * size);
+    let spheres: Vec<Sphere> = (0..200).map(|_| sphere(near(4.0), 0.15)).collect();
+    let eye = [at[0] + 2.0, at[1] + 1.0, at[2] + 7.0];
+    view(&spheres, pinhole(eye, at, 40.0, 1.0), (96, 96), HEADLIGHT)
+}
+
+fn random_spheres(seed: u64, count: usize, radius: f64) -> Vec<Sphere> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    (0..count)
+        .map(|_| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            sphere(center, radius * (0.5 + random.f64()))
+        })
+        .collect()
+}
+
+fn random_with_size(width: u32, height: u32) -> View {
+    let camera = pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.0);
+    view(&random_spheres(7, 60, 0.4), camera, (width, height), HEADLIGHT)
+}
+
+fn three_wide(width: u32, height: u32) -> View {
+    let spheres =
+        [sphere([-4.0, 0.0, 0.0], 2.0), sphere([4.0, 0.0, 0.0], 2.0), sphere([0.0; 3], 1.0)];
+    view(&spheres, pinhole([0.0, 1.0, 9.0], [0.0; 3], 50.0, 1.5), (width, height), FLAT)
+}
+
+/// More spheres than one dispatch tries, the nearest among the last.
+fn more_than_one_slice() -> View {
+    let mut spheres = random_spheres(8, 120_000, 0.01);
+    spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
+    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), (48, 32), HEADLIGHT)
+}
+
+fn no_spheres() -> View {
+    view(&[], pinhole([0.0, 0.0, 1.0], [0.0; 3], 40.0, 1.0), (17, 9), HEADLIGHT)
+}
+
+fn random_1000(y_axis: YAxis, lens: Lens) -> View {
+    let spheres = random_spheres(9, 1000, 0.12);
+    let up = match y_axis {
+        YAxis::Up => [0.1, 1.0, 0.2],
+        YAxis::Down => [-0.1, -1.0, -0.2],
+    };
+    let pose = Pose::looking_at([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], up).unwrap();
+    let camera: Box<dyn Camera> = match lens {
+        Lens::Pinhole => Box::new(PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap()),
+        Lens::Orthographic => Box::new(OrthographicCamera::new(pose, [3.2, 2.4]).unwrap()),
+    };
+    View {
+        scene: Scene::new(&spheres).unwrap(),
+        camera,
+        film: Film::new(160, 120).unwrap().with_y_axis(y_axis),
+        settings: HEADLIGHT,
+    }
+}

@@ -1,0 +1,141 @@
+//! Bad input: one clear line that names file, place and remedy; an exit code; no output file.
+
+use crate::support::{Folder, SCENE, WATER};
+
+/// Runs one bad command in a folder with one scene and one data file beside the files given.
+#[track_caller]
+fn refused(files: &[(&str, &str)], arguments: &str, code: i32, words: &[&str]) {
+    let mut all = vec![("scene.toml", SCENE), ("water.xyz", WATER)];
+    all.extend(files);
+    let folder = Folder::with(&all);
+    let before = folder.files();
+    let run = folder.run(arguments);
+    assert_eq!(run.code, code, "{arguments}: {}", run.stderr);
+    assert_eq!(run.stderr.lines().count(), 1, "{arguments}: {}", run.stderr);
+    assert!(run.stderr.starts_with("error: "), "{arguments}: {}", run.stderr);
+    for word in words {
+        assert!(run.stderr.contains(word), "{arguments}: {} lacks {word}", run.stderr);
+    }
+    assert!(run.stdout.is_empty(), "{arguments}");
+    assert_eq!(folder.files(), before, "{arguments}");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    refused(&[], "render no.toml -o out.png", 1, &["no.toml", "cannot be read", "No such file"]);
+    refused(&[], "render no.xyz -o out.png", 1, &["no.xyz", "cannot be read"]);
+    refused(&[("bad.toml", "data = 'no.xyz'\n")], "render bad.toml -o out.png", 1, &["no.xyz"]);
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("folder.toml")).unwrap();
+    let run = folder.run("render folder.toml -o out.png");
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("folder.toml: this is a folder"), "{}", run.stderr);
+    std::fs::write(folder.path("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    let run = folder.run("render binary.toml -o out.png");
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("binary.toml: this is no UTF-8 text"), "{}", run.stderr);
+}
+
+#[test]
+fn scene_files_with_errors() {
+    let scene = |text: &str, words: &[&str]| {
+        refused(&[("bad.toml", text)], "render bad.toml -o out.png --backend cpu", 1, words);
+    };
+    scene("[film\nwidth = 3\n", &["bad.toml", "line 1, column 6"]);
+    scene("[film]\nwidht = 3\n", &["bad.toml", "line 2, column 1", "did you mean `width`?"]);
+    let sphere = |radius| format!("[[spheres]]\ncenter = [0, 0, 0]\nradius = {radius}\n");
+    for radius in ["nan", "inf", "-inf", "0", "-1.5"] {
+        let text = format!("{}{}", sphere("1"), sphere(radius));
+        scene(&text, &["bad.toml", "line 4", "sphere 1: its radius is"]);
+    }
+    scene("[film]\nwidth = 0\n", &["bad.toml", "0x600 has no pixel"]);
+    scene("data = 'scene.toml'\n", &["bad.toml: `data`", "another scene file"]);
+    scene("data = 'data.csv'\n", &["bad.toml: `data`", "data.csv", ".xyz"]);
+    scene("data = 'water.xyz'\nframe = 5\n", &["water.xyz", "there is no frame 5"]);
+}
+
+#[test]
+fn xyz_files_with_errors() {
+    let data = |text: &str, words: &[&str]| {
+        refused(&[("bad.xyz", text)], "render bad.xyz -o out.png --backend cpu", 1, words);
+    };
+    data("", &["bad.xyz", "line"]);
+    data("4\n\nO 0 0 0\n", &["bad.xyz", "line 1", "declares 4 atoms", "ends after 1"]);
+    data("1\n\nO 0 0 0\nO 1 1 1\n", &["bad.xyz", "line 4", "declares 1 atoms"]);
+    data("1\n\nO 0 x 0\n", &["bad.xyz", "line 3", "y coordinate", "`x`"]);
+    data(
+        "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n",
+        &["bad.xyz", "sphere 0", "radius is -2"],
+    );
+    refused(&[], "render water.xyz -o out.png --frame 1", 1, &["water.xyz", "no frame 1"]);
+}
+
+#[test]
+fn sizes() {
+    for size in ["0x600", "800x0", "800", "800x", "axb", "-1x5", "99999999999x1", "1.5x2"] {
+        refused(&[], &format!("render scene.toml -o out.png --size={size}"), 2, &["size"]);
+    }
+    for size in ["9000000x1", "4294967295x4294967295"] {
+        refused(&[], &format!("render scene.toml -o out.png --size {size}"), 2, &["too large"]);
+    }
+    // Ten million million pixels.
+    let arguments = "render scene.toml -o out.png --backend cpu --size 4000000x4000000";
+    refused(&[], arguments, 2, &["4000000x4000000", "memory", "smaller"]);
+}
+
+#[test]
+fn outputs() {
+    let output = |arguments: &str, words: &[&str]| {
+        refused(&[], &format!("render scene.toml --backend cpu {arguments}"), 2, words);
+    };
+    output("-o no/such/out.png", &["no/such/out.png", "the folder no/such does not exist"]);
+    output("-o out.jpg", &["out.jpg", ".png"]);
+    output("-o out", &["out", ".png"]);
+    output("", &["--output"]);
+    output("-o out.png --layer depth", &["LAYER=FILE.npy"]);
+    output("-o out.png --layer depht=d.npy", &["no layer `depht`", "depth"]);
+    output("-o out.png --layer depth=d.exr", &["d.exr", ".npy"]);
+    output("-o out.png --layer depth=no/d.npy", &["the folder no does not exist"]);
+    output("-o out.png --layer depth=d.npy --layer id=d.npy", &["d.npy", "two outputs"]);
+}
+
+#[test]
+fn a_failed_layer_leaves_no_picture() {
+    // The picture is complete before the layer turns out to have no place.
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    std::fs::create_dir(folder.path("depth.npy")).unwrap();
+    let run = folder.run("render scene.toml -o out.png --backend cpu --layer depth=depth.npy");
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(!folder.path("out.png").exists());
+}
+
+#[test]
+fn usage() {
+    refused(&[], "render data.csv -o out.png", 2, &["data.csv", ".toml", ".xyz"]);
+    refused(&[], "render scene -o out.png", 2, &["scene", ".toml"]);
+    refused(&[], "render scene.toml -o out.png --backend tpu", 2, &["tpu", "auto", "gpu", "cpu"]);
+    refused(&[], "render scene.toml -o out.png --frame 0", 2, &["--frame", "`data`"]);
+    refused(&[], "render scene.toml -o out.png --frame=-1", 2, &["--frame"]);
+    refused(&[], "render scene.toml -o out.png --backend cpu --adapter x", 2, &["--adapter"]);
+    refused(&[], "render scene.toml -o out.png --colour red", 2, &["--colour"]);
+    refused(&[], "rendr scene.toml", 2, &["rendr", "render"]);
+    let name = "no-such-adapter";
+    for backend in ["auto", "gpu"] {
+        let arguments =
+            format!("render scene.toml -o out.png --adapter {name} --backend {backend}");
+        refused(&[], &arguments, 2, &[name, "adapter"]);
+    }
+}
+
+#[test]
+fn the_demo_does_not_overwrite_a_changed_scene() {
+    let files = [("three-spheres.toml", "# mine\n")];
+    refused(&files, "demo --backend cpu", 2, &["three-spheres.toml", "rename it"]);
+}
+
+#[test]
+fn without_arguments_there_is_help() {
+    let run = Folder::new().run("");
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("Usage"), "{}", run.stderr);
+}

@@ -1,0 +1,168 @@
+//! What the program makes of good input.
+
+use npyz::NpyFile;
+
+use crate::support::{Folder, SCENE, WATER, decode};
+
+#[test]
+fn the_demo_writes_a_scene_and_its_picture() {
+    let folder = Folder::new();
+    let run = folder.run("demo --backend cpu").succeeded();
+    assert_eq!(folder.files(), ["three-spheres.png", "three-spheres.toml"]);
+    assert!(run.stdout.is_empty());
+    assert!(run.stderr.contains("three-spheres.png"), "{}", run.stderr);
+
+    let (width, height, pixels) = decode(&folder.read("three-spheres.png"));
+    assert_eq!((width, height), (800, 600));
+    let at = |x: usize, y: usize| &pixels[(y * 800 + x) * 3..][..3];
+    assert_eq!(at(0, 0), [0xb0, 0xe0, 0xe6]);
+    assert_eq!(at(190, 300), [0xff, 0, 0]);
+    assert_eq!(at(610, 300), [0, 0x80, 0]);
+    assert_eq!(at(400, 290), [0, 0, 0xff]);
+
+    // The scene that it wrote gives the same picture, and a second demo changes nothing.
+    folder.run("render three-spheres.toml -o again.png --backend cpu").succeeded();
+    assert_eq!(folder.read("again.png"), folder.read("three-spheres.png"));
+    folder.run("demo --backend cpu").succeeded();
+}
+
+#[test]
+fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
+    if !cfg!(target_os = "linux") {
+        // Only a Vulkan loader can be told that there are no drivers.
+        return;
+    }
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    let run = folder.run_without_drivers("render scene.toml -o out.png").succeeded();
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert!(run.stderr.contains("CPU reference"), "{}", run.stderr);
+    folder.run("render scene.toml -o cpu.png --backend cpu").succeeded();
+    assert_eq!(folder.read("out.png"), folder.read("cpu.png"));
+
+    let run = folder.run_without_drivers("render scene.toml -o gpu.png --backend gpu");
+    assert_eq!(run.code, 1);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert!(run.stderr.contains("no Vulkan, Metal or DX12 adapter"), "{}", run.stderr);
+    assert!(!folder.path("gpu.png").exists());
+
+    let run = folder.run_without_drivers("info").succeeded();
+    assert!(String::from_utf8(run.stdout).unwrap().contains("no Vulkan, Metal or DX12 adapter"));
+}
+
+#[test]
+fn a_molecule_is_framed_by_itself() {
+    let folder = Folder::with(&[("water.xyz", WATER)]);
+    let run = folder.run("render water.xyz -o water.png --size 90x60 --backend cpu").succeeded();
+    assert_eq!(run.stderr, "");
+    let (width, height, pixels) = decode(&folder.read("water.png"));
+    assert_eq!((width, height), (90, 60));
+    let at = |x: usize, y: usize| &pixels[(y * 90 + x) * 3..][..3];
+    assert_eq!(at(0, 0), [255, 255, 255], "background");
+    let middle = at(45, 30);
+    assert!(middle[0] > 200 && middle[1] < 40, "oxygen is red: {middle:?}");
+    let left = at(20, 30);
+    assert!(left[0] == left[1] && left[1] == left[2], "hydrogen is white or grey: {left:?}");
+}
+
+#[test]
+fn frames_of_a_trajectory() {
+    let text = format!("{WATER}1\nlone\nC 0 0 0\n");
+    let scene = "data = 'two.xyz'\nframe = 1\n[film]\nwidth = 32\nheight = 32\n";
+    let folder = Folder::with(&[("two.xyz", &text), ("scene.toml", scene)]);
+    let render = |arguments: &str| {
+        folder.run(&format!("render {arguments} --size 32x32 --backend cpu")).succeeded();
+    };
+    render("two.xyz -o first.png");
+    render("two.xyz -o second.png --frame 1");
+    assert_ne!(folder.read("first.png"), folder.read("second.png"));
+    render("scene.toml -o of-scene.png");
+    assert_eq!(folder.read("of-scene.png"), folder.read("second.png"));
+    render("scene.toml -o of-flag.png --frame 0");
+    assert_eq!(folder.read("of-flag.png"), folder.read("first.png"));
+}
+
+#[test]
+fn data_is_found_beside_its_scene() {
+    let folder = Folder::with(&[]);
+    std::fs::create_dir(folder.path("sub")).unwrap();
+    std::fs::write(folder.path("sub/water.xyz"), WATER).unwrap();
+    std::fs::write(folder.path("sub/scene.toml"), "data = 'water.xyz'\n").unwrap();
+    folder.run("render sub/scene.toml -o out.png --size 8x8 --backend cpu").succeeded();
+}
+
+#[test]
+fn layers_are_numpy_arrays() {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    folder
+        .run(
+            "render scene.toml -o out.png --backend cpu --layer depth=depth.npy \
+             --layer id=id.npy --layer normal=normal.npy --layer color=color.npy",
+        )
+        .succeeded();
+    let shape = |name: &str| {
+        let bytes = folder.read(name);
+        let npy = NpyFile::new(&bytes[..]).unwrap();
+        assert_eq!(npy.order(), npyz::Order::C);
+        (npy.shape().to_vec(), npy.dtype().descr())
+    };
+    assert_eq!(shape("depth.npy"), (vec![30, 40], "'<f4'".to_owned()));
+    assert_eq!(shape("id.npy"), (vec![30, 40], "'<u4'".to_owned()));
+    assert_eq!(shape("normal.npy"), (vec![30, 40, 3], "'<f4'".to_owned()));
+    assert_eq!(shape("color.npy"), (vec![30, 40, 3], "'<f4'".to_owned()));
+
+    let bytes = folder.read("depth.npy");
+    let depth: Vec<f32> = NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
+    let bytes = folder.read("id.npy");
+    let id: Vec<u32> = NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
+    assert_eq!((depth[0], id[0]), (f32::INFINITY, u32::MAX));
+    let middle = 15 * 40 + 20;
+    assert!(depth[middle].is_finite());
+    assert_eq!(id[middle], 0);
+}
+
+#[test]
+fn a_dash_writes_the_picture_to_standard_output() {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    let run = folder.run("render scene.toml -o - --backend cpu").succeeded();
+    assert_eq!(decode(&run.stdout).0, 40);
+    assert_eq!(folder.files(), ["scene.toml"]);
+}
+
+#[test]
+fn a_new_picture_takes_the_place_of_an_old_one() {
+    let folder = Folder::with(&[("scene.toml", SCENE), ("out.png", "old")]);
+    folder.run("render scene.toml -o out.png --backend cpu").succeeded();
+    assert_eq!(decode(&folder.read("out.png")).0, 40);
+    assert_eq!(folder.files(), ["out.png", "scene.toml"]);
+}
+
+#[test]
+fn species_that_are_no_elements_are_drawn_and_noted() {
+    let folder = Folder::with(&[("beads.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
+    let run = folder.run("render beads.xyz -o out.png --size 20x10 --backend cpu").succeeded();
+    assert_eq!(run.stderr.lines().count(), 1);
+    assert!(run.stderr.contains("beads.xyz") && run.stderr.contains("Xx, Yy"), "{}", run.stderr);
+}
+
+#[test]
+fn info_is_json_on_request() {
+    let folder = Folder::new();
+    let run = folder.run("info --json").succeeded();
+    let info: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(info["version"], env!("CARGO_PKG_VERSION"));
+    let adapters = info["adapters"].as_array().unwrap();
+    for adapter in adapters {
+        assert!(adapter["name"].is_string());
+        assert!(adapter["limits"]["max_storage_buffer_binding_size"].as_u64().unwrap() > 0);
+        assert!(adapter["features"]["timestamp_query"].is_boolean());
+    }
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    let folder = Folder::new();
+    for arguments in ["--help", "render --help", "demo --help", "info --help", "--version"] {
+        let run = folder.run(arguments).succeeded();
+        assert!(!run.stdout.is_empty() && run.stderr.is_empty(), "{arguments}");
+    }
+}

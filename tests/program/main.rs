@@ -1,0 +1,9 @@
+//! The program, run as a user runs it, in an empty folder.
+//!
+//! Everything here renders on the CPU, or on a machine that is made to look as if it had no driver, so
+//! no adapter is needed.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod bad_input;
+mod good_input;
+mod support;

@@ -1,0 +1,100 @@
+//! An empty folder, and the program in it.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+pub(crate) const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
+
+pub(crate) const SCENE: &str = "[film]\nwidth = 40\nheight = 30\n\
+                                [[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'red'\n";
+
+/// A folder of its own for each test, removed at the end.
+pub(crate) struct Folder {
+    folder: TempDir,
+}
+
+/// What a run left behind.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) code: i32,
+    pub(crate) stdout: Vec<u8>,
+    pub(crate) stderr: String,
+}
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub(crate) fn with(files: &[(&str, &str)]) -> Self {
+        let folder = Self::new();
+        for (name, contents) in files {
+            std::fs::write(folder.path(name), contents).unwrap();
+        }
+        folder
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// Names of all files, sorted.
+    pub(crate) fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = std::fs::read_dir(self.folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// Runs `pinhole` with arguments that are separated by spaces.
+    pub(crate) fn run(&self, arguments: &str) -> Run {
+        let output = self.command(arguments).output().unwrap();
+        Run::new(output)
+    }
+
+    /// As [`Folder::run`], where the Vulkan loader finds no driver.
+    pub(crate) fn run_without_drivers(&self, arguments: &str) -> Run {
+        let mut command = self.command(arguments);
+        for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            command.env(variable, self.path("no-driver.json"));
+        }
+        Run::new(command.output().unwrap())
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+        command.current_dir(self.folder.path()).args(arguments.split_whitespace());
+        command
+    }
+}
+
+impl Run {
+    fn new(output: Output) -> Self {
+        Self {
+            code: output.status.code().expect("killed by a signal"),
+            stdout: output.stdout,
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    #[track_caller]
+    pub(crate) fn succeeded(self) -> Self {
+        assert_eq!(self.code, 0, "{}", self.stderr);
+        self
+    }
+}
+
+/// Width, height and RGB bytes of a PNG.
+pub(crate) fn decode(png: &[u8]) -> (u32, u32, Vec<u8>) {
+    let image =
+        image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap().to_rgb8();
+    (image.width(), image.height(), image.into_raw())
+}

@@ -1,0 +1,149 @@
+//! Is a picture what the CPU reference says, up to f32 rounding?
+//!
+//! Ids must be equal, unless the reference itself gives the other id a thousandth of a pixel away.
+//! Depth, normal and headlight colour must lie within the bounds that follow from one number, how much
+//! the rounding of the kernel can displace a ray; flat colours and misses must be equal to the bit.
+
+use glam::DVec3;
+use pinhole::image::{NO_ID, Pixel};
+use pinhole::{Image, Shading, cpu, glam};
+
+use super::View;
+
+/// How far a pixel's ray may be displaced by rounding, relative to the lengths involved: sixteen
+/// roundings of f32. The longest chain in the kernels (location, direction, its length, the centre's
+/// foot point) has about twelve.
+const DISPLACEMENT: f64 = 16.0 / (1_u64 << 24) as f64;
+
+/// Within this part of a pixel of a silhouette, or of the line where two spheres meet, either id is
+/// right.
+const NUDGE_PIXELS: f64 = 1e-3;
+
+/// What a comparison found.
+#[derive(Debug, Default)]
+pub(crate) struct Comparison {
+    /// Pixels whose id differs but is right a nudge away.
+    pub(crate) ambiguous: usize,
+    /// Everything that is wrong, in the order of pixels.
+    pub(crate) violations: Vec<Violation>,
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Violation {
+    Size,
+    Id { pixel: [u32; 2], reference: u32, result: u32 },
+    Depth { pixel: [u32; 2], reference: f32, result: f32 },
+    Normal { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
+    Color { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
+}
+
+/// Compares all layers of a result with those of the reference's picture of the same view.
+pub(crate) fn compare(view: &View, reference: &Image, result: &Image) -> Comparison {
+    let mut comparison = Comparison::default();
+    let size = |image: &Image| [image.width(), image.height()];
+    if size(reference) != size(result) {
+        comparison.violations.push(Violation::Size);
+        return comparison;
+    }
+    for j in 0..reference.height() {
+        for i in 0..reference.width() {
+            let (expected, found) = (pixel(reference, i, j), pixel(result, i, j));
+            if expected.id == found.id {
+                comparison.violations.extend(differences(view, [i, j], &expected, &found));
+            } else if nudged_ids(view, i, j).contains(&found.id) {
+                comparison.ambiguous += 1;
+            } else {
+                comparison.violations.push(Violation::Id {
+                    pixel: [i, j],
+                    reference: expected.id,
+                    result: found.id,
+                });
+            }
+        }
+    }
+    comparison
+}
+
+fn pixel(image: &Image, i: u32, j: u32) -> Pixel {
+    let index = j as usize * image.width() as usize + i as usize;
+    Pixel {
+        color: pinhole::LinearRgb(image.color()[index]),
+        depth: image.depth().unwrap()[index],
+        normal: image.normal().unwrap()[index],
+        id: image.id().unwrap()[index],
+    }
+}
+
+fn differences(
+    view: &View,
+    pixel: [u32; 2],
+    reference: &Pixel,
+    result: &Pixel,
+) -> impl Iterator<Item = Violation> {
+    let bounds = bounds(view, pixel, reference);
+    let (a, b) = (reference, result);
+    // Two misses are equal, although the difference of two infinities is not a number.
+    let same_depth = a.depth.to_bits() == b.depth.to_bits()
+        || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
+    let same_normal = distance(a.normal, b.normal) <= bounds.normal;
+    let same_color = distance(a.color.0, b.color.0) <= bounds.color;
+    [
+        (same_depth, Violation::Depth { pixel, reference: a.depth, result: b.depth }),
+        (same_normal, Violation::Normal { pixel, reference: a.normal, result: b.normal }),
+        (same_color, Violation::Color { pixel, reference: a.color.0, result: b.color.0 }),
+    ]
+    .into_iter()
+    .filter_map(|(same, violation)| (!same).then_some(violation))
+}
+
+/// How far each layer may be from the reference.
+struct PixelBounds {
+    depth: f64,
+    normal: f64,
+    color: f64,
+}
+
+fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
+    if reference.id == NO_ID {
+        return PixelBounds { depth: 0.0, normal: 0.0, color: 0.0 };
+    }
+    let location = view.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
+    let ray = view.camera.ray_in_world(location);
+    let radius = f64::from(view.scene.spheres()[reference.id as usize][3]);
+    let normal = DVec3::from(reference.normal.map(f64::from));
+    let cosine = normal.dot(ray.direction).abs();
+
+    let lengths = (ray.origin - view.scene.origin()).length() + f64::from(reference.depth) + radius;
+    let displacement = DISPLACEMENT * lengths;
+    // A ray displaced sideways meets the sphere earlier or later: by displacement/cosine where the
+    // surface faces the ray, and at most by the half chord's change at the silhouette, sqrt(2 r d).
+    let along = displacement + (displacement / cosine).min((2.0 * radius * displacement).sqrt());
+    let normal = (displacement + along) / radius;
+    let brightest = view.scene.colors()[reference.id as usize].0.into_iter().fold(0.0, f32::max);
+    PixelBounds {
+        depth: along,
+        normal,
+        color: match view.settings.shading {
+            Shading::Flat => 0.0,
+            Shading::Headlight => f64::from(brightest) * 3.0_f64.sqrt() * (normal + DISPLACEMENT),
+        },
+    }
+}
+
+fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
+    (DVec3::from(a.map(f64::from)) - DVec3::from(b.map(f64::from))).length()
+}
+
+/// The reference's ids at eight points around the pixel's centre.
+fn nudged_ids(view: &View, i: u32, j: u32) -> [u32; 8] {
+    std::array::from_fn(|k| {
+        let (sin, cos) = (k as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
+        let location = view.film.relative_location(
+            f64::from(i) + 0.5 + NUDGE_PIXELS * cos,
+            f64::from(j) + 0.5 + NUDGE_PIXELS * sin,
+        );
+        let ray = view.camera.ray_in_world(location);
+        cpu::trace(&view.scene, &ray).map_or(NO_ID, |hit| hit.id)
+    })
+}

@@ -1,0 +1,42 @@
+//! Shared by the CPU and the GPU tests.
+
+pub(crate) mod compare;
+
+use pinhole::camera::Camera;
+use pinhole::scene_file::SceneFile;
+use pinhole::{Film, Image, LayerSet, Scene, Settings, cpu};
+
+/// One picture to be made.
+#[derive(Debug)]
+pub(crate) struct View {
+    pub(crate) scene: Scene,
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) film: Film,
+    pub(crate) settings: Settings,
+}
+
+impl View {
+    /// What a scene file without data shows.
+    pub(crate) fn from_toml(text: &str) -> Self {
+        let file = SceneFile::parse(text).unwrap();
+        let scene = file.scene(&[]).unwrap();
+        let camera = file.camera(&file.film, &scene).unwrap();
+        Self { scene, camera, film: file.film, settings: file.settings }
+    }
+
+    /// The scene of `pinhole demo`.
+    pub(crate) fn three_spheres() -> Self {
+        Self::from_toml(include_str!("../../examples/three-spheres.toml"))
+    }
+
+    /// The same scene, seen in parallel.
+    pub(crate) fn three_spheres_orthographic() -> Self {
+        Self::from_toml(include_str!("../../examples/three-spheres-orthographic.toml"))
+    }
+
+    /// As the CPU reference sees it.
+    pub(crate) fn reference(&self) -> Image {
+        let Self { scene, camera, film, settings } = self;
+        cpu::render(scene, camera.as_ref(), film, settings, LayerSet::ALL).unwrap()
+    }
+}
