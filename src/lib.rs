@@ -2,9 +2,9 @@
 //! CPU reference.
 //!
 //! A [`Scene`] holds spheres that have been checked. A [`Camera`](camera::Camera) answers which ray
-//! belongs to a place in the picture, a [`Film`](film::Film) has the picture's size, and
-//! [`Settings`](settings::Settings) say how hits become colours. From these four, [`cpu::render`] makes
-//! an [`Image`](image::Image) in f64, slowly and simply, and the module `gpu` makes the same image with
+//! belongs to a place in the picture, a [`Film`] has the picture's size, and
+//! [`Settings`] say how hits become colours. From these four, [`cpu::render`] makes
+//! an [`Image`] in f64, slowly and simply, and the module `gpu` makes the same image with
 //! compute shaders: [`gpu::Headless`] on a device of its own, [`gpu::Renderer`] inside the frame of a
 //! program that already uses wgpu.
 //!

@@ -1,7 +1,7 @@
 //! Cameras: which ray belongs to a relative location?
 //!
 //! Each camera is one Rust file here, one WGSL part `shaders/camera_NAME.wgsl`, and one row of
-//! [`camera_table`]. `ARCHITECTURE.md` says how to add one.
+//! `camera_table`. `ARCHITECTURE.md` says how to add one.
 
 use glam::{DVec2, DVec3};
 

@@ -73,7 +73,7 @@ mod tests {
             ("Es", 2.70, [179, 31, 212]),
         ] {
             let found = appearance(species);
-            assert_eq!(found.radius, radius, "{species}");
+            assert!((found.radius - radius).abs() < 1e-12, "{species}");
             assert_eq!(found.color.to_srgb8(), color, "{species}");
             assert!(found.is_element, "{species}");
         }

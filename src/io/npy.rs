@@ -44,7 +44,7 @@ pub enum NpyError {
 }
 
 fn array<T: AutoSerialize + Copy>(values: &[T], shape: &[u64]) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::with_capacity(values.len() * size_of::<T>() + 128);
+    let mut bytes = Vec::with_capacity(size_of_val(values) + 128);
     let mut writer =
         npyz::WriteOptions::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?;
     writer.extend(values.iter().copied())?;

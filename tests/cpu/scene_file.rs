@@ -196,10 +196,10 @@ fn noise_never_panics() {
                 break;
             }
         }
-        if let Ok(file) = SceneFile::parse(&text.into_iter().collect::<String>()) {
-            if let Ok(scene) = file.scene(&[]) {
-                let _ = file.camera(&file.film, &scene);
-            }
+        if let Ok(file) = SceneFile::parse(&text.into_iter().collect::<String>())
+            && let Ok(scene) = file.scene(&[])
+        {
+            let _ = file.camera(&file.film, &scene);
         }
     }
 }

@@ -79,7 +79,7 @@ impl Folder {
 impl Run {
     fn new(output: Output) -> Self {
         Self {
-            code: output.status.code().expect("killed by a signal"),
+            code: output.status.code().unwrap_or_else(|| panic!("killed by a signal")),
             stdout: output.stdout,
             stderr: String::from_utf8(output.stderr).unwrap(),
         }
