@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Once per set of targets; the view may change from frame to frame.
     let mut frame = Frame::new(&renderer, &device, &Targets { color: &view, data: None })?;
     let film = Film::new(WIDTH, HEIGHT)?;
-    let pose = Pose::looking_at([6.0, 4.0, 8.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
+    let pose = Pose::looking_at([7.0, 5.0, 10.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     let camera = PinholeCamera::with_vertical_fov(pose, 40_f64.to_radians(), film.aspect())?;
     frame.set_view(&queue, &scene, &camera, &film, &Settings::default())?;
 

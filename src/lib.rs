@@ -61,3 +61,8 @@ pub use image::{Image, LayerSet};
 pub use scene::Scene;
 pub use settings::{Settings, Shading};
 pub use sphere::Sphere;
+
+/// Compiles the example in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
