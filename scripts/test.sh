@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every test. On Debian and Ubuntu it first installs Mesa's software Vulkan driver if there is no
-# Vulkan driver at all; elsewhere it says what to install.
+# Runs every test. Needs Rust. On Debian and Ubuntu it first installs what else is missing: a linker, and
+# Mesa's software Vulkan driver if there is no Vulkan driver at all. Elsewhere it says what to install.
 #
 #   scripts/test.sh             all tests
 #   scripts/test.sh --no-gpu    those that need no adapter; the others count as ignored
@@ -30,32 +30,44 @@ has_vulkan_loader() {
     PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'
 }
 
-install_driver() {
-    local as_root=()
+# install WHAT PACKAGE...
+install() {
+    local what=$1 as_root=()
+    shift
+    if ! command -v apt-get >/dev/null; then
+        echo "$what is missing; install it" >&2
+        exit 1
+    fi
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || {
-            echo "no Vulkan driver was found: as root, apt-get install mesa-vulkan-drivers libvulkan1" >&2
+            echo "$what is missing: as root, apt-get install $*" >&2
             exit 1
         }
         as_root=(sudo)
     fi
-    echo "no Vulkan driver was found: installing Mesa's lavapipe with apt-get"
+    echo "$what is missing: installing $* with apt-get"
     "${as_root[@]}" apt-get update -qq
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1 >/dev/null
+        apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
+
+command -v cargo >/dev/null || {
+    version=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+    echo "cargo is missing: install Rust $version or newer, see https://rustup.rs" >&2
+    exit 1
+}
+command -v cc >/dev/null || install "a C linker" gcc libc6-dev
 
 # macOS and Windows bring Metal and DX12.
 if [ -z "${PINHOLE_NO_GPU_TESTS:-}" ] && [ "$(uname -s)" = Linux ]; then
     if ! has_vulkan_loader || ! has_vulkan_driver; then
-        if command -v apt-get >/dev/null; then
-            install_driver
-        else
+        command -v apt-get >/dev/null || {
             echo "no Vulkan driver was found: install Mesa's Vulkan drivers and the Vulkan loader" >&2
             echo "(Fedora: mesa-vulkan-drivers vulkan-loader; Arch: vulkan-swrast vulkan-icd-loader)," >&2
             echo "or run the tests that need none with scripts/test.sh --no-gpu" >&2
             exit 1
-        fi
+        }
+        install "a Vulkan driver" mesa-vulkan-drivers libvulkan1
     fi
 fi
 

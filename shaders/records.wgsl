@@ -14,9 +14,11 @@ struct Frame {
     background: vec3f,
     shading: u32,
     film_size: vec2u,
-    // The part of the film that this recording renders, in pixels.
+    // The part of the film that this dispatch renders, in pixels.
     tile_origin: vec2u,
     tile_size: vec2u,
+    // Where that part lies in the target textures.
+    target_origin: vec2u,
     // +1 if y = +1 is the top row, -1 if it is the bottom row.
     y_sign: f32,
     sphere_count: u32,

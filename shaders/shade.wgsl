@@ -10,15 +10,15 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let hit = hits[hit_index(invocation.xy)];
+    let pixel = frame.target_origin + invocation.xy;
     // Not only `hit.id == NO_ID`: an index from a buffer is checked before it is used.
     if (hit.id >= frame.sphere_count) {
-        write_color(invocation.xy, frame.background);
-        write_layers(invocation.xy, NO_HIT, vec3f(0.0), NO_ID);
+        write_color(pixel, frame.background);
+        write_layers(pixel, NO_HIT, vec3f(0.0), NO_ID);
         return;
     }
     let ray = camera_ray(relative_location(frame.tile_origin + invocation.xy));
-    let sphere = spheres[hit.id];
-    let normal = sphere_normal(ray, sphere, intersect_sphere(ray, sphere));
-    write_color(invocation.xy, surface_color(colors[hit.id].rgb, normal, ray));
-    write_layers(invocation.xy, hit.t, normal, hit.id);
+    let normal = sphere_normal(ray, intersect_sphere(ray, spheres[hit.id]));
+    write_color(pixel, surface_color(colors[hit.id].rgb, normal, ray));
+    write_layers(pixel, hit.t, normal, hit.id);
 }

@@ -30,13 +30,20 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     let half_chord = sqrt(discriminant);
     let outside = c > 0.0;
     hit.from_foot = select(half_chord, -half_chord, outside);
+    // The near root is at most b, and the far root of a ray that leaves at most the half chord. Where
+    // the origin is almost on the wall, rounding can make c and the discriminant disagree; then the
+    // quotient would be larger, or without bound.
     var t: f32;
-    if (b >= 0.0) {
+    if (outside) {
         let q = b + half_chord;
-        // Outside, b > 0, so q > 0.
-        if (outside) { t = c / q; } else { t = q; }
+        t = b;
+        if (c < b * q) { t = c / q; }
+    } else if (b >= 0.0) {
+        t = b + half_chord;
     } else {
-        t = c / (b - half_chord);
+        let q = b - half_chord;
+        t = half_chord;
+        if (c > half_chord * q) { t = c / q; }
     }
     // On the wall and leaving, t is zero.
     if (t > 0.0) {
@@ -46,7 +53,10 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
 }
 
 // Unit normal, pointing away from the centre. From the right triangle of the intersection, not from
-// the hit point, which far away from a small sphere is nothing but rounding.
-fn sphere_normal(ray: Ray, sphere: vec4f, hit: SphereHit) -> vec3f {
-    return (hit.from_foot * ray.direction - hit.foot_to_center) / sphere.w;
+// the hit point, which far away from a small sphere is nothing but rounding. There the triangle is not
+// quite right-angled either, so its hypotenuse is measured instead of taken to be the radius; it is
+// never zero, because its two legs were made from the radius.
+fn sphere_normal(ray: Ray, hit: SphereHit) -> vec3f {
+    let outward = hit.from_foot * ray.direction - hit.foot_to_center;
+    return outward / sqrt(dot(outward, outward));
 }

@@ -2,9 +2,11 @@
 
 use std::sync::LazyLock;
 
-/// A colour in linear light with the Rec. 709 primaries; 1 is display white. Not clamped.
+/// A colour in linear light with the Rec. 709 primaries; 1 is display white.
+///
+/// Components are finite and not negative, and may exceed 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearRgb(pub [f32; 3]);
+pub struct LinearRgb([f32; 3]);
 
 impl LinearRgb {
     /// Black.
@@ -12,18 +14,34 @@ impl LinearRgb {
     /// White.
     pub const WHITE: Self = Self([1.0; 3]);
 
+    /// A colour from red, green and blue.
+    ///
+    /// # Errors
+    /// If a component is NaN, infinite or negative.
+    pub fn new(rgb: [f32; 3]) -> Result<Self, ColorError> {
+        if rgb.iter().all(|c| c.is_finite() && *c >= 0.0) {
+            Ok(Self(rgb))
+        } else {
+            Err(ColorError::Component { rgb })
+        }
+    }
+
     /// Decodes 8-bit sRGB.
     #[must_use]
     pub fn from_srgb8(bytes: [u8; 3]) -> Self {
         Self(bytes.map(decode_srgb8))
     }
 
-    /// Encodes as 8-bit sRGB; what lies outside [0, 1] is clamped; NaN becomes 0.
-    ///
-    /// The exact inverse of [`LinearRgb::from_srgb8`] on all bytes.
+    /// Red, green and blue.
+    #[must_use]
+    pub const fn to_array(self) -> [f32; 3] {
+        self.0
+    }
+
+    /// Encodes as 8-bit sRGB; see [`to_srgb8`].
     #[must_use]
     pub fn to_srgb8(self) -> [u8; 3] {
-        self.0.map(encode_srgb8)
+        to_srgb8(self.0)
     }
 
     /// Reads a CSS colour: a name, `#rgb`, `#rrggbb`, `rgb(…)` and the other forms of CSS Color 4, all
@@ -43,23 +61,37 @@ impl LinearRgb {
     }
 }
 
-/// Why a text is no colour.
-#[cfg(feature = "scene-file")]
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why there is no such colour.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorError {
+    /// A component is NaN, infinite or negative.
+    #[error("the color {rgb:?} has a component that is negative or not finite")]
+    Component {
+        /// The components as given.
+        rgb: [f32; 3],
+    },
     /// Neither a CSS name nor hex digits nor a CSS function.
-    #[error("`{text}` is no colour; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")]
+    #[error("`{text}` is no color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")]
     Unknown {
         /// The text as given.
         text: String,
     },
     /// Has an alpha below 1.
-    #[error("`{text}` is not opaque; colours here have no alpha")]
+    #[error("`{text}` is not opaque; colors here have no alpha")]
     NotOpaque {
         /// The text as given.
         text: String,
     },
+}
+
+/// Encodes linear light as 8-bit sRGB, rounded to the nearest byte; what lies outside [0, 1] is clamped,
+/// NaN becomes 0.
+///
+/// The exact inverse of [`LinearRgb::from_srgb8`] on all bytes.
+#[must_use]
+pub fn to_srgb8(linear: [f32; 3]) -> [u8; 3] {
+    linear.map(encode_srgb8)
 }
 
 /// IEC 61966-2-1, electro-optical transfer function.
@@ -103,7 +135,7 @@ mod tests {
             } else {
                 1.055 * exact.powf(1.0 / 2.4) - 0.055
             };
-            let [byte, ..] = LinearRgb([linear; 3]).to_srgb8();
+            let [byte, ..] = to_srgb8([linear; 3]);
             assert!((encoded * 255.0 - f64::from(byte)).abs() <= 0.500_01, "{linear}: {byte}");
         }
     }
@@ -112,12 +144,20 @@ mod tests {
     fn known_values_of_the_transfer_function() {
         assert_eq!(LinearRgb::from_srgb8([0, 255, 0]), LinearRgb([0.0, 1.0, 0.0]));
         // 188 is the byte nearest to half the light.
-        assert_eq!(LinearRgb([0.5; 3]).to_srgb8(), [188; 3]);
+        assert_eq!(to_srgb8([0.5; 3]), [188; 3]);
     }
 
     #[test]
     fn out_of_range_values_are_clamped() {
-        assert_eq!(LinearRgb([-1.0, 2.0, f32::NAN]).to_srgb8(), [0, 255, 0]);
+        assert_eq!(to_srgb8([-1.0, 2.0, f32::NAN]), [0, 255, 0]);
+    }
+
+    #[test]
+    fn a_color_is_finite_and_not_negative() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.1] {
+            assert!(matches!(LinearRgb::new([0.5, bad, 0.5]), Err(ColorError::Component { .. })));
+        }
+        assert_eq!(LinearRgb::new([0.0, 0.5, 7.0]), Ok(LinearRgb([0.0, 0.5, 7.0])));
     }
 
     #[cfg(feature = "scene-file")]

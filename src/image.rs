@@ -1,9 +1,8 @@
 //! Linear f32 pixels and data layers.
 
 use std::fmt;
+use std::ops::Range;
 use std::str::FromStr;
-
-use crate::color::LinearRgb;
 
 /// The id of a pixel whose ray hit nothing.
 pub const NO_ID: u32 = u32::MAX;
@@ -120,8 +119,8 @@ impl LayerSet {
 /// All layers of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Linear colour.
-    pub color: LinearRgb,
+    /// See [`Layer::Color`].
+    pub color: [f32; 3],
     /// See [`Layer::Depth`].
     pub depth: f32,
     /// See [`Layer::Normal`].
@@ -212,13 +211,14 @@ impl Image {
         self.id.as_deref()
     }
 
-    /// The rows from top to bottom, each to be written on its own.
-    pub(crate) fn rows_mut(&mut self) -> Vec<RowMut<'_>> {
+    /// Some of the rows, from top to bottom, each to be written on its own.
+    pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let width = self.width as usize;
-        let mut depth = self.depth.as_mut().map(|layer| layer.chunks_mut(width));
-        let mut normal = self.normal.as_mut().map(|layer| layer.chunks_mut(width));
-        let mut id = self.id.as_mut().map(|layer| layer.chunks_mut(width));
-        self.color
+        let pixels = rows.start * width..rows.end * width;
+        let mut depth = self.depth.as_mut().map(|layer| layer[pixels.clone()].chunks_mut(width));
+        let mut normal = self.normal.as_mut().map(|layer| layer[pixels.clone()].chunks_mut(width));
+        let mut id = self.id.as_mut().map(|layer| layer[pixels.clone()].chunks_mut(width));
+        self.color[pixels.clone()]
             .chunks_mut(width)
             .map(|color| RowMut {
                 color,
@@ -240,7 +240,7 @@ pub(crate) struct RowMut<'a> {
 
 impl RowMut<'_> {
     pub(crate) fn set(&mut self, column: usize, pixel: &Pixel) {
-        self.color[column] = pixel.color.0;
+        self.color[column] = pixel.color;
         if let Some(depth) = &mut self.depth {
             depth[column] = pixel.depth;
         }

@@ -54,6 +54,7 @@ pub mod scene;
 pub mod scene_file;
 pub mod settings;
 pub mod sphere;
+mod text;
 
 pub use color::LinearRgb;
 pub use film::Film;

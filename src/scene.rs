@@ -4,13 +4,12 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::math::{MAX_LENGTH, MIN_LENGTH};
-use crate::sphere::Sphere;
+use crate::sphere::{Sphere, SphereError};
 
 /// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it.
 ///
-/// The frame is the world's own unless the data lies farther from the world's origin than it is wide;
-/// then the scene's origin is the middle of the data, so that f32 offsets keep its shape.
+/// The frame is the world's own unless the data lies farther from the world's origin, along an axis, than
+/// it is wide; then the scene's origin is the middle of the data, so that f32 offsets keep its shape.
 /// Both the GPU and the CPU reference see the same f32 numbers.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -24,37 +23,13 @@ pub struct Scene {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A centre is NaN, infinite or too far away.
-    #[error(
-        "sphere {index}: its center is ({}, {}, {}); every coordinate must be finite and at most {MAX_LENGTH:e} in size",
-        center[0], center[1], center[2]
-    )]
-    Center {
+    /// A sphere is out of range.
+    #[error("sphere {index}: {error}")]
+    Sphere {
         /// Index in input order.
         index: usize,
-        /// The centre as given.
-        center: [f64; 3],
-    },
-    /// A radius is NaN, infinite, zero, negative or too small or large for f32 kernels.
-    #[error(
-        "sphere {index}: its radius is {radius}; a radius must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
-    )]
-    Radius {
-        /// Index in input order.
-        index: usize,
-        /// The radius as given.
-        radius: f64,
-    },
-    /// A colour has a component that is NaN, infinite or negative.
-    #[error(
-        "sphere {index}: its color is ({}, {}, {}); every component must be finite and not negative",
-        color[0], color[1], color[2]
-    )]
-    Color {
-        /// Index in input order.
-        index: usize,
-        /// The colour as given, linear.
-        color: [f32; 3],
+        /// What is wrong with it.
+        error: SphereError,
     },
     /// More spheres than ids.
     #[error("{count} spheres are too many; ids are u32 and {} means a miss", u32::MAX)]
@@ -64,30 +39,17 @@ pub enum SceneError {
     },
 }
 
-impl SceneError {
-    /// The index of the sphere that is at fault, if it is one sphere.
-    #[must_use]
-    pub fn index(&self) -> Option<usize> {
-        match *self {
-            Self::Center { index, .. } | Self::Radius { index, .. } | Self::Color { index, .. } => {
-                Some(index)
-            }
-            Self::TooMany { .. } => None,
-        }
-    }
-}
-
 impl Scene {
     /// Checks the spheres and moves them into the scene's frame. A scene may be empty.
     ///
     /// # Errors
-    /// The first sphere, in input order, with a centre, radius or colour that is out of range.
+    /// The first sphere, in input order, with a centre or radius that is out of range.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
         if spheres.len() >= u32::MAX as usize {
             return Err(SceneError::TooMany { count: spheres.len() });
         }
         for (index, sphere) in spheres.iter().enumerate() {
-            check(index, sphere)?;
+            sphere.check().map_err(|error| SceneError::Sphere { index, error })?;
         }
         let bounds = spheres
             .iter()
@@ -145,29 +107,13 @@ impl Scene {
     }
 }
 
-fn check(index: usize, sphere: &Sphere) -> Result<(), SceneError> {
-    // `contains` is false for NaN.
-    let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);
-    if !sphere.center.iter().all(in_range) {
-        return Err(SceneError::Center { index, center: sphere.center });
-    }
-    if !(MIN_LENGTH..=MAX_LENGTH).contains(&sphere.radius) {
-        return Err(SceneError::Radius { index, radius: sphere.radius });
-    }
-    if !sphere.color.0.iter().all(|c| c.is_finite() && *c >= 0.0) {
-        return Err(SceneError::Color { index, color: sphere.color.0 });
-    }
-    Ok(())
-}
-
-/// Zero while the world's origin is about as near as the data is wide, else the data's middle.
+/// Where the scene's frame lies: zero along an axis while the world's origin is about as near as the data
+/// is wide, else the data's middle.
 ///
-/// The middle is rounded to f32, so that data which was exact in f32 stays exact after the move.
+/// The middle is rounded to f32. Then coordinates that were exact in f32 stay exact after the move,
+/// because neither of two f32 is more than twice the other (Sterbenz).
 fn frame_origin(bounds: Bounds) -> DVec3 {
-    let center = bounds.center();
-    if center.abs().max_element() <= bounds.size().max_element() {
-        DVec3::ZERO
-    } else {
-        center.as_vec3().as_dvec3()
-    }
+    let width = bounds.size().max_element();
+    let along = |center: f64| if center.abs() <= width { 0.0 } else { f64::from(center as f32) };
+    DVec3::from(bounds.center().to_array().map(along))
 }

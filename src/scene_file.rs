@@ -9,12 +9,13 @@ use serde::de::{self, SeqAccess, Visitor};
 use toml::Spanned;
 
 use crate::bounds::Bounds;
-use crate::camera::{self, Camera, CameraError, camera_table};
+use crate::camera::{self, Camera, CameraError, CameraKind, camera_table};
 use crate::color::LinearRgb;
 use crate::film::{Film, YAxis};
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Settings, Shading};
 use crate::sphere::Sphere;
+use crate::text::one_line;
 
 /// What a scene file says.
 #[derive(Debug)]
@@ -79,30 +80,30 @@ impl SceneFile {
     /// # Errors
     /// The first thing in the text that is not as it should be.
     pub fn parse(text: &str) -> Result<Self, SceneFileError> {
+        let lines = Lines::of(text);
         let document: Document = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
-            place(text, start).error(explain(error.message()))
+            lines.place(start).error(explain(error.message()))
         })?;
-        let film_place = place(text, document.film.span().start);
+        let film_place = lines.place(document.film.span().start);
         let FilmTable { width, height, y } = document.film.into_inner();
         let film = Film::new(width, height).map_err(|error| film_place.error(error))?;
         let defaults = Settings::default();
         Ok(Self {
             film: film.with_y_axis(y),
-            settings: Settings {
-                shading: document.shading.unwrap_or(defaults.shading),
-                background: document.background.map_or(defaults.background, |color| color.0),
-            },
-            data: data(text, document.data, document.frame, document.radius_scale)?,
+            settings: Settings::default()
+                .with_shading(document.shading.unwrap_or(defaults.shading()))
+                .with_background(document.background.map_or(defaults.background(), |c| c.0)),
+            data: data(&lines, document.data, document.frame, document.radius_scale)?,
             camera: Placed {
-                place: place(text, document.camera.span().start),
+                place: lines.place(document.camera.span().start),
                 value: document.camera.into_inner(),
             },
             spheres: document
                 .spheres
                 .into_iter()
                 .map(|sphere| Placed {
-                    place: place(text, sphere.span().start),
+                    place: lines.place(sphere.span().start),
                     value: sphere.into_inner().sphere(),
                 })
                 .collect(),
@@ -120,16 +121,16 @@ impl SceneFile {
     }
 
     fn placed(&self, error: &SceneError) -> SceneFileError {
-        let Some(index) = error.index() else {
+        let &SceneError::Sphere { index, error: fault } = error else {
             return Place::START.error(error);
         };
-        match self.spheres.get(index) {
-            Some(sphere) => sphere.place.error(error),
-            None => {
+        match (self.spheres.get(index), &self.data) {
+            (Some(sphere), _) => sphere.place.error(error),
+            (None, Some(data)) => {
                 let in_data = index - self.spheres.len();
-                let place = self.data.as_ref().map_or(Place::START, |data| data.place);
-                place.error(format!("{error} (it is sphere {in_data} of the data)"))
+                data.place.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
             }
+            (None, None) => Place::START.error(error),
         }
     }
 
@@ -167,14 +168,14 @@ impl Default for SceneFile {
 }
 
 fn data(
-    text: &str,
+    lines: &Lines<'_>,
     file: Option<Spanned<String>>,
     frame: Option<Spanned<usize>>,
     radius_scale: Option<Spanned<f64>>,
 ) -> Result<Option<Placed<Data>>, SceneFileError> {
     let Some(file) = file else {
         let orphan = |key, start| {
-            place(text, start).error(format!("`{key}` concerns `data`, which is not given"))
+            lines.place(start).error(format!("`{key}` concerns `data`, which is not given"))
         };
         return match (frame, radius_scale) {
             (Some(frame), _) => Err(orphan("frame", frame.span().start)),
@@ -185,13 +186,13 @@ fn data(
     if let Some(scale) = &radius_scale {
         let value = *scale.get_ref();
         if !(value.is_finite() && value > 0.0) {
-            return Err(place(text, scale.span().start).error(format!(
+            return Err(lines.place(scale.span().start).error(format!(
                 "`radius_scale` is {value}; it must be finite and greater than 0"
             )));
         }
     }
     Ok(Some(Placed {
-        place: place(text, file.span().start),
+        place: lines.place(file.span().start),
         value: Data {
             file: file.into_inner(),
             frame: frame.map_or(0, Spanned::into_inner),
@@ -200,13 +201,24 @@ fn data(
     }))
 }
 
-/// Line and column of a byte of the text.
-fn place(text: &str, byte: usize) -> Place {
-    let before = text.get(..byte).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |end| end + 1);
-    Place {
-        line: before.matches('\n').count() + 1,
-        column: before[line_start..].chars().count() + 1,
+/// Where the lines of a text start.
+struct Lines<'a> {
+    text: &'a str,
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    fn of(text: &'a str) -> Self {
+        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
+        Self { text, starts: std::iter::once(0).chain(ends).collect() }
+    }
+
+    /// Line and column of a byte.
+    fn place(&self, byte: usize) -> Place {
+        // At least one line starts at or before any byte.
+        let line = self.starts.partition_point(|start| *start <= byte);
+        let before = self.text.get(self.starts[line - 1]..byte).unwrap_or_default();
+        Place { line, column: before.chars().count() + 1 }
     }
 }
 
@@ -215,11 +227,17 @@ fn explain(message: &str) -> String {
     let (what, rest) = match message.split_once(" `") {
         Some(("unknown field", rest)) => ("key", rest),
         Some(("unknown variant", rest)) => ("name", rest),
-        _ if message.starts_with("wanted exactly 1 element") => {
+        // The camera is the only enumeration whose variants have contents.
+        _ if message.starts_with("wanted exactly 1 element, more") => {
             return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
         }
+        _ if message.starts_with("wanted exactly 1 element")
+            || message.starts_with("invalid type: unit variant") =>
+        {
+            return format!("a camera is a table; write {}", camera_tables());
+        }
         // toml's messages of its own are good, but may span lines.
-        _ => return message.split_whitespace().collect::<Vec<_>>().join(" "),
+        _ => return one_line(message),
     };
     // unknown field `widht`, expected one of `width`, `height`
     let mut quoted = rest.split('`').step_by(2);
@@ -232,6 +250,12 @@ fn explain(message: &str) -> String {
         Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
         None => format!("unknown {what} `{unknown}`; known here: {}", known.join(", ")),
     }
+}
+
+/// `[camera.pinhole]` or …
+fn camera_tables() -> String {
+    let tables = CameraKind::ALL.iter().map(|kind| format!("`[camera.{}]`", kind.name()));
+    tables.collect::<Vec<_>>().join(" or ")
 }
 
 /// The file's tables, as serde reads them.
@@ -353,12 +377,7 @@ impl<'de> Deserialize<'de> for ColorValue {
                 if seq.next_element::<f32>()?.is_some() {
                     return Err(de::Error::invalid_length(4, &self));
                 }
-                if !rgb.iter().all(|c: &f32| c.is_finite() && *c >= 0.0) {
-                    return Err(de::Error::custom(format_args!(
-                        "the color {rgb:?} has a component that is negative or not finite"
-                    )));
-                }
-                Ok(ColorValue(LinearRgb(rgb)))
+                LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
             }
         }
 

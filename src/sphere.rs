@@ -1,9 +1,11 @@
 //! The one primitive.
 
 use crate::color::LinearRgb;
+use crate::math::{MAX_LENGTH, MIN_LENGTH};
 
 /// A sphere in world space, as a caller gives it. [`crate::Scene`] checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sphere {
     /// Centre, in scene units.
     pub center: [f64; 3],
@@ -13,10 +15,49 @@ pub struct Sphere {
     pub color: LinearRgb,
 }
 
+/// What is wrong with a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SphereError {
+    /// The centre is NaN, infinite or too far away.
+    #[error(
+        "its center is ({}, {}, {}); every coordinate must be finite and at most {MAX_LENGTH:e} in size",
+        center[0], center[1], center[2]
+    )]
+    Center {
+        /// The centre as given.
+        center: [f64; 3],
+    },
+    /// The radius is NaN, infinite, zero, negative or too small or large for f32 kernels.
+    #[error(
+        "its radius is {radius}; a radius must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
+    )]
+    Radius {
+        /// The radius as given.
+        radius: f64,
+    },
+}
+
 impl Sphere {
     /// A sphere from its three parts.
     #[must_use]
     pub const fn new(center: [f64; 3], radius: f64, color: LinearRgb) -> Self {
         Self { center, radius, color }
+    }
+
+    /// Whether the sphere may be part of a scene.
+    ///
+    /// # Errors
+    /// If the centre or the radius is out of range.
+    pub fn check(&self) -> Result<(), SphereError> {
+        // `contains` is false for NaN.
+        let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);
+        if !self.center.iter().all(in_range) {
+            return Err(SphereError::Center { center: self.center });
+        }
+        if !(MIN_LENGTH..=MAX_LENGTH).contains(&self.radius) {
+            return Err(SphereError::Radius { radius: self.radius });
+        }
+        Ok(())
     }
 }

@@ -22,7 +22,10 @@ pub use pinhole::PinholeParameters;
 pub use pose::{CameraError, Pose};
 
 /// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
-pub trait Camera: std::fmt::Debug + Send + Sync {
+///
+/// The trait is sealed: a camera consists of its Rust type and its WGSL part, and only this crate can
+/// join the two.
+pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
     /// Which row of the camera table this is.
     fn kind(&self) -> CameraKind;
 
@@ -37,6 +40,7 @@ pub trait Camera: std::fmt::Debug + Send + Sync {
 ///
 /// What `right`, `up` and `forward` mean is for the camera's own two files to agree on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CameraVectors {
     /// Where the camera is.
     pub origin: DVec3,
@@ -65,6 +69,11 @@ pub(crate) use camera_table;
 
 macro_rules! define_kind {
     ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        mod sealed {
+            pub trait Sealed {}
+            $(impl Sealed for super::$camera {})+
+        }
+
         /// The cameras that exist.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]

@@ -1,6 +1,6 @@
 //! The perspective camera: every ray starts at the eye.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
@@ -22,6 +22,9 @@ pub struct PinholeCamera {
 }
 
 impl PinholeCamera {
+    /// The vertical field of view where none is given: 30 degrees.
+    pub const DEFAULT_FOV_RADIANS: f64 = std::f64::consts::FRAC_PI_6;
+
     /// A camera with every parameter given, in scene units.
     ///
     /// # Errors
@@ -49,6 +52,15 @@ impl PinholeCamera {
         aspect: f64,
     ) -> Result<Self, CameraError> {
         Self::new(pose, 1.0, tangents(fov_radians, aspect)?)
+    }
+
+    /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole box.
+    ///
+    /// # Errors
+    /// If the aspect ratio is not greater than zero, or the eye would have to stand too far away.
+    pub fn framing_from_the_front(bounds: &Bounds, aspect: f64) -> Result<Self, CameraError> {
+        let pose = Pose::looking_along(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y)?;
+        Self::framing(bounds, pose, Self::DEFAULT_FOV_RADIANS, aspect)
     }
 
     /// A camera that keeps the orientation of `pose` and moves so that it sees the whole box.
@@ -141,9 +153,6 @@ impl Default for PinholeParameters {
 
 #[cfg(feature = "scene-file")]
 impl PinholeParameters {
-    /// The vertical field of view, in degrees, where a file gives none.
-    pub const DEFAULT_FOV_DEGREES: f64 = 30.0;
-
     /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
     ///
     /// # Errors
@@ -153,7 +162,7 @@ impl PinholeParameters {
 
         let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
         let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
-        let fov = self.vertical_fov.unwrap_or(Self::DEFAULT_FOV_DEGREES).to_radians();
+        let fov = self.vertical_fov.map_or(PinholeCamera::DEFAULT_FOV_RADIANS, f64::to_radians);
         match (placement, self.half_extent, self.distance) {
             (_, Some(_), _) if self.vertical_fov.is_some() => Err(CameraError::Parameters {
                 message: "`vertical_fov` and `half_extent` exclude each other; keep one",

@@ -17,7 +17,7 @@ pub struct Pose {
 #[non_exhaustive]
 pub enum CameraError {
     /// The eye and the point it looks at are one point.
-    #[error("the eye and the look-at point are both {eye}; move one of them")]
+    #[error("the eye and the look-at point are both at {eye}; move one of them")]
     EyeAtTarget {
         /// The point.
         eye: DVec3,
@@ -86,7 +86,7 @@ impl Pose {
             return Err(CameraError::EyeAtTarget { eye });
         }
         let basis = OrthonormalBasis::looking_at(eye, look_at, up)
-            .map_err(|error| camera_error(error, up))?;
+            .map_err(|error| camera_error(error, eye, up))?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -108,7 +108,7 @@ impl Pose {
             return Err(CameraError::Zero { parameter: "the direction" });
         }
         let basis = OrthonormalBasis::from_vectors(-direction, up)
-            .map_err(|error| camera_error(error, up))?;
+            .map_err(|error| camera_error(error, eye, up))?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -140,11 +140,14 @@ fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraErro
     }
 }
 
-/// Eye, target and direction are checked before a basis is built, so what is left concerns `up`.
-fn camera_error(error: BasisError, up: DVec3) -> CameraError {
+/// Eye, target and direction are checked before a basis is built, so nearly all that is left concerns
+/// `up`.
+fn camera_error(error: BasisError, eye: DVec3, up: DVec3) -> CameraError {
     match error {
         BasisError::NotFinite { .. } => CameraError::Vector { parameter: "up", value: up },
-        BasisError::Zero { .. } => CameraError::Zero { parameter: "up" },
+        BasisError::Zero { name: "up" | "b" } => CameraError::Zero { parameter: "up" },
+        // Half the distance of the two points is zero in f64.
+        BasisError::Zero { .. } => CameraError::EyeAtTarget { eye },
         BasisError::Parallel { .. } => CameraError::UpParallelToView { up },
     }
 }

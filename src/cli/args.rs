@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]
-#[command(version, about, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(after_help = "Exit codes: 0 done; 1 the job failed; 2 wrong usage.")]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -55,7 +55,7 @@ pub(super) struct DeviceArgs {
     /// What renders: a GPU if there is an adapter, a GPU, or the CPU reference
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub(super) backend: Backend,
-    /// The adapter whose name contains this text [default: $`WGPU_ADAPTER_NAME`, or the best one]
+    /// The adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best one]
     #[arg(long, value_name = "NAME")]
     pub(super) adapter: Option<String>,
 }

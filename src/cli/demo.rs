@@ -1,14 +1,16 @@
 //! `pinhole demo`: a first scene file and its picture.
 
-use std::path::Path;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 
 use super::args::DemoArgs;
 use super::failure::Failure;
-use super::input::{self, Format};
-use super::output::{Outputs, write_file};
+use super::input;
+use super::output::Outputs;
 use super::render::{Device, render};
+use super::speak::tell;
 use crate::image::LayerSet;
 
 const SCENE: &str = include_str!("../../examples/three-spheres.toml");
@@ -18,31 +20,27 @@ const PICTURE_FILE: &str = "three-spheres.png";
 pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let device = Device::new(&args.device)?;
     let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
-    let scene_path = Path::new(SCENE_FILE);
-    // Never over a scene that the user has changed.
-    match std::fs::read(scene_path) {
-        Ok(found) if found == SCENE.as_bytes() => {}
-        Ok(_) => {
-            return Err(Failure::usage(format!(
-                "{SCENE_FILE}: this file exists and is not the demo's; \
-                 rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
-            )));
-        }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            write_file(scene_path, SCENE.as_bytes())?;
-        }
-        Err(error) => {
-            return Err(anyhow::Error::from(error)
-                .context(format!("{SCENE_FILE}: cannot be read"))
-                .into());
-        }
-    }
-    let input = input::load(scene_path, Format::Scene, None, None)?;
+    let scene_file = PathBuf::from(SCENE_FILE);
+    let is_there = is_there(&scene_file)?;
+    let input = input::scene_from_text(SCENE, &scene_file, None, None)?;
     let image = render(&input, LayerSet::COLOR, &device)?;
-    outputs.write(&image).context("the demo's picture")?;
-    eprintln!(
+    outputs.write(&image, (!is_there).then_some((&scene_file, SCENE)))?;
+    tell(format_args!(
         "wrote {SCENE_FILE} and {PICTURE_FILE}; change the scene and run \
          `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
-    );
+    ));
     Ok(())
+}
+
+/// Whether the demo's scene file is there already. One that the user has changed is never overwritten.
+fn is_there(scene_file: &Path) -> Result<bool, Failure> {
+    match std::fs::read(scene_file) {
+        Ok(found) if found == SCENE.as_bytes() => Ok(true),
+        Ok(_) => Err(Failure::usage(format!(
+            "{SCENE_FILE}: this file exists and is not the demo's; \
+             rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(anyhow!(error)).context(format!("{SCENE_FILE}: cannot be read"))?,
+    }
 }

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use crate::text::one_line;
+
 /// Exit code of a job that failed.
 pub(super) const FAILED: u8 = 1;
 
@@ -42,6 +44,6 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Self::Usage(error) | Self::Job(error)) = self;
         let text = format!("{error:#}");
-        f.write_str(&text.split_whitespace().collect::<Vec<_>>().join(" "))
+        f.write_str(&one_line(&text))
     }
 }

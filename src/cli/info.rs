@@ -1,12 +1,11 @@
 //! `pinhole info`.
 
-use std::io::{self, Write};
-
 use anyhow::Context;
 use serde::Serialize;
 
 use super::args::InfoArgs;
 use super::failure::Failure;
+use super::speak::answer;
 
 /// What is known of this program and the machine.
 #[derive(Serialize)]
@@ -58,13 +57,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     } else {
         readable(&info)
     };
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has seen enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => Ok(result.context("standard output: cannot be written")?),
-    }
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }
-
 #[cfg(feature = "gpu")]
 fn adapters() -> Vec<AdapterReport> {
     use crate::gpu::adapter;

@@ -1,11 +1,13 @@
 //! From a path to a scene and a view of it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
+use glam::DVec3;
 
 use super::failure::Failure;
-use crate::camera::Camera;
+use crate::bounds::Bounds;
+use crate::camera::{Camera, PinholeCamera};
 use crate::film::Film;
 use crate::io::xyz;
 use crate::scene::Scene;
@@ -19,6 +21,8 @@ pub(super) struct Input {
     pub(super) camera: Box<dyn Camera>,
     pub(super) film: Film,
     pub(super) settings: Settings,
+    /// What says how large the picture is: a flag or a file.
+    pub(super) size_from: String,
     /// What the user should know although it is no error.
     pub(super) notes: Vec<String>,
 }
@@ -27,6 +31,12 @@ pub(super) struct Input {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Scene,
+    Data(DataFormat),
+}
+
+/// The formats of data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DataFormat {
     Xyz,
 }
 
@@ -36,7 +46,7 @@ impl Format {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         match extension.as_deref() {
             Some("toml") => Ok(Self::Scene),
-            Some("xyz" | "extxyz") => Ok(Self::Xyz),
+            Some("xyz" | "extxyz") => Ok(Self::Data(DataFormat::Xyz)),
             _ => bail!(
                 "{}: the extension names no format that can be read; \
                  there are .toml (scene) and .xyz, .extxyz (data)",
@@ -53,75 +63,99 @@ pub(super) fn load(
     size: Option<(u32, u32)>,
     frame: Option<usize>,
 ) -> Result<Input, Failure> {
-    match format {
-        Format::Scene => load_scene(path, size, frame),
-        Format::Xyz => {
-            let (spheres, notes) = load_data(path, frame.unwrap_or(0), 1.0)?;
-            assemble(&SceneFile::default(), &spheres, size, notes, path)
-        }
-    }
+    let Format::Data(format) = format else {
+        let text = String::from_utf8(read(path)?).map_err(|_| {
+            anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
+        })?;
+        return scene_from_text(&text, path, size, frame);
+    };
+    let (spheres, notes) = load_data(path, format, frame.unwrap_or(0), 1.0)?;
+    let place = || path.display().to_string();
+    let (film, size_from) = film(Film::default(), size, path)?;
+    let scene = Scene::new(&spheres).with_context(place)?;
+    // Nothing to see is as good as a unit cube.
+    let bounds = scene.bounds().unwrap_or(Bounds::of_sphere(DVec3::ZERO, 0.5));
+    let camera =
+        PinholeCamera::framing_from_the_front(&bounds, film.aspect()).with_context(place)?;
+    let (camera, settings) = (Box::new(camera), Settings::default());
+    Ok(Input { scene, camera, film, settings, size_from, notes })
 }
 
-fn load_scene(
+/// Reads the text of a scene file that stands, or will stand, at `path`, and its data.
+pub(super) fn scene_from_text(
+    text: &str,
     path: &Path,
     size: Option<(u32, u32)>,
     frame: Option<usize>,
 ) -> Result<Input, Failure> {
-    let text = String::from_utf8(read(path)?)
-        .map_err(|_| anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display()))?;
-    let file = SceneFile::parse(&text).with_context(|| path.display().to_string())?;
-    let Some(data) = file.data() else {
-        if frame.is_some() {
+    let place = || path.display().to_string();
+    let file = SceneFile::parse(text).with_context(place)?;
+    let (spheres, notes) = match file.data() {
+        Some(data) => {
+            let data_path = path.parent().unwrap_or(Path::new("")).join(&data.file);
+            let in_scene = || format!("{}: `data`", path.display());
+            let Format::Data(format) = Format::of(&data_path).with_context(in_scene)? else {
+                return Err(anyhow!("it names another scene file").context(in_scene()).into());
+            };
+            load_data(&data_path, format, frame.unwrap_or(data.frame), data.radius_scale)?
+        }
+        None if frame.is_some() => {
             return Err(Failure::usage(format!(
                 "{}: --frame needs a scene with `data`, and this scene has none",
                 path.display()
             )));
         }
-        return assemble(&file, &[], size, Vec::new(), path);
+        None => (Vec::new(), Vec::new()),
     };
-    let data_path = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&data.file);
-    let place = || format!("{}: `data`", path.display());
-    if Format::of(&data_path).with_context(place)? == Format::Scene {
-        return Err(anyhow!("it names another scene file").context(place()).into());
-    }
-    let (spheres, notes) = load_data(&data_path, frame.unwrap_or(data.frame), data.radius_scale)?;
-    assemble(&file, &spheres, size, notes, path)
-}
-
-fn load_data(path: &Path, frame: usize, radius_scale: f64) -> Result<(Vec<Sphere>, Vec<String>)> {
-    let bytes = read(path)?;
-    let mut atoms = xyz::read(&bytes, frame).with_context(|| path.display().to_string())?;
-    for sphere in &mut atoms.spheres {
-        sphere.radius *= radius_scale;
-    }
-    let mut notes = Vec::new();
-    if !atoms.unknown_species.is_empty() {
-        notes.push(format!(
-            "{}: no chemical elements: {}; drawn in pink with radius 2",
-            path.display(),
-            atoms.unknown_species.join(", ")
-        ));
-    }
-    Ok((atoms.spheres, notes))
-}
-
-fn assemble(
-    file: &SceneFile,
-    data: &[Sphere],
-    size: Option<(u32, u32)>,
-    notes: Vec<String>,
-    path: &Path,
-) -> Result<Input, Failure> {
-    let place = || path.display().to_string();
-    let film = match size {
-        Some((width, height)) => Film::new(width, height)
-            .map_err(|error| Failure::usage(format!("--size: {error}")))?
-            .with_y_axis(file.film.y_axis()),
-        None => file.film,
-    };
-    let scene = file.scene(data).with_context(place)?;
+    let (film, size_from) = film(file.film, size, path)?;
+    let scene = file.scene(&spheres).with_context(place)?;
     let camera = file.camera(&film, &scene).with_context(place)?;
-    Ok(Input { scene, camera, film, settings: file.settings, notes })
+    Ok(Input { scene, camera, film, settings: file.settings, size_from, notes })
+}
+
+/// The film, and what its size comes from.
+fn film(from_file: Film, size: Option<(u32, u32)>, path: &Path) -> Result<(Film, String), Failure> {
+    let Some((width, height)) = size else { return Ok((from_file, path.display().to_string())) };
+    let film = Film::new(width, height)
+        .map_err(|error| Failure::usage(format!("--size: {error}")))?
+        .with_y_axis(from_file.y_axis());
+    Ok((film, "--size".to_owned()))
+}
+
+fn load_data(
+    path: &Path,
+    format: DataFormat,
+    frame: usize,
+    radius_scale: f64,
+) -> Result<(Vec<Sphere>, Vec<String>)> {
+    let bytes = read(path)?;
+    match format {
+        DataFormat::Xyz => {
+            let mut atoms = xyz::read(&bytes, frame).with_context(|| path.display().to_string())?;
+            for sphere in &mut atoms.spheres {
+                sphere.radius *= radius_scale;
+            }
+            let notes = unknown_species(&atoms.unknown_species, path).into_iter().collect();
+            Ok((atoms.spheres, notes))
+        }
+    }
+}
+
+/// A note that fits on a line, however many species there are.
+fn unknown_species(names: &[String], path: &Path) -> Option<String> {
+    const NAMED: usize = 5;
+    let more = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let named = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: no chemical elements: {named}{more}; drawn in pink, with radius 2 if the file \
+             gives none",
+            path.display()
+        )
+    })
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {

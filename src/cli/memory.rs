@@ -6,17 +6,24 @@ use super::failure::Failure;
 use crate::film::Film;
 use crate::image::LayerSet;
 
-/// Bytes per pixel that encoding and reading back take beside the image itself.
+/// Bytes per pixel that encoding takes beside the image itself.
 const ENCODING_BYTES_PER_PIXEL: u64 = 16;
 
+/// Bytes per pixel, and the most pixels, of what a device works on at a time, and what is copied back.
+/// A software device takes them from the same memory.
+const TILE_BYTES_PER_PIXEL: u64 = 88;
+const MAX_TILE_PIXELS: u64 = 1 << 22;
+
 /// Refuses a picture that this machine, or the control group that the program runs in, cannot hold.
-pub(super) fn check(film: &Film, layers: LayerSet) -> Result<(), Failure> {
+pub(super) fn check(film: &Film, size_from: &str, layers: LayerSet) -> Result<(), Failure> {
     let per_pixel = layers.bytes_per_pixel() + ENCODING_BYTES_PER_PIXEL;
-    let needed = film.pixel_count().saturating_mul(per_pixel);
+    let pixels = film.pixel_count();
+    let tile = pixels.min(MAX_TILE_PIXELS) * TILE_BYTES_PER_PIXEL;
+    let needed = pixels.saturating_mul(per_pixel).saturating_add(tile);
     let available = available();
     if needed > available {
         return Err(Failure::usage(format!(
-            "a picture of {}x{} needs {} of memory, and {} are free; choose a smaller size",
+            "{size_from}: a picture of {}x{} needs {} of memory, and {} are free; choose a smaller size",
             film.width(),
             film.height(),
             readable(needed),

@@ -1,12 +1,13 @@
 //! The program: raw arguments, then a checked job made of library types, then its run.
 //!
 //! The only module that sees clap, prints, or touches the file system.
-#![expect(clippy::print_stderr, clippy::print_stdout, reason = "this is where the program speaks")]
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+
+use crate::text::one_line;
 
 mod args;
 mod demo;
@@ -16,8 +17,10 @@ mod input;
 mod memory;
 mod output;
 mod render;
+mod speak;
 
 use args::{Arguments, Command};
+use speak::{answer, tell};
 
 /// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage.
 #[must_use]
@@ -34,7 +37,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            tell(format_args!("error: {failure}"));
             failure.exit_code()
         }
     }
@@ -42,20 +45,20 @@ pub fn main() -> ExitCode {
 
 /// Prints help or version as clap has them, and an error as one line.
 fn explain(error: &clap::Error) -> ExitCode {
+    let text = error.to_string();
     match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            print!("{error}");
-            ExitCode::SUCCESS
-        }
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match answer(text.as_bytes()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(_) => failure::FAILED.into(),
+        },
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            eprint!("{error}");
+            tell(text);
             failure::USAGE.into()
         }
         _ => {
-            let text = error.to_string();
             let message = text.split("\n\nUsage:").next().unwrap_or_default();
             let message = message.split("\n\nFor more information").next().unwrap_or_default();
-            eprintln!("{}", message.split_whitespace().collect::<Vec<_>>().join(" "));
+            tell(one_line(message));
             failure::USAGE.into()
         }
     }

@@ -1,13 +1,15 @@
 //! Files that appear whole or not at all.
 
+use std::collections::HashSet;
 use std::fs::Permissions;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
+use super::speak::answer;
 use crate::image::{Image, Layer};
 use crate::io::{npy, png};
 
@@ -29,14 +31,14 @@ impl Outputs {
             Some(picture.to_path_buf())
         };
         let layers = layers.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>, _>>()?;
-        let mut paths: Vec<&PathBuf> =
-            picture.iter().chain(layers.iter().map(|(_, path)| path)).collect();
-        paths.sort();
-        if let Some(twice) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(Failure::usage(format!(
-                "{}: two outputs have this name",
-                twice[0].display()
-            )));
+        let mut seen = HashSet::new();
+        for path in picture.iter().chain(layers.iter().map(|(_, path)| path)) {
+            if !seen.insert(canonical(path)) {
+                return Err(Failure::usage(format!(
+                    "{}: two outputs are this file",
+                    path.display()
+                )));
+            }
         }
         Ok(Self { picture, layers })
     }
@@ -46,10 +48,14 @@ impl Outputs {
         self.layers.iter().map(|(layer, _)| *layer)
     }
 
-    /// Encodes and writes everything; files get their names once all of them are complete.
-    pub(super) fn write(&self, image: &Image) -> Result<()> {
+    /// Encodes and writes everything, and `text` to a file if there is one; files get their names once
+    /// all of them are complete.
+    pub(super) fn write(&self, image: &Image, text: Option<(&PathBuf, &str)>) -> Result<()> {
         let picture = png::encode(image)?;
         let mut files = Vec::new();
+        if let Some((path, text)) = text {
+            files.push((path, unnamed(path, text.as_bytes())?));
+        }
         if let Some(path) = &self.picture {
             files.push((path, unnamed(path, &picture)?));
         }
@@ -57,18 +63,10 @@ impl Outputs {
             files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
         }
         if self.picture.is_none() {
-            write_to_stdout(&picture)?;
+            answer(&picture).context("standard output: cannot be written")?;
         }
-        for (path, file) in files {
-            name(path, file)?;
-        }
-        Ok(())
+        name_all(files)
     }
-}
-
-/// Writes one file, whole or not at all.
-pub(super) fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
-    name(path, unnamed(path, contents)?)
 }
 
 fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
@@ -84,20 +82,31 @@ fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
     Ok(file)
 }
 
-fn name(path: &Path, file: NamedTempFile) -> Result<()> {
-    file.persist(path)
-        .map_err(|error| error.error)
-        .with_context(|| format!("{}: cannot be written", path.display()))?;
+/// Gives complete files their names. If one cannot have its name, those that were new are removed again.
+fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
+    let mut new = Vec::new();
+    for (path, file) in files {
+        let existed = path.exists();
+        if let Err(error) = file.persist(path) {
+            for path in new {
+                // What cannot be removed either is still a complete file.
+                let _ = std::fs::remove_file(path);
+            }
+            return Err(error.error)
+                .with_context(|| format!("{}: cannot be written", path.display()));
+        }
+        if !existed {
+            new.push(path);
+        }
+    }
     Ok(())
 }
 
-fn write_to_stdout(bytes: &[u8]) -> Result<()> {
-    let mut stdout = io::stdout().lock();
-    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        // The reader has seen enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result.context("standard output: cannot be written"),
-    }
+/// One spelling for all that a path can be called.
+fn canonical(path: &Path) -> PathBuf {
+    let folder = folder(path);
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+    path.file_name().map_or_else(|| path.to_path_buf(), |name| folder.join(name))
 }
 
 /// `LAYER=FILE.npy`

@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::input::{self, Format, Input};
 use super::memory;
 use super::output::Outputs;
+use super::speak::tell;
 use crate::cpu;
 #[cfg(feature = "gpu")]
 use crate::gpu::{GpuError, Headless};
@@ -65,26 +66,26 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let job = Job::new(args)?;
     let input = input::load(&job.input, job.format, job.size, job.frame)?;
     for note in &input.notes {
-        eprintln!("note: {note}");
+        tell(format_args!("note: {note}"));
     }
     let layers = job.outputs.layers().fold(LayerSet::COLOR, LayerSet::with);
     let image = render(&input, layers, &job.device)?;
-    job.outputs.write(&image)?;
+    job.outputs.write(&image, None)?;
     Ok(())
 }
 
 /// Renders on the device, and says so if that is not what the user would expect.
 pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
-    memory::check(&input.film, layers)?;
+    memory::check(&input.film, &input.size_from, layers)?;
     match device {
         Device::Cpu => on_cpu(input, layers),
         #[cfg(feature = "gpu")]
         Device::Adapter { name, or_cpu } => match Headless::open(name.as_deref()) {
             Ok(headless) => on_gpu(&headless, input, layers),
             Err(GpuError::NoAdapter) if *or_cpu => {
-                eprintln!(
+                tell(
                     "note: no Vulkan, Metal or DX12 adapter was found; \
-                     rendering on the CPU reference, which is slower"
+                     rendering on the CPU reference, which is slower",
                 );
                 on_cpu(input, layers)
             }

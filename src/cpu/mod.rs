@@ -16,6 +16,9 @@ mod trace;
 pub use shade::shade;
 pub use trace::trace;
 
+/// How many rows are handed out together, to all cores.
+const ROWS_AT_ONCE: usize = 4096;
+
 /// Renders a picture with one ray through the centre of every pixel.
 ///
 /// Rows run in parallel with the feature `parallel`; the picture does not depend on it.
@@ -30,14 +33,19 @@ pub fn render(
     layers: LayerSet,
 ) -> Result<Image, ImageTooLarge> {
     let mut image = Image::new(film.width(), film.height(), layers)?;
-    for_each_row(image.rows_mut(), |j, row| {
-        for i in 0..film.width() {
-            let location = film.relative_location(f64::from(i) + 0.5, j as f64 + 0.5);
-            let ray = camera.ray_in_world(location);
-            let hit = trace(scene, &ray);
-            row.set(i as usize, &shade(scene, settings, &ray, hit.as_ref()));
-        }
-    });
+    let height = film.height() as usize;
+    // In parts, because what a row's layers are borrowed with may be larger than a narrow row.
+    for start in (0..height).step_by(ROWS_AT_ONCE) {
+        let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
+        for_each_row(rows, |j, row| {
+            for i in 0..film.width() {
+                let (column, line) = (f64::from(i) + 0.5, (start + j) as f64 + 0.5);
+                let ray = camera.ray_in_world(film.relative_location(column, line));
+                let hit = trace(scene, &ray);
+                row.set(i as usize, &shade(scene, settings, &ray, hit.as_ref()));
+            }
+        });
+    }
     Ok(image)
 }
 

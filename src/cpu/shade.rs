@@ -1,6 +1,5 @@
 //! From a hit to a pixel. Twin of `shaders/shade.wgsl`.
 
-use crate::color::LinearRgb;
 use crate::image::{NO_ID, Pixel};
 use crate::ray::{Hit, Ray};
 use crate::scene::Scene;
@@ -11,18 +10,18 @@ use crate::settings::{Settings, Shading};
 pub fn shade(scene: &Scene, settings: &Settings, ray: &Ray, hit: Option<&Hit>) -> Pixel {
     let Some(hit) = hit else {
         return Pixel {
-            color: settings.background,
+            color: settings.background().to_array(),
             depth: f32::INFINITY,
             normal: [0.0; 3],
             id: NO_ID,
         };
     };
-    let surface = scene.colors()[hit.id as usize];
-    let color = match settings.shading {
+    let surface = scene.colors()[hit.id as usize].to_array();
+    let color = match settings.shading() {
         Shading::Flat => surface,
         Shading::Headlight => {
             let cosine = hit.normal.dot(ray.direction).abs();
-            LinearRgb(surface.0.map(|c| (f64::from(c) * cosine) as f32))
+            surface.map(|c| (f64::from(c) * cosine) as f32)
         }
     };
     Pixel { color, depth: hit.t as f32, normal: hit.normal.as_vec3().to_array(), id: hit.id }

@@ -4,14 +4,24 @@ use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPre
 
 use super::error::GpuError;
 
+/// More than one would cost start-up time, and list each GPU more than once.
+const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
+    Backends::METAL
+} else if cfg!(windows) {
+    Backends::DX12
+} else {
+    Backends::VULKAN
+};
+
 /// Every adapter, the best first: real GPUs before software, and of real GPUs the discrete before the
 /// integrated (the other way round if `WGPU_POWER_PREF=low`).
 ///
-/// `WGPU_BACKEND` restricts the backends. Validation layers are loaded only if `WGPU_VALIDATION=1`.
+/// One backend is asked, the platform's own: Metal, DX12, or elsewhere Vulkan. `WGPU_BACKEND` names
+/// others, such as `vulkan` on Windows. Validation layers are loaded only if `WGPU_VALIDATION=1`.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
-        backends: Backends::VULKAN | Backends::METAL | Backends::DX12,
+        backends: PLATFORM_BACKEND,
         // Not the default, which loads validation layers in debug builds: they cost start-up time,
         // and the same layers would have to be installed everywhere.
         flags: wgpu::InstanceFlags::empty(),
@@ -37,10 +47,23 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
     }
 }
 
+/// The adapters to try, the best first: one, if it is named, or all.
+///
+/// # Errors
+/// As [`index_of_choice`].
+pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
+    let mut adapters = adapters();
+    let index = index_of_choice(&adapters, name)?;
+    if name.is_some() || name_in_environment().is_some() {
+        return Ok(vec![adapters.swap_remove(index)]);
+    }
+    Ok(adapters)
+}
+
 /// The adapter that [`index_of_choice`] names.
 ///
 /// # Errors
-/// If there is no adapter, or none has such a name.
+/// As [`index_of_choice`].
 pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
     let mut adapters = adapters();
     let index = index_of_choice(&adapters, name)?;
@@ -53,14 +76,20 @@ pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
 /// # Errors
 /// If there is no adapter, or none has such a name.
 pub fn index_of_choice(adapters: &[Adapter], name: Option<&str>) -> Result<usize, GpuError> {
-    let from_environment = std::env::var("WGPU_ADAPTER_NAME").ok();
-    let Some(wanted) = name.or(from_environment.as_deref()) else {
-        return if adapters.is_empty() { Err(GpuError::NoAdapter) } else { Ok(0) };
+    if adapters.is_empty() && name.is_none() {
+        return Err(GpuError::NoAdapter);
+    }
+    let Some(wanted) = name.map(str::to_owned).or_else(name_in_environment) else {
+        return Ok(0);
     };
     let available: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let wanted_lowercase = wanted.to_lowercase();
     available
         .iter()
         .position(|name| name.to_lowercase().contains(&wanted_lowercase))
-        .ok_or_else(|| GpuError::UnknownAdapter { wanted: wanted.to_owned(), available })
+        .ok_or(GpuError::UnknownAdapter { wanted, available })
+}
+
+fn name_in_environment() -> Option<String> {
+    std::env::var("WGPU_ADAPTER_NAME").ok()
 }

@@ -61,6 +61,12 @@ pub enum GpuError {
     /// `record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
+    /// The frame was made for a renderer with other targets.
+    #[error("the frame was made for a renderer with other targets; make it for this one")]
+    OtherRenderer,
+    /// The frame's view is of another scene.
+    #[error("the frame's view is of another scene; call Frame::set_view with this one")]
+    OtherScene,
     /// The device ran out of memory.
     #[error("the device is out of memory; choose a smaller size or fewer spheres")]
     OutOfMemory,

@@ -4,9 +4,9 @@ use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
 use super::error::{GpuError, check_storage_size, scoped};
 use super::records;
-use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
-use super::scene_buffers::SceneBuffers;
-use super::tiles::Tile;
+use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
+use super::scene_buffers::{SceneBuffers, SceneId, part};
+use super::tiles::{self, Tile};
 use crate::camera::{Camera, CameraKind};
 use crate::film::Film;
 use crate::settings::Settings;
@@ -35,27 +35,36 @@ pub struct DataTargets<'a> {
 /// before it is given another view.
 #[derive(Debug)]
 pub struct Frame {
-    uniform: Buffer,
-    group: BindGroup,
+    color: ColorTarget,
+    data_layers: bool,
+    /// One record per band, each at a multiple of `stride`.
+    records: Buffer,
+    stride: usize,
+    rows_per_band: u32,
+    /// Group 0 of every kernel, one per band. All bands share one buffer of hits.
+    band_groups: Vec<BindGroup>,
     target_group: BindGroup,
     size: [u32; 2],
     view: Option<View>,
 }
 
 /// What recording needs to know of the view.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct View {
     pub(super) camera: CameraKind,
-    /// Of the part of the targets that is rendered.
-    pub(super) size: [u32; 2],
+    pub(super) scene: SceneId,
+    /// The sizes of the bands that are rendered, in their order.
+    pub(super) bands: Vec<[u32; 2]>,
 }
 
 impl Frame {
     /// A frame that renders into the given targets.
     ///
+    /// A picture whose hits (eight bytes a pixel) would not fit into one binding is rendered in bands.
+    ///
     /// # Errors
-    /// If a target is not of the format, size or usage that the renderer needs, or if the hits of one
-    /// picture (eight bytes a pixel) do not fit into a binding or into the device's memory.
+    /// If a target is not of the format, size or usage that the renderer needs, or if the device has no
+    /// memory left.
     pub fn new(
         renderer: &Renderer,
         device: &Device,
@@ -64,12 +73,23 @@ impl Frame {
         let views = checked_targets(renderer, targets)?;
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
-        let hit_bytes = u64::from(size[0]) * u64::from(size[1]) * size_of::<records::Hit>() as u64;
+        let hit_size = size_of::<records::Hit>() as u64;
+        let limits = device.limits();
+        let binding_limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let pixels_per_band = (binding_limit / hit_size).min(tiles::MAX_PIXELS);
+        // At most MAX_PIXELS, so it fits.
+        let rows_per_band = (pixels_per_band / u64::from(size[0])).max(1) as u32;
+        let rows_per_band = rows_per_band.min(size[1]);
+        let hit_bytes = u64::from(size[0]) * u64::from(rows_per_band) * hit_size;
         check_storage_size(device, "the buffer of hits", hit_bytes)?;
-        scoped(device, || {
-            let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        let record_size = size_of::<records::Frame>();
+        let alignment = limits.min_uniform_buffer_offset_alignment as usize;
+        let stride = record_size.next_multiple_of(alignment);
+        let bands = size[1].div_ceil(rows_per_band) as usize;
+        let (records, band_groups, target_group) = scoped(device, || {
+            let records = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole frame"),
-                size: size_of::<records::Frame>() as u64,
+                size: (bands * stride) as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
@@ -79,14 +99,20 @@ impl Frame {
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             });
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole frame"),
-                layout: &renderer.layouts.frame,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                    wgpu::BindGroupEntry { binding: 1, resource: hits.as_entire_binding() },
-                ],
-            });
+            let band_group = |band| {
+                device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("pinhole frame"),
+                    layout: &renderer.layouts.frame,
+                    entries: &[
+                        wgpu::BindGroupEntry {
+                            binding: 0,
+                            resource: part(&records, band * stride, record_size),
+                        },
+                        wgpu::BindGroupEntry { binding: 1, resource: hits.as_entire_binding() },
+                    ],
+                })
+            };
+            let band_groups = (0..bands).map(band_group).collect();
             let entries: Vec<_> = (0..)
                 .zip(views)
                 .map(|(binding, view)| wgpu::BindGroupEntry {
@@ -99,7 +125,19 @@ impl Frame {
                 layout: &renderer.layouts.targets,
                 entries: &entries,
             });
-            Self { uniform, group, target_group, size, view: None }
+            (records, band_groups, target_group)
+        })?;
+        let Renderer { color, data_layers, .. } = *renderer;
+        Ok(Self {
+            color,
+            data_layers,
+            records,
+            stride,
+            rows_per_band,
+            band_groups,
+            target_group,
+            size,
+            view: None,
         })
     }
 
@@ -125,7 +163,7 @@ impl Frame {
                 expected: format!("as large as the film, {}", describe_size(film_size)),
             });
         }
-        let tile = Tile { origin: [0, 0], size: film_size };
+        let tile = Tile { origin: [0, 0], size: film_size, in_target: [0, 0] };
         self.set_tile(queue, scene, camera, film, tile, settings);
         Ok(())
     }
@@ -140,25 +178,41 @@ impl Frame {
         tile: Tile,
         settings: &Settings,
     ) {
-        let record = records::Frame::new(
-            &camera.vectors(),
-            scene.origin(),
-            scene.sphere_count(),
-            film,
-            tile,
-            settings,
-        );
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&record));
-        self.view = Some(View { camera: camera.kind(), size: tile.size });
+        let (vectors, origin) = (camera.vectors(), scene.origin());
+        let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
+        let mut bytes = vec![0_u8; bands.len() * self.stride];
+        for (target, band) in bytes.chunks_mut(self.stride).zip(&bands) {
+            let record =
+                records::Frame::new(&vectors, origin, scene.sphere_count(), film, *band, settings);
+            target[..size_of::<records::Frame>()].copy_from_slice(bytemuck::bytes_of(&record));
+        }
+        queue.write_buffer(&self.records, 0, &bytes);
+        self.view = Some(View {
+            camera: camera.kind(),
+            scene: scene.id(),
+            bands: bands.into_iter().map(|band| band.size).collect(),
+        });
     }
 
-    pub(super) fn view(&self) -> Option<View> {
-        self.view
+    /// The view, if it is one that this renderer can record of this scene.
+    pub(super) fn view(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+    ) -> Result<&View, GpuError> {
+        let view = self.view.as_ref().ok_or(GpuError::NoView)?;
+        if (self.color, self.data_layers) != (renderer.color, renderer.data_layers) {
+            return Err(GpuError::OtherRenderer);
+        }
+        if view.scene != scene.id() {
+            return Err(GpuError::OtherScene);
+        }
+        Ok(view)
     }
 
-    /// Group 0 of every kernel.
-    pub(super) fn group(&self) -> &BindGroup {
-        &self.group
+    /// Group 0 of every kernel, one per band.
+    pub(super) fn band_groups(&self) -> &[BindGroup] {
+        &self.band_groups
     }
 
     /// Group 2 of `shade`.

@@ -1,6 +1,6 @@
 //! Rendering without a display, on a device of our own.
 //!
-//! The only file of the library that submits, polls or waits.
+//! The only file of the library that submits, polls, or waits for a device's work.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -49,6 +49,12 @@ impl Faults {
         }
     }
 
+    /// Forgets what an earlier render or the caller's own commands met; a lost device stays lost.
+    fn forget(&self) {
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        first.take_if(|fault| !matches!(fault, GpuError::DeviceLost { .. }));
+    }
+
     fn check(&self) -> Result<(), GpuError> {
         match self.first.lock().unwrap_or_else(PoisonError::into_inner).clone() {
             Some(fault) => Err(fault),
@@ -58,12 +64,21 @@ impl Faults {
 }
 
 impl Headless {
-    /// Opens the adapter that [`adapter::choose`] names.
+    /// Opens the first of [`adapter::candidates`] that gives a device.
     ///
     /// # Errors
-    /// If there is no such adapter, or it gives no device.
+    /// If there is no such adapter, or none gives a device.
     pub fn open(adapter_name: Option<&str>) -> Result<Self, GpuError> {
-        Self::from_adapter(&adapter::choose(adapter_name)?)
+        // Why the best one failed, if all do.
+        let mut refusal = GpuError::NoAdapter;
+        for adapter in &adapter::candidates(adapter_name)? {
+            match Self::from_adapter(adapter) {
+                Ok(headless) => return Ok(headless),
+                Err(error) if refusal == GpuError::NoAdapter => refusal = error,
+                Err(_) => {}
+            }
+        }
+        Err(refusal)
     }
 
     /// Opens an adapter.
@@ -134,6 +149,7 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
+        self.faults.forget();
         self.try_render(scene, camera, film, settings, layers)
             .map_err(|error| self.explained(error))
     }

@@ -30,8 +30,10 @@ pub(super) struct Frame {
     film_size: [u32; 2],
     tile_origin: [u32; 2],
     tile_size: [u32; 2],
+    target_origin: [u32; 2],
     y_sign: f32,
     sphere_count: u32,
+    _pad: [u32; 2],
 }
 
 #[repr(C)]
@@ -82,19 +84,21 @@ impl Frame {
     ) -> Self {
         Self {
             camera: Camera::new(vectors, scene_origin),
-            background: settings.background.0,
-            shading: match settings.shading {
+            background: settings.background().to_array(),
+            shading: match settings.shading() {
                 Shading::Flat => 0,
                 Shading::Headlight => 1,
             },
             film_size: [film.width(), film.height()],
             tile_origin: tile.origin,
             tile_size: tile.size,
+            target_origin: tile.in_target,
             y_sign: match film.y_axis() {
                 YAxis::Up => 1.0,
                 YAxis::Down => -1.0,
             },
             sphere_count,
+            _pad: [0; 2],
         }
     }
 }
@@ -150,6 +154,7 @@ mod tests {
                 film_size,
                 tile_origin,
                 tile_size,
+                target_origin,
                 y_sign,
                 sphere_count
             }),
@@ -186,7 +191,7 @@ mod tests {
     #[test]
     fn shading_numbers_are_the_same_in_rust_and_wgsl() {
         let film = Film::new(1, 1).unwrap();
-        let tile = Tile { origin: [0, 0], size: [1, 1] };
+        let tile = Tile { origin: [0, 0], size: [1, 1], in_target: [0, 0] };
         let vectors = CameraVectors {
             origin: DVec3::ZERO,
             right: DVec3::X,
@@ -195,7 +200,7 @@ mod tests {
         };
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
-            let settings = Settings { shading, ..Settings::default() };
+            let settings = Settings::default().with_shading(shading);
             let frame = Frame::new(&vectors, DVec3::ZERO, 0, &film, tile, &settings);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");

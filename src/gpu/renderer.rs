@@ -7,10 +7,8 @@ use super::frame::Frame;
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
 use super::shaders::{self, Kernel};
+use super::tiles::WORKGROUP_SIDE;
 use crate::camera::CameraKind;
-
-/// The side of a workgroup, as in `@workgroup_size(8, 8)`.
-const WORKGROUP_SIDE: u32 = 8;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 pub(super) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
@@ -18,6 +16,7 @@ pub(super) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
 
 /// The texture that colour is written to. All of them work on every WebGPU device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ColorTarget {
     /// `Rgba8Unorm`, holding sRGB: a flat colour comes out as exactly its bytes. To sample it as
     /// linear light, view the texture as `Rgba8UnormSrgb`.
@@ -115,34 +114,37 @@ impl Renderer {
     /// encoder; they are overwritten whole.
     ///
     /// # Errors
-    /// If the frame has no view, or a camera that this renderer was not built for.
+    /// If the frame has no view of this scene, was made for other targets, or has a camera that this
+    /// renderer was not built for.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         scene: &SceneBuffers,
         frame: &Frame,
     ) -> Result<(), GpuError> {
-        let view = frame.view().ok_or(GpuError::NoView)?;
+        let view = frame.view(self, scene)?;
         let pipelines = self
             .pipelines
             .iter()
             .find(|pipelines| pipelines.camera == view.camera)
             .ok_or(GpuError::NoCamera { camera: view.camera })?;
-        let [width, height] = view.size.map(|side| side.div_ceil(WORKGROUP_SIDE));
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
         });
-        pass.set_bind_group(0, frame.group(), &[]);
-        pass.set_pipeline(&pipelines.trace);
-        for slice in scene.slices() {
-            pass.set_bind_group(1, slice, &[]);
+        for (band, size) in frame.band_groups().iter().zip(&view.bands) {
+            let [width, height] = size.map(|side| side.div_ceil(WORKGROUP_SIDE));
+            pass.set_bind_group(0, band, &[]);
+            pass.set_pipeline(&pipelines.trace);
+            for slice in scene.slices() {
+                pass.set_bind_group(1, slice, &[]);
+                pass.dispatch_workgroups(width, height, 1);
+            }
+            pass.set_pipeline(&pipelines.shade);
+            pass.set_bind_group(1, scene.group(), &[]);
+            pass.set_bind_group(2, frame.target_group(), &[]);
             pass.dispatch_workgroups(width, height, 1);
         }
-        pass.set_pipeline(&pipelines.shade);
-        pass.set_bind_group(1, scene.group(), &[]);
-        pass.set_bind_group(2, frame.target_group(), &[]);
-        pass.dispatch_workgroups(width, height, 1);
         Ok(())
     }
 }
@@ -199,13 +201,21 @@ mod tests {
         }
     }
 
+    /// What only validation finds, and not the parser, is reported at its place as well.
     #[test]
     fn a_refused_kernel_is_an_error_that_names_the_part() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         let layouts = Layouts::new(&device, ColorTarget::Srgb8, false);
-        // The shade kernel without its groups.
-        let kernel = shaders::shade_kernel(CameraKind::Pinhole, ColorTarget::Srgb8, false);
-        let error = pipeline(&device, &kernel, &[&layouts.frame]).unwrap_err();
-        assert!(matches!(error, GpuError::Device { .. }), "{error}");
+        for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
+        {
+            let kernel =
+                shaders::trace_kernel(CameraKind::Pinhole).with_part("broken.wgsl", broken);
+            match pipeline(&device, &kernel, &[&layouts.frame, &layouts.slice]) {
+                Err(GpuError::Device { message }) => {
+                    assert!(message.contains("broken.wgsl:"), "{message}");
+                }
+                other => panic!("{other:?}"),
+            }
+        }
     }
 }

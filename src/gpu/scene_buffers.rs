@@ -1,6 +1,7 @@
 //! A scene on a device.
 
 use std::num::NonZeroU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 use wgpu::{BindGroup, Buffer, Device, Queue};
@@ -16,9 +17,21 @@ use crate::scene::Scene;
 /// multiple of 2¹⁴, so that a slice starts at a multiple of any offset alignment.
 const SLICE_LEN: usize = 3 << 14;
 
+/// Tells scenes on devices apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SceneId(u64);
+
+impl SceneId {
+    fn new() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
 /// A scene in buffers of a device. Per scene: made once, used by any number of frames.
 #[derive(Debug)]
 pub struct SceneBuffers {
+    id: SceneId,
     origin: DVec3,
     sphere_count: u32,
     group: BindGroup,
@@ -47,7 +60,7 @@ impl SceneBuffers {
         )?;
         let mut spheres = scene.spheres();
         let mut colors: Vec<records::Color> =
-            scene.colors().iter().map(|c| [c.0[0], c.0[1], c.0[2], 0.0]).collect();
+            scene.colors().iter().map(|c| pad(c.to_array())).collect();
         if scene.is_empty() {
             spheres = &[[0.0; 4]];
             colors.push([0.0; 4]);
@@ -66,7 +79,17 @@ impl SceneBuffers {
             });
             (group, slice_groups(renderer, device, queue, &spheres, scene.len()))
         })?;
-        Ok(Self { origin: scene.origin(), sphere_count: scene.len() as u32, group, slices })
+        Ok(Self {
+            id: SceneId::new(),
+            origin: scene.origin(),
+            sphere_count: scene.len() as u32,
+            group,
+            slices,
+        })
+    }
+
+    pub(super) fn id(&self) -> SceneId {
+        self.id
     }
 
     pub(super) fn origin(&self) -> DVec3 {
@@ -109,13 +132,6 @@ fn slice_groups(
         target[..size_of::<records::Slice>()].copy_from_slice(bytemuck::bytes_of(slice));
     }
     let uniforms = buffer(device, queue, "pinhole slices", wgpu::BufferUsages::UNIFORM, &bytes);
-    let binding = |buffer, offset: usize, size: usize| {
-        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer,
-            offset: offset as u64,
-            size: NonZeroU64::new(size as u64),
-        })
-    };
     let sphere_size = size_of::<records::Sphere>();
     slices
         .iter()
@@ -129,13 +145,26 @@ fn slice_groups(
                 entries: &[
                     wgpu::BindGroupEntry {
                         binding: 0,
-                        resource: binding(&uniforms, index * stride, size_of::<records::Slice>()),
+                        resource: part(&uniforms, index * stride, size_of::<records::Slice>()),
                     },
-                    wgpu::BindGroupEntry { binding: 1, resource: binding(spheres, first, bytes) },
+                    wgpu::BindGroupEntry { binding: 1, resource: part(spheres, first, bytes) },
                 ],
             })
         })
         .collect()
+}
+
+fn pad([r, g, b]: [f32; 3]) -> records::Color {
+    [r, g, b, 0.0]
+}
+
+/// Binds a part of a buffer, in bytes.
+pub(super) fn part(buffer: &Buffer, offset: usize, size: usize) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+        buffer,
+        offset: offset as u64,
+        size: NonZeroU64::new(size as u64),
+    })
 }
 
 fn buffer<T: bytemuck::Pod>(
@@ -154,4 +183,36 @@ fn buffer<T: bytemuck::Pod>(
     });
     queue.write_buffer(&buffer, 0, contents);
     buffer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::RendererOptions;
+    use crate::{LinearRgb, Sphere};
+
+    /// On a device whose bindings hold 1024 bytes: 64 spheres.
+    #[test]
+    fn too_many_spheres_for_a_binding_are_an_error_before_any_allocation() {
+        let required_limits =
+            wgpu::Limits { max_storage_buffer_binding_size: 1024, ..wgpu::Limits::default() };
+        let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = Device::noop(&descriptor);
+        let renderer = Renderer::new(&device, &RendererOptions::default()).unwrap();
+        let upload = |count| {
+            let sphere = Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
+            let scene = Scene::new(&vec![sphere; count]).unwrap();
+            SceneBuffers::new(&renderer, &device, &queue, &scene)
+        };
+        assert!(upload(64).is_ok());
+        assert_eq!(
+            upload(65).unwrap_err(),
+            GpuError::Limit {
+                what: "the buffer of spheres",
+                needed: 65 * 16,
+                limit_name: "max_storage_buffer_binding_size",
+                limit: 1024,
+            }
+        );
+    }
 }

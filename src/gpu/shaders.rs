@@ -86,20 +86,34 @@ impl Kernel {
             })
     }
 
+    /// The kernel with one more part.
+    #[cfg(test)]
+    pub(super) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
+        self.parts.push(Part { file, source });
+        self
+    }
+
     /// The composed WGSL.
     pub(super) fn source(&self) -> String {
         self.parts.iter().flat_map(|part| [part.source, "\n"]).collect()
     }
 
-    /// Replaces every place `wgsl:LINE:COLUMN` in a message of naga's by a place in a part.
+    /// Replaces every place in the composed WGSL, in a message of naga's or wgpu's, by a place in a part.
+    ///
+    /// The parser calls the text `wgsl`, the validator by its label, which is the kernel's name.
     pub(super) fn with_places_in_parts(&self, message: &str) -> String {
-        let mut pieces = message.split("wgsl:");
+        let places = self.replace_places("wgsl:", message);
+        self.replace_places(&format!("{}:", self.name()), &places)
+    }
+
+    fn replace_places(&self, prefix: &str, message: &str) -> String {
+        let mut pieces = message.split(prefix);
         let mut text = pieces.next().unwrap_or_default().to_owned();
         for piece in pieces {
             let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
             match piece[..digits].parse().ok().and_then(|line| self.place(line)) {
                 Some((file, line)) => text += &format!("{file}:{line}{}", &piece[digits..]),
-                None => text += &format!("wgsl:{piece}"),
+                None => text += &format!("{prefix}{piece}"),
             }
         }
         text

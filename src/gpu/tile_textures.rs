@@ -55,9 +55,9 @@ impl TileTextures {
     /// Copies the mapped buffers to the tile's place in the image, and unmaps them.
     pub(super) fn read_into(&self, image: &mut Image, tile: Tile) -> Result<(), GpuError> {
         let [x, y] = tile.origin.map(|start| start as usize);
-        let columns = x..x + tile.size[0] as usize;
-        let mut rows = image.rows_mut();
-        let rows = &mut rows[y..];
+        let [width, height] = tile.size.map(|side| side as usize);
+        let columns = x..x + width;
+        let mut rows = image.rows_mut(y..y + height);
         self.color.read_rows(tile.size, |j, rgba: &[[f32; 4]]| {
             for (pixel, [r, g, b, _]) in rows[j].color[columns.clone()].iter_mut().zip(rgba) {
                 *pixel = [*r, *g, *b];

@@ -2,31 +2,46 @@
 
 use crate::film::Film;
 
-/// The most pixels of a tile. With it no buffer of a tile exceeds 64 MiB, half of WebGPU's smallest
-/// limit, whatever the device.
-const MAX_PIXELS: u64 = 1 << 22;
+/// The most pixels of a tile: its largest buffer then takes about 64 MiB, half of WebGPU's smallest limit.
+pub(super) const MAX_PIXELS: u64 = 1 << 22;
 
-/// The fewest pixels that a tile is cut down to for the sake of time.
-const MIN_PIXELS: u64 = 1 << 14;
+/// About how many spheres are tried in one submission: some seconds of a software device's time. Tiles
+/// are not cut below one workgroup, so that with more than 2²⁴ spheres it becomes more.
+const TESTS_PER_SUBMISSION: u64 = 1 << 30;
 
-/// About how many spheres are tried in one submission, so that it ends within seconds even on a
-/// software device.
-const TESTS_PER_SUBMISSION: u64 = 1 << 32;
+/// The side of a workgroup, as in `@workgroup_size(8, 8)`.
+pub(super) const WORKGROUP_SIDE: u32 = 8;
 
 /// A rectangle of the film, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Tile {
     pub(super) origin: [u32; 2],
     pub(super) size: [u32; 2],
+    /// Where it lies in the target textures.
+    pub(super) in_target: [u32; 2],
 }
 
 /// The size of tiles for a device whose textures have sides of at most `side_limit` pixels.
 pub(super) fn tile_size(film: &Film, side_limit: u32, sphere_count: usize) -> [u32; 2] {
-    let pixels = (TESTS_PER_SUBMISSION / sphere_count.max(1) as u64).clamp(MIN_PIXELS, MAX_PIXELS);
-    let width = film.width().min(side_limit);
-    // At most MAX_PIXELS, so it fits; at least one row, however wide.
-    let rows = (pixels / u64::from(width)).max(1) as u32;
-    [width, rows.min(film.height()).min(side_limit)]
+    let pixels = (TESTS_PER_SUBMISSION / sphere_count.max(1) as u64).min(MAX_PIXELS) as u32;
+    let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
+    if pixels / width >= WORKGROUP_SIDE {
+        return [width, height.min(pixels / width)];
+    }
+    // One row of workgroups, and as many of them as may be.
+    let side = WORKGROUP_SIDE;
+    let narrow = (pixels / (side * side)).max(1) * side;
+    [width.min(narrow), height.min(side)]
+}
+
+/// Cuts a tile into bands of at most so many rows.
+pub(super) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
+    let height = tile.size[1];
+    (0..height).step_by(rows as usize).map(move |y| Tile {
+        origin: [tile.origin[0], tile.origin[1] + y],
+        size: [tile.size[0], rows.min(height - y)],
+        in_target: [tile.in_target[0], tile.in_target[1] + y],
+    })
 }
 
 /// The tiles that cover the film; those at the right and lower edge may be smaller.
@@ -36,6 +51,7 @@ pub(super) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Ti
         (0..width).step_by(tile_size[0] as usize).map(move |x| Tile {
             origin: [x, y],
             size: [tile_size[0].min(width - x), tile_size[1].min(height - y)],
+            in_target: [0, 0],
         })
     })
 }
@@ -65,10 +81,19 @@ mod tests {
     }
 
     #[test]
-    fn more_spheres_make_smaller_tiles() {
+    fn more_spheres_make_smaller_tiles_of_whole_workgroups() {
         let film = Film::new(4096, 4096).unwrap();
-        let pixels = |spheres| tile_size(&film, 8192, spheres).iter().product::<u32>();
-        assert_eq!(pixels(3), 1 << 22);
-        assert!(pixels(100_000) < pixels(3));
+        assert_eq!(tile_size(&film, 8192, 3), [4096, 1024]);
+        assert_eq!(tile_size(&film, 8192, 10_000), [4096, 26]);
+        assert_eq!(tile_size(&film, 8192, 1_000_000), [128, 8]);
+        assert_eq!(tile_size(&film, 8192, 100_000_000), [8, 8]);
+    }
+
+    #[test]
+    fn bands_follow_each_other_in_film_and_target() {
+        let tile = Tile { origin: [5, 7], size: [11, 10], in_target: [0, 0] };
+        let bands: Vec<Tile> = bands(tile, 4).collect();
+        assert_eq!(bands.iter().map(|band| band.size[1]).collect::<Vec<_>>(), [4, 4, 2]);
+        assert_eq!(bands[2], Tile { origin: [5, 15], size: [11, 2], in_target: [0, 8] });
     }
 }

@@ -3,7 +3,7 @@
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::color::LinearRgb;
+use crate::color::to_srgb8;
 use crate::image::Image;
 
 /// The picture as a PNG file; colours beyond [0, 1] are clamped.
@@ -33,10 +33,10 @@ pub struct PngError {
 #[cfg(feature = "parallel")]
 fn srgb8(color: &[[f32; 3]]) -> Vec<u8> {
     use rayon::prelude::*;
-    color.par_iter().flat_map_iter(|rgb| LinearRgb(*rgb).to_srgb8()).collect()
+    color.par_iter().flat_map_iter(|rgb| to_srgb8(*rgb)).collect()
 }
 
 #[cfg(not(feature = "parallel"))]
 fn srgb8(color: &[[f32; 3]]) -> Vec<u8> {
-    color.iter().flat_map(|rgb| LinearRgb(*rgb).to_srgb8()).collect()
+    color.iter().flat_map(|rgb| to_srgb8(*rgb)).collect()
 }

@@ -5,9 +5,12 @@
 //! `Properties=name:type:columns:…`, as ASE and OVITO write it) names the columns; of these `species`
 //! (or `Z`), `pos`, `radius` and `color` are used. Lengths are taken as they are, in Å.
 
+use std::collections::HashSet;
+
 use super::elements::{Appearance, appearance};
 use crate::color::LinearRgb;
-use crate::sphere::Sphere;
+use crate::sphere::{Sphere, SphereError};
+use crate::text::shortened;
 
 /// The atoms of one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +22,7 @@ pub struct Frame {
 }
 
 /// Why a file is no XYZ file, or has no such frame. Lines count from 1.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum XyzError {
     /// A frame must start with the number of its atoms.
@@ -32,6 +35,9 @@ pub enum XyzError {
         /// The frame before, if there is one.
         previous: Option<DeclaredFrame>,
     },
+    /// There is no frame at all.
+    #[error("the file is empty; an XYZ file starts with the number of its atoms")]
+    Empty,
     /// The file ends before the frame does.
     #[error(
         "line {}: frame {} declares {} atoms, but the file ends after {found}",
@@ -44,8 +50,13 @@ pub enum XyzError {
         found: usize,
     },
     /// An atom's line has too few columns.
-    #[error("line {line}: the {what} is missing; the line has {columns} columns")]
+    #[error(
+        "line {line}: the {what} is missing; the line has {columns} columns (frame {} declares {} atoms on line {})",
+        frame.index, frame.atoms, frame.line
+    )]
     MissingColumn {
+        /// The frame.
+        frame: DeclaredFrame,
         /// Where.
         line: usize,
         /// Which value.
@@ -62,6 +73,16 @@ pub enum XyzError {
         what: &'static str,
         /// The text as it is.
         found: String,
+    },
+    /// An atom is out of range.
+    #[error("line {line}: atom {atom}: {error}")]
+    Sphere {
+        /// Where.
+        line: usize,
+        /// Its number in the frame, from 0.
+        atom: usize,
+        /// What is wrong with it.
+        error: SphereError,
     },
     /// The list of properties of an extended XYZ frame cannot be used.
     #[error("line {line}: {message}")]
@@ -112,6 +133,8 @@ fn after_frame(previous: &Option<DeclaredFrame>) -> String {
 /// # Errors
 /// If the text is no XYZ, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Frame, XyzError> {
+    // Some editors put a byte order mark before UTF-8.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = Lines { rest: bytes, line: 0 };
     let mut previous = None;
     let mut index = 0;
@@ -126,7 +149,7 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Frame, XyzError> {
         index += 1;
     }
     if index == 0 {
-        return Err(XyzError::Count { line: lines.line, found: String::new(), previous: None });
+        return Err(XyzError::Empty);
     }
     Err(XyzError::NoSuchFrame { wanted: frame, frames: index })
 }
@@ -193,22 +216,24 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
     let columns = Columns::from_comment(comment)
         .map_err(|message| XyzError::Properties { line: lines.line, message })?;
     let mut spheres = Vec::new();
-    let mut unknown_species: Vec<String> = Vec::new();
+    let mut unknown_species = Vec::new();
+    let mut seen = HashSet::new();
     // Neighbours are often of one species, and the table is searched by symbol.
     let mut last: Option<(&str, Appearance)> = None;
     for found in 0..frame.atoms {
         let text = lines.next()?.ok_or(XyzError::TooFewAtoms { frame, found })?;
-        let atom = Atom { line: lines.line, values: text.split_whitespace().collect() };
+        let values = text.split_whitespace().collect();
+        let atom = Atom { frame, line: lines.line, values };
         let species = atom.text(columns.species, "species")?;
         let look = match last {
             Some((name, look)) if name == species => look,
             _ => appearance(species),
         };
         last = Some((species, look));
-        if !look.is_element && !unknown_species.iter().any(|name| name == species) {
+        if !look.is_element && seen.insert(species) {
             unknown_species.push(species.to_owned());
         }
-        spheres.push(Sphere {
+        let sphere = Sphere {
             center: [
                 atom.number(columns.position, "x coordinate")?,
                 atom.number(columns.position + 1, "y coordinate")?,
@@ -222,7 +247,10 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
                 Some(column) => atom.color(column)?,
                 None => look.color,
             },
-        });
+        };
+        let out_of_range = |error| XyzError::Sphere { line: atom.line, atom: found, error };
+        sphere.check().map_err(out_of_range)?;
+        spheres.push(sphere);
     }
     Ok(Frame { spheres, unknown_species })
 }
@@ -303,14 +331,17 @@ fn value_of<'a>(key: &str, comment: &'a str) -> Option<&'a str> {
 
 /// The columns of one line.
 struct Atom<'a> {
+    frame: DeclaredFrame,
     line: usize,
     values: Vec<&'a str>,
 }
 
 impl<'a> Atom<'a> {
     fn text(&self, column: usize, what: &'static str) -> Result<&'a str, XyzError> {
-        let (line, columns) = (self.line, self.values.len());
-        self.values.get(column).copied().ok_or(XyzError::MissingColumn { line, what, columns })
+        let Self { frame, line, ref values } = *self;
+        let columns = values.len();
+        let missing = XyzError::MissingColumn { frame, line, what, columns };
+        values.get(column).copied().ok_or(missing)
     }
 
     fn number(&self, column: usize, what: &'static str) -> Result<f64, XyzError> {
@@ -336,13 +367,4 @@ impl<'a> Atom<'a> {
 fn parse_number(text: &str) -> Option<f64> {
     let number: f64 = text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse()).ok()?;
     number.is_finite().then_some(number)
-}
-
-/// The text as one message can hold it.
-fn shortened(text: &str) -> String {
-    const MOST: usize = 40;
-    if text.chars().count() <= MOST {
-        return text.to_owned();
-    }
-    text.chars().take(MOST).chain(['…']).collect()
 }

@@ -7,7 +7,8 @@ use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Shading, Sphere
 use crate::support::View;
 
 fn headlight() -> Settings {
-    Settings { shading: Shading::Headlight, background: LinearRgb([0.1, 0.2, 0.3]) }
+    let background = LinearRgb::new([0.1, 0.2, 0.3]).unwrap();
+    Settings::default().with_shading(Shading::Headlight).with_background(background)
 }
 
 /// One white sphere of radius 2 at the origin, seen in parallel along −z from z = 8, a pixel per unit.
@@ -88,7 +89,7 @@ fn three_spheres_have_exactly_their_colors_and_places() {
             2 => [0, 0, 0xff],
             _ => [0xb0, 0xe0, 0xe6],
         };
-        assert_eq!(LinearRgb(*color).to_srgb8(), expected);
+        assert_eq!(pinhole::color::to_srgb8(*color), expected);
         let sphere = (*id).min(3) as usize;
         pixels[sphere] += 1;
         columns[sphere] += index as u64 % 800;

@@ -35,6 +35,7 @@ fn ways_to_write_a_file() {
         ("tabs", " 1 \n\nO\t0\t0\t0\n"),
         ("more columns", "1\n\nO 0 0 0 0.1 0.2 0.3 note\n"),
         ("exponents of Fortran", "1\n\nO 0.0D+00 0d0 0E0\n"),
+        ("a byte order mark", "\u{feff}1\n\nO 0 0 0\n"),
         ("blank lines before and behind", "\n\n1\n\nO 0 0 0\n\n \n"),
         ("an empty species list key", "1\nProperties2=x\nO 0 0 0\n"),
     ] {
@@ -69,7 +70,8 @@ fn unknown_species_are_reported_once_each() {
 #[test]
 fn errors_name_line_and_remedy() {
     for (text, expected) in [
-        ("", "line 0: `` is no number of atoms"),
+        ("", "the file is empty; an XYZ file starts with the number of its atoms"),
+        ("\n \n", "the file is empty; an XYZ file starts with the number of its atoms"),
         ("three\n", "line 1: `three` is no number of atoms"),
         ("-1\n\n", "line 1: `-1` is no number of atoms"),
         ("3\n\nO 0 0 0\nH 0 0 1\n", "line 1: frame 0 declares 3 atoms, but the file ends after 2"),
@@ -81,8 +83,14 @@ fn errors_name_line_and_remedy() {
         ("1\n\nO 0 zero 0\n", "line 3: the y coordinate is `zero`, which is no finite number"),
         ("1\n\nO 0 0 nan\n", "line 3: the z coordinate is `nan`, which is no finite number"),
         ("1\n\nO inf 0 0\n", "line 3: the x coordinate is `inf`, which is no finite number"),
-        ("1\n\nO 0 0\n", "line 3: the z coordinate is missing; the line has 3 columns"),
-        ("1\n\n\n", "line 3: the species is missing; the line has 0 columns"),
+        (
+            "1\n\nO 0 0\n",
+            "line 3: the z coordinate is missing; the line has 3 columns (frame 0 declares 1 atoms on line 1)",
+        ),
+        (
+            "1\n\n\n",
+            "line 3: the species is missing; the line has 0 columns (frame 0 declares 1 atoms on line 1)",
+        ),
         ("1\nProperties=species:S:1\nO 0 0 0\n", "line 2: Properties lacks pos:R:3"),
         ("1\nProperties=pos:R:3\n0 0 0\n", "line 2: Properties has neither species:S:1 nor Z:I:1"),
         (
@@ -93,6 +101,22 @@ fn errors_name_line_and_remedy() {
         assert_eq!(message(text), expected);
     }
     assert_eq!(read(b"1\n\nO \xff 0 0\n", 0), Err(XyzError::NotText { line: 3 }));
+}
+
+#[test]
+fn atoms_out_of_range_are_named_by_line() {
+    let with_radius = "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n";
+    assert!(message(with_radius).starts_with("line 3: atom 0: its radius is -2; "));
+    let far = "2\n\nO 0 0 0\nO 0 1e30 0\n";
+    assert!(message(far).starts_with("line 4: atom 1: its center is (0, 1"), "{}", message(far));
+}
+
+/// A thousand times as many names must not take a million times as long.
+#[test]
+fn many_unknown_species() {
+    let text: String = (0..50_000).map(|i| format!("bead{i} 0 0 0\n")).collect();
+    let frame = read(format!("50000\n\n{text}").as_bytes(), 0).unwrap();
+    assert_eq!(frame.unknown_species.len(), 50_000);
 }
 
 /// A count that no memory could hold must not be believed.

@@ -5,7 +5,7 @@ use pinhole::LayerSet;
 
 use crate::headless;
 use crate::scenes;
-use crate::support::compare::compare;
+use crate::support::compare::{Picture, compare};
 
 /// The most pixels, in parts of all, whose id may be one of two right ones.
 const MAX_AMBIGUOUS: f64 = 1e-3;
@@ -22,7 +22,8 @@ pub(crate) fn trials() -> Vec<Trial> {
                     &view.settings,
                     LayerSet::ALL,
                 )?;
-                let comparison = compare(&view, &view.reference(), &image);
+                let reference = Picture::from(&view.reference());
+                let comparison = compare(&view, &reference, &Picture::from(&image));
                 if let Some(first) = comparison.violations.first() {
                     let count = comparison.violations.len();
                     return Err(format!("{count} violations, the first is {first:?}").into());

@@ -1,11 +1,13 @@
 //! Recording into a foreign device's textures inside a foreign encoder.
 
+use std::sync::{Arc, Mutex};
+
 use libtest_mimic::Trial;
 use pinhole::camera::CameraKind;
 use pinhole::film::Film;
 use pinhole::gpu::{
-    ColorTarget, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers, Targets,
-    adapter, wgpu,
+    ColorTarget, DataTargets, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers,
+    Targets, adapter, wgpu,
 };
 use pinhole::image::NO_ID;
 
@@ -16,6 +18,8 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("embedding::a_foreign_encoder_gets_the_spheres_in_its_texture", foreign_frame),
         trial("embedding::one_encoder_holds_several_views", several_views),
+        trial("embedding::linear_colors_and_data_layers_in_the_hosts_textures", data_layers),
+        trial("embedding::what_wgpu_refuses_never_reaches_the_hosts_handler", hosts_handler),
         trial("embedding::unfit_targets_are_refused", unfit_targets),
         trial("embedding::what_is_not_ready_is_refused", not_ready),
     ]
@@ -54,13 +58,14 @@ impl Host {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// The bytes of a texture of four bytes a pixel, after running the encoder.
+    /// The bytes of a texture, after running the encoder.
     fn submit_and_read(
         &self,
         mut encoder: wgpu::CommandEncoder,
         texture: &wgpu::Texture,
     ) -> Vec<u8> {
-        let row = (texture.width() * 4).next_multiple_of(256);
+        let used = texture.width() * texture.format().block_copy_size(None).unwrap();
+        let row = used.next_multiple_of(256);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: u64::from(row * texture.height()),
@@ -83,8 +88,7 @@ impl Host {
         buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
         self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
         let bytes = buffer.get_mapped_range(..).unwrap();
-        let used = texture.width() as usize * 4;
-        bytes.chunks(row as usize).flat_map(|row| row[..used].to_vec()).collect()
+        bytes.chunks(row as usize).flat_map(|row| row[..used as usize].to_vec()).collect()
     }
 }
 
@@ -103,7 +107,7 @@ fn size_of_film(film: &Film) -> [u32; 2] {
 /// The bytes that the CPU reference gives, from its ids, so that no rounding is involved.
 fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
-    let background = view.settings.background;
+    let background = view.settings.background();
     let color = |id: &u32| {
         if *id == NO_ID { background } else { view.scene.colors()[*id as usize] }
     };
@@ -199,6 +203,68 @@ fn unfit_targets(_: &'static Headless) {
     // Nothing of this reached the host's device, or it would have panicked.
 }
 
+fn data_layers(_: &'static Headless) {
+    let host = Host::new();
+    let view = View::three_spheres();
+    let size = size_of_film(&view.film);
+    let options = RendererOptions {
+        color: ColorTarget::Linear16,
+        data_layers: true,
+        ..RendererOptions::default()
+    };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let color = host.texture(size, wgpu::TextureFormat::Rgba16Float);
+    let depth = host.texture(size, wgpu::TextureFormat::R32Float);
+    let normal = host.texture(size, wgpu::TextureFormat::Rgba32Float);
+    let id = host.texture(size, wgpu::TextureFormat::R32Uint);
+    let data =
+        DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
+    let targets = Targets { color: &view_of(&color), data: Some(data) };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let View { camera, film, settings, .. } = &view;
+    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    let mut encoder = host.encoder();
+    renderer.record(&mut encoder, &scene, &frame).unwrap();
+    let ids = host.submit_and_read(encoder, &id);
+    let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&ids);
+    let reference = view.reference();
+    assert!(ids == reference.id().unwrap(), "ids");
+    let depths = host.submit_and_read(host.encoder(), &depth);
+    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    for (found, expected) in depths.iter().zip(reference.depth().unwrap()) {
+        if expected.is_finite() {
+            assert!((found - expected).abs() < 1e-4, "{found} is not {expected}");
+        } else {
+            assert_eq!(found.to_bits(), 1e30_f32.to_bits());
+        }
+    }
+    // Half floats: the background's red, 0.4342 in linear light, to eleven bits.
+    let colors = host.submit_and_read(host.encoder(), &color);
+    let red = u16::from_le_bytes([colors[0], colors[1]]);
+    assert_eq!((red >> 10, red & 0x3ff), (13, 754), "{red:#x}");
+}
+
+fn hosts_handler(_: &'static Headless) {
+    let host = Host::new();
+    let reached = Arc::new(Mutex::new(Vec::new()));
+    let handler = Arc::clone(&reached);
+    host.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        handler.lock().unwrap().push(error.to_string());
+    }));
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let target = host.texture([8, 8], ColorTarget::Srgb8.texture_format());
+    // Only wgpu can see that this view has layers.
+    let layered = target.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..wgpu::TextureViewDescriptor::default()
+    });
+    let targets = Targets { color: &layered, data: None };
+    let error = Frame::new(&renderer, &host.device, &targets).map(|_| ()).unwrap_err();
+    assert!(matches!(error, GpuError::Device { .. }), "{error}");
+    assert_eq!(*reached.lock().unwrap(), Vec::<String>::new());
+}
+
 fn not_ready(_: &'static Headless) {
     let host = Host::new();
     let options =
@@ -211,6 +277,7 @@ fn not_ready(_: &'static Headless) {
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     let mut encoder = host.encoder();
     assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
+    let again = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
 
     let mut set_view = |film: &Film| {
         frame.set_view(&host.queue, &scene, view.camera.as_ref(), film, &view.settings)
@@ -221,4 +288,10 @@ fn not_ready(_: &'static Headless) {
         renderer.record(&mut encoder, &scene, &frame),
         Err(GpuError::NoCamera { camera: CameraKind::Pinhole })
     );
+    assert_eq!(renderer.record(&mut encoder, &again, &frame), Err(GpuError::OtherScene));
+    let linear = RendererOptions { color: ColorTarget::Linear16, ..options };
+    let linear = Renderer::new(&host.device, &linear).unwrap();
+    assert_eq!(linear.record(&mut encoder, &scene, &frame), Err(GpuError::OtherRenderer));
+    // The encoder is as good as before.
+    host.queue.submit([encoder.finish()]);
 }

@@ -11,6 +11,7 @@ mod agreement;
 mod device;
 mod embedding;
 mod pictures;
+mod program;
 mod scenes;
 
 use std::sync::LazyLock;
@@ -45,11 +46,15 @@ fn main() {
             Err(error) => println!("\nadapter: none, {error}"),
         }
     }
-    let trials = [agreement::trials(), pictures::trials(), embedding::trials(), device::trials()]
-        .into_iter()
-        .flatten()
-        .map(|trial| trial.with_ignored_flag(without_gpu))
-        .collect();
+    let groups = [
+        agreement::trials(),
+        pictures::trials(),
+        embedding::trials(),
+        device::trials(),
+        program::trials(),
+    ];
+    let trials =
+        groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
 

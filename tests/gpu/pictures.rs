@@ -1,9 +1,12 @@
 //! Pictures whose every byte is known.
 
+use glam::DVec3;
 use libtest_mimic::Trial;
+use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::film::YAxis;
 use pinhole::gpu::Headless;
-use pinhole::{Image, LayerSet};
+use pinhole::image::Layer;
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Sphere, glam};
 
 use crate::support::View;
 use crate::trial;
@@ -13,6 +16,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("pictures::three_spheres_have_exactly_their_colors", exact_colors),
         trial("pictures::a_picture_does_not_change_from_run_to_run", same_again),
         trial("pictures::turning_y_over_turns_the_picture_over", turned_over),
+        trial("pictures::from_the_wall_no_hit_lies_beyond_the_sphere", on_the_wall),
+        trial("pictures::a_very_tall_picture", very_tall),
         trial("pictures::colors_do_not_depend_on_the_data_layers", layers_change_nothing),
     ]
 }
@@ -33,7 +38,7 @@ fn exact_colors(headless: &'static Headless) {
                 2 => [0, 0, 0xff],
                 _ => [0xb0, 0xe0, 0xe6],
             };
-            assert_eq!(pinhole::LinearRgb(*color).to_srgb8(), expected, "sphere {id}");
+            assert_eq!(pinhole::color::to_srgb8(*color), expected, "sphere {id}");
         }
     }
 }
@@ -61,4 +66,34 @@ fn layers_change_nothing(headless: &'static Headless) {
     let color_only = render(headless, &view, LayerSet::COLOR);
     assert_eq!(color_only.depth(), None);
     assert_eq!(color_only.color(), render(headless, &view, LayerSet::ALL).color());
+}
+
+/// With the eye on the wall, up to rounding, and looking along it, nearly everything cancels. Whether such
+/// a ray hits is open, but the sphere is two units across.
+fn on_the_wall(headless: &'static Headless) {
+    let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();
+    let film = Film::new(64, 64).unwrap();
+    let mut random = fastrand::Rng::with_seed(15);
+    let mut hits = 0;
+    for _ in 0..40 {
+        let outward = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);
+        let along = outward.any_orthonormal_vector();
+        let pose = Pose::looking_along(outward, along, outward).unwrap();
+        let camera = PinholeCamera::new(pose, 1.0, [1.0, 1e-5]).unwrap();
+        let settings = Settings::default();
+        let image = headless.render(&scene, &camera, &film, &settings, LayerSet::ALL).unwrap();
+        for depth in image.depth().unwrap().iter().filter(|depth| depth.is_finite()) {
+            assert!(*depth <= 2.000_01, "eye {outward}: {depth}");
+            hits += 1;
+        }
+    }
+    assert!(hits > 1000, "{hits}");
+}
+
+/// Half a million rows; at a cost that grows with the square of the height, this would not end.
+fn very_tall(headless: &'static Headless) {
+    let mut view = View::three_spheres_orthographic();
+    view.film = Film::new(2, 500_000).unwrap().with_y_axis(view.film.y_axis());
+    let image = render(headless, &view, LayerSet::COLOR.with(Layer::Id));
+    assert!(image.id().unwrap() == view.reference().id().unwrap());
 }

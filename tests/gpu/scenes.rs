@@ -12,6 +12,7 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("three_spheres", View::three_spheres()),
         ("three_spheres_orthographic", View::three_spheres_orthographic()),
         ("inside_a_sphere", inside_a_sphere()),
+        ("far_and_tiny", far_and_tiny()),
         ("tangent_rays", tangent_rays()),
         ("coincident_spheres", coincident_spheres()),
         ("nested_spheres", nested_spheres()),
@@ -43,9 +44,14 @@ enum Lens {
     Orthographic,
 }
 
-const FLAT: Settings =
-    Settings { shading: Shading::Flat, background: LinearRgb([0.25, 0.5, 0.75]) };
-const HEADLIGHT: Settings = Settings { shading: Shading::Headlight, ..FLAT };
+fn flat() -> Settings {
+    let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
+    Settings::default().with_shading(Shading::Flat).with_background(background)
+}
+
+fn headlight() -> Settings {
+    flat().with_shading(Shading::Headlight)
+}
 
 fn view(
     spheres: &[Sphere],
@@ -60,7 +66,8 @@ fn view(
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {
     // A color that is different for every sphere near another.
     let mix = |k: f64| (center[0] * k + center[1] * 1.7 + center[2] * 2.3 + radius).sin().abs();
-    Sphere::new(center, radius, LinearRgb([mix(1.0) as f32, mix(3.1) as f32, mix(7.7) as f32]))
+    let color = [mix(1.0) as f32, mix(3.1) as f32, mix(7.7) as f32];
+    Sphere::new(center, radius, LinearRgb::new(color).unwrap())
 }
 
 fn pinhole(eye: [f64; 3], look_at: [f64; 3], fov_degrees: f64, aspect: f64) -> PinholeCamera {
@@ -71,14 +78,22 @@ fn pinhole(eye: [f64; 3], look_at: [f64; 3], fov_degrees: f64, aspect: f64) -> P
 fn inside_a_sphere() -> View {
     let spheres =
         [sphere([0.0; 3], 10.0), sphere([0.0, 0.0, -5.0], 1.0), sphere([2.0, 1.0, -11.0], 3.0)];
-    view(&spheres, pinhole([0.0, 1.0, 2.0], [0.0, 0.0, -5.0], 90.0, 1.0), (64, 64), HEADLIGHT)
+    view(&spheres, pinhole([0.0, 1.0, 2.0], [0.0, 0.0, -5.0], 90.0, 1.0), (64, 64), headlight())
+}
+
+/// So far away that f32 hardly knows where on the sphere a ray arrives.
+fn far_and_tiny() -> View {
+    let spheres = [sphere([0.0; 3], 1.0), sphere([1.5, 0.5, 0.3], 0.8)];
+    let pose = Pose::looking_at([1e5, 2e4, 3e4], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let camera = PinholeCamera::new(pose, 1e5, [2.0, 2.0]).unwrap();
+    view(&spheres, camera, (64, 64), headlight())
 }
 
 /// Every number is exact in f32, and the third and the last but two of the rays are exact tangents.
 fn tangent_rays() -> View {
     let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [4.0, 1.0]).unwrap();
-    view(&[sphere([0.0; 3], 1.5)], camera, (8, 1), HEADLIGHT)
+    view(&[sphere([0.0; 3], 1.5)], camera, (8, 1), headlight())
 }
 
 fn coincident_spheres() -> View {
@@ -87,22 +102,22 @@ fn coincident_spheres() -> View {
         .collect();
     // Each again, in reverse order and another color: the smaller id must win.
     let again: Vec<Sphere> =
-        spheres.iter().rev().map(|s| Sphere { color: LinearRgb::WHITE, ..*s }).collect();
+        spheres.iter().rev().map(|s| Sphere::new(s.center, s.radius, LinearRgb::WHITE)).collect();
     spheres.extend(again);
-    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 50.0, 1.5), (96, 64), FLAT)
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 50.0, 1.5), (96, 64), flat())
 }
 
 fn nested_spheres() -> View {
     let spheres: Vec<Sphere> =
         (1..=12).map(|i| sphere([0.0, 0.0, f64::from(i) * 0.1], f64::from(i) * 0.25)).collect();
     // Inside the larger half of them.
-    view(&spheres, pinhole([0.3, 0.1, 1.6], [0.0; 3], 100.0, 1.0), (64, 64), HEADLIGHT)
+    view(&spheres, pinhole([0.3, 0.1, 1.6], [0.0; 3], 100.0, 1.0), (64, 64), headlight())
 }
 
 fn behind_the_camera() -> View {
     let spheres =
         [sphere([0.0, 0.0, 5.0], 1.0), sphere([0.5, 0.0, 1.5], 0.4), sphere([0.0, 0.0, -6.0], 1.0)];
-    view(&spheres, pinhole([0.0; 3], [0.0, 0.0, -1.0], 60.0, 1.0), (64, 64), HEADLIGHT)
+    view(&spheres, pinhole([0.0; 3], [0.0, 0.0, -1.0], 60.0, 1.0), (64, 64), headlight())
 }
 
 fn tiny_radii() -> View {
@@ -111,14 +126,14 @@ fn tiny_radii() -> View {
         .collect();
     let center = [4.5e-5, 4.5e-5, 0.0];
     let eye = [4.5e-5, 4.5e-5, 2e-4];
-    view(&spheres, pinhole(eye, center, 30.0, 1.0), (96, 96), HEADLIGHT)
+    view(&spheres, pinhole(eye, center, 30.0, 1.0), (96, 96), headlight())
 }
 
 /// A ground that is a sphere of radius 10⁶, and pebbles on it.
 fn huge_radius() -> View {
     let mut spheres = vec![sphere([0.0, -1e6, 0.0], 1e6)];
     spheres.extend((0..25).map(|i| sphere([f64::from(i % 5) - 2.0, 0.3, -f64::from(i / 5)], 0.3)));
-    view(&spheres, pinhole([0.5, 1.5, 5.0], [0.0, 0.0, -2.0], 50.0, 1.5), (96, 64), HEADLIGHT)
+    view(&spheres, pinhole([0.5, 1.5, 5.0], [0.0, 0.0, -2.0], 50.0, 1.5), (96, 64), headlight())
 }
 
 fn radii_over_four_decades() -> View {
@@ -129,7 +144,7 @@ fn radii_over_four_decades() -> View {
             sphere([0; 3].map(|_| random.f64() * 6.0 - 3.0), radius * 0.5)
         })
         .collect();
-    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0, 1.25), (120, 96), HEADLIGHT)
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0, 1.25), (120, 96), headlight())
 }
 
 fn scaled_by_a_power_of_two(power: i32) -> View {
@@ -137,7 +152,7 @@ fn scaled_by_a_power_of_two(power: i32) -> View {
     let spheres =
         [sphere([0.0, 0.0, 0.0], scale), sphere([scale, 0.5 * scale, -2.0 * scale], 1.5 * scale)];
     let camera = pinhole([scale, 2.0 * scale, 6.0 * scale], [0.0; 3], 45.0, 1.0);
-    view(&spheres, camera, (64, 64), HEADLIGHT)
+    view(&spheres, camera, (64, 64), headlight())
 }
 
 fn far_from_the_origin() -> View {
@@ -146,7 +161,7 @@ fn far_from_the_origin() -> View {
     let mut near = |size: f64| at.map(|x| x + (random.f64() - 0.5) * size);
     let spheres: Vec<Sphere> = (0..200).map(|_| sphere(near(4.0), 0.15)).collect();
     let eye = [at[0] + 2.0, at[1] + 1.0, at[2] + 7.0];
-    view(&spheres, pinhole(eye, at, 40.0, 1.0), (96, 96), HEADLIGHT)
+    view(&spheres, pinhole(eye, at, 40.0, 1.0), (96, 96), headlight())
 }
 
 fn random_spheres(seed: u64, count: usize, radius: f64) -> Vec<Sphere> {
@@ -161,24 +176,24 @@ fn random_spheres(seed: u64, count: usize, radius: f64) -> Vec<Sphere> {
 
 fn random_with_size(width: u32, height: u32) -> View {
     let camera = pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.0);
-    view(&random_spheres(7, 60, 0.4), camera, (width, height), HEADLIGHT)
+    view(&random_spheres(7, 60, 0.4), camera, (width, height), headlight())
 }
 
 fn three_wide(width: u32, height: u32) -> View {
     let spheres =
         [sphere([-4.0, 0.0, 0.0], 2.0), sphere([4.0, 0.0, 0.0], 2.0), sphere([0.0; 3], 1.0)];
-    view(&spheres, pinhole([0.0, 1.0, 9.0], [0.0; 3], 50.0, 1.5), (width, height), FLAT)
+    view(&spheres, pinhole([0.0, 1.0, 9.0], [0.0; 3], 50.0, 1.5), (width, height), flat())
 }
 
 /// More spheres than one dispatch tries, the nearest among the last.
 fn more_than_one_slice() -> View {
     let mut spheres = random_spheres(8, 120_000, 0.01);
     spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
-    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), (48, 32), HEADLIGHT)
+    view(&spheres, pinhole([0.2, 0.3, 6.0], [0.0; 3], 40.0, 1.5), (48, 32), headlight())
 }
 
 fn no_spheres() -> View {
-    view(&[], pinhole([0.0, 0.0, 1.0], [0.0; 3], 40.0, 1.0), (17, 9), HEADLIGHT)
+    view(&[], pinhole([0.0, 0.0, 1.0], [0.0; 3], 40.0, 1.0), (17, 9), headlight())
 }
 
 fn random_1000(y_axis: YAxis, lens: Lens) -> View {
@@ -196,6 +211,6 @@ fn random_1000(y_axis: YAxis, lens: Lens) -> View {
         scene: Scene::new(&spheres).unwrap(),
         camera,
         film: Film::new(160, 120).unwrap().with_y_axis(y_axis),
-        settings: HEADLIGHT,
+        settings: headlight(),
     }
 }

@@ -59,13 +59,13 @@ fn xyz_files_with_errors() {
     let data = |text: &str, words: &[&str]| {
         refused(&[("bad.xyz", text)], "render bad.xyz -o out.png --backend cpu", 1, words);
     };
-    data("", &["bad.xyz", "line"]);
+    data("", &["bad.xyz", "empty", "number of its atoms"]);
     data("4\n\nO 0 0 0\n", &["bad.xyz", "line 1", "declares 4 atoms", "ends after 1"]);
     data("1\n\nO 0 0 0\nO 1 1 1\n", &["bad.xyz", "line 4", "declares 1 atoms"]);
     data("1\n\nO 0 x 0\n", &["bad.xyz", "line 3", "y coordinate", "`x`"]);
     data(
         "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n",
-        &["bad.xyz", "sphere 0", "radius is -2"],
+        &["bad.xyz", "line 3", "atom 0", "radius is -2"],
     );
     refused(&[], "render water.xyz -o out.png --frame 1", 1, &["water.xyz", "no frame 1"]);
 }
@@ -80,7 +80,10 @@ fn sizes() {
     }
     // Ten million million pixels.
     let arguments = "render scene.toml -o out.png --backend cpu --size 4000000x4000000";
-    refused(&[], arguments, 2, &["4000000x4000000", "memory", "smaller"]);
+    refused(&[], arguments, 2, &["--size", "4000000x4000000", "memory", "smaller"]);
+    let large = [("large.toml", "[film]\nwidth = 4000000\nheight = 4000000\n")];
+    let arguments = "render large.toml -o out.png --backend cpu";
+    refused(&large, arguments, 2, &["large.toml", "memory", "smaller"]);
 }
 
 #[test]
@@ -99,14 +102,36 @@ fn outputs() {
     output("-o out.png --layer depth=d.npy --layer id=d.npy", &["d.npy", "two outputs"]);
 }
 
+/// Everything is rendered and the picture complete when a layer turns out to have no place: its name is
+/// longer than file systems allow.
 #[test]
 fn a_failed_layer_leaves_no_picture() {
-    // The picture is complete before the layer turns out to have no place.
-    let folder = Folder::with(&[("scene.toml", SCENE)]);
-    std::fs::create_dir(folder.path("depth.npy")).unwrap();
-    let run = folder.run("render scene.toml -o out.png --backend cpu --layer depth=depth.npy");
-    assert_eq!(run.code, 2, "{}", run.stderr);
-    assert!(!folder.path("out.png").exists());
+    let layer = format!("{}.npy", "a".repeat(300));
+    let arguments = format!("render scene.toml -o out.png --backend cpu --layer depth={layer}");
+    refused(&[], &arguments, 1, &["aaa.npy", "cannot be written"]);
+}
+
+#[test]
+fn one_file_by_two_names() {
+    let output = "--layer depth=d.npy --layer id=./d.npy";
+    let arguments = format!("render scene.toml --backend cpu -o out.png {output}");
+    refused(&[], &arguments, 2, &["./d.npy", "two outputs"]);
+}
+
+#[test]
+fn a_stream_that_cannot_be_written_changes_no_exit_code() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = Folder::new();
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let code = |arguments: &str| {
+        let status = folder.command(arguments).stderr(full()).stdout(full()).status().unwrap();
+        status.code().unwrap()
+    };
+    assert_eq!(code("render no.toml -o out.png"), 1);
+    assert_eq!(code("render"), 2);
+    assert_eq!(code("--help"), 1);
 }
 
 #[test]
@@ -125,6 +150,7 @@ fn usage() {
             format!("render scene.toml -o out.png --adapter {name} --backend {backend}");
         refused(&[], &arguments, 2, &[name, "adapter"]);
     }
+    refused(&[], &format!("demo --adapter {name}"), 2, &[name, "adapter"]);
 }
 
 #[test]

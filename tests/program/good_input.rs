@@ -44,9 +44,31 @@ fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
     assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
     assert!(run.stderr.contains("no Vulkan, Metal or DX12 adapter"), "{}", run.stderr);
     assert!(!folder.path("gpu.png").exists());
+    let run = folder.run_without_drivers("demo --backend gpu");
+    assert_eq!(run.code, 1);
+    assert_eq!(
+        folder.files(),
+        ["cpu.png", "out.png", "scene.toml"],
+        "a failed demo leaves nothing"
+    );
 
     let run = folder.run_without_drivers("info").succeeded();
     assert!(String::from_utf8(run.stdout).unwrap().contains("no Vulkan, Metal or DX12 adapter"));
+}
+
+/// A name in the environment chooses among adapters; where there are none, there is nothing to choose.
+#[test]
+fn without_a_driver_a_name_in_the_environment_does_not_matter() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = Folder::new();
+    let mut command = folder.command("demo");
+    command.env("VK_DRIVER_FILES", folder.path("no-driver.json"));
+    command.env("VK_ICD_FILENAMES", folder.path("no-driver.json"));
+    command.env("WGPU_ADAPTER_NAME", "llvmpipe");
+    assert!(command.output().unwrap().status.success());
+    assert_eq!(folder.files(), ["three-spheres.png", "three-spheres.toml"]);
 }
 
 #[test]
@@ -142,6 +164,11 @@ fn species_that_are_no_elements_are_drawn_and_noted() {
     let run = folder.run("render beads.xyz -o out.png --size 20x10 --backend cpu").succeeded();
     assert_eq!(run.stderr.lines().count(), 1);
     assert!(run.stderr.contains("beads.xyz") && run.stderr.contains("Xx, Yy"), "{}", run.stderr);
+
+    let atoms: String = (0..1000).map(|i| format!("bead{i} {i} 0 0\n")).collect();
+    let folder = Folder::with(&[("many.xyz", &format!("1000\n\n{atoms}"))]);
+    let run = folder.run("render many.xyz -o out.png --size 2x2 --backend cpu").succeeded();
+    assert!(run.stderr.contains("bead4 and 995 more"), "{}", run.stderr);
 }
 
 #[test]
