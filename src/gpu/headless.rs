@@ -3,6 +3,7 @@
 //! The only file of the library that submits, polls, or waits for a device's work.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -31,8 +32,12 @@ pub struct Headless {
     device: Device,
     queue: Queue,
     faults: Arc<Faults>,
-    renderers: Mutex<HashMap<(CameraKind, bool), Arc<Renderer>>>,
+    /// Locked for the whole of a render, because faults cannot be told apart by render.
+    renderers: Mutex<Renderers>,
 }
+
+/// What has been built so far, by camera and whether there are data layers.
+type Renderers = HashMap<(CameraKind, bool), Renderer>;
 
 /// What wgpu reported outside any call.
 #[derive(Debug, Default)]
@@ -137,7 +142,8 @@ impl Headless {
 
     /// Renders a picture with one ray through the centre of every pixel.
     ///
-    /// A picture beyond the device's limits is rendered in tiles; it does not depend on them.
+    /// A picture beyond the device's limits is rendered in tiles; it does not depend on them. A device
+    /// renders one picture at a time; other threads wait.
     ///
     /// # Errors
     /// If scene or picture do not fit the device or the host's memory, or if the device fails.
@@ -149,13 +155,16 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
+        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
         self.faults.forget();
-        self.try_render(scene, camera, film, settings, layers)
+        self.renderer(&mut renderers, camera.kind(), layers != LayerSet::COLOR)
+            .and_then(|renderer| self.render_with(renderer, scene, camera, film, settings, layers))
             .map_err(|error| self.explained(error))
     }
 
-    fn try_render(
+    fn render_with(
         &self,
+        renderer: &Renderer,
         scene: &Scene,
         camera: &dyn Camera,
         film: &Film,
@@ -163,14 +172,13 @@ impl Headless {
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
         let mut image = Image::new(film.width(), film.height(), layers)?;
-        let data_layers = layers != LayerSet::COLOR;
-        let renderer = self.renderer(camera.kind(), data_layers)?;
-        let scene_buffers = SceneBuffers::new(&renderer, &self.device, &self.queue, scene)?;
+        let scene_buffers = SceneBuffers::new(renderer, &self.device, &self.queue, scene)?;
         let side_limit = self.device.limits().max_texture_dimension_2d;
         let tile_size = tile_size(film, side_limit, scene.len());
-        let textures =
-            scoped(&self.device, || TileTextures::new(&self.device, tile_size, data_layers))?;
-        let mut frame = Frame::new(&renderer, &self.device, &textures.targets())?;
+        let textures = scoped(&self.device, || {
+            TileTextures::new(&self.device, tile_size, renderer.data_layers)
+        })?;
+        let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
         for tile in tiles(film, tile_size) {
             frame.set_tile(&self.queue, &scene_buffers, camera, film, tile, settings);
             let mut encoder =
@@ -196,16 +204,20 @@ impl Headless {
         }
     }
 
-    fn renderer(&self, camera: CameraKind, data_layers: bool) -> Result<Arc<Renderer>, GpuError> {
-        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(renderer) = renderers.get(&(camera, data_layers)) {
-            return Ok(Arc::clone(renderer));
+    fn renderer<'a>(
+        &self,
+        renderers: &'a mut Renderers,
+        camera: CameraKind,
+        data_layers: bool,
+    ) -> Result<&'a Renderer, GpuError> {
+        match renderers.entry((camera, data_layers)) {
+            Entry::Occupied(built) => Ok(built.into_mut()),
+            Entry::Vacant(place) => {
+                let color = ColorTarget::Linear32;
+                let options = RendererOptions { color, data_layers, cameras: vec![camera] };
+                Ok(place.insert(Renderer::new(&self.device, &options)?))
+            }
         }
-        let options =
-            RendererOptions { color: ColorTarget::Linear32, data_layers, cameras: vec![camera] };
-        let renderer = Arc::new(Renderer::new(&self.device, &options)?);
-        renderers.insert((camera, data_layers), Arc::clone(&renderer));
-        Ok(renderer)
     }
 
     /// Waits until the submission is done and its textures' buffers are mapped.
