@@ -2,6 +2,9 @@
 
 use std::sync::LazyLock;
 
+#[cfg(feature = "scene-file")]
+use crate::text::shortened;
+
 /// A colour in linear light with the Rec. 709 primaries; 1 is display white.
 ///
 /// Components are finite and not negative, and may exceed 1.
@@ -52,9 +55,9 @@ impl LinearRgb {
     #[cfg(feature = "scene-file")]
     pub fn from_css(text: &str) -> Result<Self, ColorError> {
         let color = csscolorparser::parse(text)
-            .map_err(|_| ColorError::Unknown { text: text.to_owned() })?;
+            .map_err(|_| ColorError::Unknown { text: shortened(text) })?;
         if color.a < 1.0 {
-            return Err(ColorError::NotOpaque { text: text.to_owned() });
+            return Err(ColorError::NotOpaque { text: shortened(text) });
         }
         let [r, g, b, _] = color.to_rgba8();
         Ok(Self::from_srgb8([r, g, b]))

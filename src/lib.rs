@@ -42,6 +42,8 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+#[cfg(feature = "scene-file")]
+mod exact;
 pub mod film;
 #[cfg(feature = "gpu")]
 pub mod gpu;

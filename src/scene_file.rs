@@ -11,11 +11,12 @@ use toml::Spanned;
 use crate::bounds::Bounds;
 use crate::camera::{self, Camera, CameraError, CameraKind, camera_table};
 use crate::color::LinearRgb;
+use crate::exact::{self, Table};
 use crate::film::{Film, YAxis};
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Settings, Shading};
 use crate::sphere::Sphere;
-use crate::text::one_line;
+use crate::text::{one_line, shortened};
 
 /// What a scene file says.
 #[derive(Debug)]
@@ -86,7 +87,7 @@ impl SceneFile {
             lines.place(start).error(explain(error.message()))
         })?;
         let film_place = lines.place(document.film.span().start);
-        let FilmTable { width, height, y } = document.film.into_inner();
+        let FilmTable { width, height, y } = document.film.into_inner().0;
         let film = Film::new(width, height).map_err(|error| film_place.error(error))?;
         let defaults = Settings::default();
         Ok(Self {
@@ -104,7 +105,7 @@ impl SceneFile {
                 .into_iter()
                 .map(|sphere| Placed {
                     place: lines.place(sphere.span().start),
-                    value: sphere.into_inner().sphere(),
+                    value: sphere.into_inner().0.sphere(),
                 })
                 .collect(),
         })
@@ -187,7 +188,7 @@ fn data(
         let value = *scale.get_ref();
         if !(value.is_finite() && value > 0.0) {
             return Err(lines.place(scale.span().start).error(format!(
-                "`radius_scale` is {value}; it must be finite and greater than 0"
+                "`radius_scale` is {value:?}; it must be finite and greater than 0"
             )));
         }
     }
@@ -237,11 +238,11 @@ fn explain(message: &str) -> String {
             return format!("a camera is a table; write {}", camera_tables());
         }
         // toml's messages of its own are good, but may span lines.
-        _ => return one_line(message),
+        _ => return in_plain_words(message),
     };
     // unknown field `widht`, expected one of `width`, `height`
     let mut quoted = rest.split('`').step_by(2);
-    let unknown = quoted.next().unwrap_or_default();
+    let unknown = &shortened(quoted.next().unwrap_or_default());
     let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
     let nearest = known.iter().copied().max_by(|a, b| {
         strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
@@ -250,6 +251,21 @@ fn explain(message: &str) -> String {
         Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
         None => format!("unknown {what} `{unknown}`; known here: {}", known.join(", ")),
     }
+}
+
+/// Puts Rust's words for types, and serde's for a missing key, into a user's.
+fn in_plain_words(message: &str) -> String {
+    let mut text = one_line(message);
+    for (rust, plain) in [
+        ("expected f64", "expected a number"),
+        ("expected f32", "expected a number"),
+        ("expected u32", "expected a whole number from 0 to 4294967295"),
+        ("expected usize", "expected a whole number, 0 or more"),
+        ("missing field", "missing key"),
+    ] {
+        text = text.replace(rust, plain);
+    }
+    text
 }
 
 /// `[camera.pinhole]` or …
@@ -263,20 +279,20 @@ fn camera_tables() -> String {
 #[serde(deny_unknown_fields)]
 struct Document {
     #[serde(default = "default_film")]
-    film: Spanned<FilmTable>,
+    film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
     camera: Spanned<CameraParameters>,
     background: Option<ColorValue>,
     shading: Option<Shading>,
     #[serde(default)]
-    spheres: Vec<Spanned<SphereTable>>,
+    spheres: Vec<Spanned<Table<SphereTable>>>,
     data: Option<Spanned<String>>,
     frame: Option<Spanned<usize>>,
     radius_scale: Option<Spanned<f64>>,
 }
 
-fn default_film() -> Spanned<FilmTable> {
-    Spanned::new(0..0, FilmTable::default())
+fn default_film() -> Spanned<Table<FilmTable>> {
+    Spanned::new(0..0, Table::default())
 }
 
 fn default_camera() -> Spanned<CameraParameters> {
@@ -303,7 +319,7 @@ macro_rules! define_camera_parameters {
         /// The table `[camera.NAME]`.
         #[derive(Clone, Copy, Debug, Deserialize)]
         enum CameraParameters {
-            $(#[serde(rename = $name)] $variant(camera::$parameters),)+
+            $(#[serde(rename = $name)] $variant(Table<camera::$parameters>),)+
         }
 
         impl CameraParameters {
@@ -314,7 +330,7 @@ macro_rules! define_camera_parameters {
             ) -> Result<Box<dyn Camera>, CameraError> {
                 match self {
                     $(Self::$variant(parameters) => {
-                        Ok(Box::new(parameters.camera(aspect, bounds)?))
+                        Ok(Box::new(parameters.0.camera(aspect, bounds)?))
                     })+
                 }
             }
@@ -325,13 +341,14 @@ camera_table!(define_camera_parameters);
 
 impl Default for CameraParameters {
     fn default() -> Self {
-        Self::Pinhole(camera::PinholeParameters::default())
+        Self::Pinhole(Table::default())
     }
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SphereTable {
+    #[serde(deserialize_with = "exact::array")]
     center: [f64; 3],
     radius: f64,
     #[serde(default)]

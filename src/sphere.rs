@@ -21,8 +21,7 @@ pub struct Sphere {
 pub enum SphereError {
     /// The centre is NaN, infinite or too far away.
     #[error(
-        "its center is ({}, {}, {}); every coordinate must be finite and at most {MAX_LENGTH:e} in size",
-        center[0], center[1], center[2]
+        "its center is {center:?}; every coordinate must be finite and at most {MAX_LENGTH:e} in size"
     )]
     Center {
         /// The centre as given.
@@ -30,7 +29,7 @@ pub enum SphereError {
     },
     /// The radius is NaN, infinite, zero, negative or too small or large for f32 kernels.
     #[error(
-        "its radius is {radius}; a radius must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
+        "its radius is {radius:?}; a radius must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
     )]
     Radius {
         /// The radius as given.

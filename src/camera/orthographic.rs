@@ -7,6 +7,8 @@ use super::{
     framing,
 };
 use crate::bounds::Bounds;
+#[cfg(feature = "scene-file")]
+use crate::exact;
 use crate::ray::Ray;
 
 /// An orthographic camera.
@@ -37,7 +39,7 @@ impl OrthographicCamera {
         let basis = pose.basis();
         let (half_extent, distance) =
             framing::parallel_extent(bounds, &basis, checked_aspect(aspect)?);
-        let pose = pose.moved_to(bounds.center() + basis.w() * distance)?;
+        let pose = pose.framing(bounds, distance)?;
         Self::new(pose, half_extent)
     }
 }
@@ -74,14 +76,19 @@ impl Camera for OrthographicCamera {
 #[serde(deny_unknown_fields, default)]
 pub struct OrthographicParameters {
     /// The middle of the view plane; without it, the camera frames the scene.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
     /// The point it looks at.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
     /// The direction it looks in, instead of `look_at`.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
     /// Which way is up.
+    #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
     /// Half width and half height of the view plane.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub half_extent: Option<[f64; 2]>,
 }
 

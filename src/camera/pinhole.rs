@@ -7,6 +7,8 @@ use super::{
     checked_length, framing,
 };
 use crate::bounds::Bounds;
+#[cfg(feature = "scene-file")]
+use crate::exact;
 use crate::ray::Ray;
 
 /// A pinhole camera.
@@ -76,7 +78,7 @@ impl PinholeCamera {
         let tangents = tangents(fov_radians, aspect)?;
         let basis = pose.basis();
         let distance = framing::perspective_distance(bounds, &basis, tangents);
-        let pose = pose.moved_to(bounds.center() + basis.w() * distance)?;
+        let pose = pose.framing(bounds, distance)?;
         Self::new(pose, 1.0, tangents)
     }
 }
@@ -121,16 +123,21 @@ impl Camera for PinholeCamera {
 #[serde(deny_unknown_fields, default)]
 pub struct PinholeParameters {
     /// Where the camera is; without it, the camera frames the scene.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
     /// The point it looks at.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
     /// The direction it looks in, instead of `look_at`.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
     /// Which way is up.
+    #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
     /// How far the view plane is from the eye.
     pub distance: Option<f64>,
     /// Half width and half height of the view plane.
+    #[serde(deserialize_with = "exact::optional_array")]
     pub half_extent: Option<[f64; 2]>,
     /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
     pub vertical_fov: Option<f64>,

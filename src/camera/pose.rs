@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::basis::{BasisError, OrthonormalBasis};
+use crate::bounds::Bounds;
 use crate::math::{MAX_LENGTH, MIN_LENGTH};
 
 /// Position and orientation of a camera.
@@ -17,13 +18,13 @@ pub struct Pose {
 #[non_exhaustive]
 pub enum CameraError {
     /// The eye and the point it looks at are one point.
-    #[error("the eye and the look-at point are both at {eye}; move one of them")]
+    #[error("the eye and the look-at point are both at {:?}; move one of them", eye.to_array())]
     EyeAtTarget {
         /// The point.
         eye: DVec3,
     },
     /// `up` points along the view, so it does not say which way is up.
-    #[error("up {up} is parallel to the direction of view; tilt it")]
+    #[error("up {:?} is parallel to the direction of view; tilt it", up.to_array())]
     UpParallelToView {
         /// The vector as given.
         up: DVec3,
@@ -36,7 +37,8 @@ pub enum CameraError {
     },
     /// A component of a point or vector is NaN or infinite, or a point lies too far away.
     #[error(
-        "{parameter} is {value}; every component must be finite and at most {MAX_LENGTH:e} in size"
+        "{parameter} is {:?}; every component must be finite and at most {MAX_LENGTH:e} in size",
+        value.to_array()
     )]
     Vector {
         /// Which parameter.
@@ -46,7 +48,7 @@ pub enum CameraError {
     },
     /// A length is NaN, infinite, zero, negative or too small or large for f32 kernels.
     #[error(
-        "the {parameter} is {value}; it must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
+        "the {parameter} is {value:?}; it must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
     )]
     Length {
         /// Which parameter.
@@ -59,6 +61,15 @@ pub enum CameraError {
     FieldOfView {
         /// The angle as given.
         radians: f64,
+    },
+    /// The box that must be seen is so large, or so far away, that the camera would be out of range.
+    #[error(
+        "no camera can frame the scene, which reaches from {:?} to {:?}; give an eye, or move the scene",
+        bounds.min().to_array(), bounds.max().to_array()
+    )]
+    Framing {
+        /// The box.
+        bounds: Bounds,
     },
     /// Two parameters that exclude each other were given, or one was left out.
     #[error("{message}")]
@@ -112,9 +123,10 @@ impl Pose {
         Ok(Self { origin: eye, basis })
     }
 
-    /// The same orientation at another place.
-    pub(super) fn moved_to(self, origin: DVec3) -> Result<Self, CameraError> {
-        checked_point("the eye", origin)?;
+    /// The same orientation, as far behind the middle of a box.
+    pub(super) fn framing(self, bounds: &Bounds, distance: f64) -> Result<Self, CameraError> {
+        let origin = bounds.center() + self.basis.w() * distance;
+        checked_point("the eye", origin).map_err(|_| CameraError::Framing { bounds: *bounds })?;
         Ok(Self { origin, ..self })
     }
 

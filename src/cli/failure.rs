@@ -3,8 +3,6 @@
 use std::fmt;
 use std::process::ExitCode;
 
-use crate::text::one_line;
-
 /// Exit code of a job that failed.
 pub(super) const FAILED: u8 = 1;
 
@@ -40,10 +38,9 @@ impl From<anyhow::Error> for Failure {
 }
 
 impl fmt::Display for Failure {
-    /// The error with all its contexts, on one line whatever a driver's message looks like.
+    /// The error with all its contexts.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Self::Usage(error) | Self::Job(error)) = self;
-        let text = format!("{error:#}");
-        f.write_str(&one_line(&text))
+        write!(f, "{error:#}")
     }
 }

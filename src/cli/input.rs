@@ -97,7 +97,8 @@ pub(super) fn scene_from_text(
             let Format::Data(format) = Format::of(&data_path).with_context(in_scene)? else {
                 return Err(anyhow!("it names another scene file").context(in_scene()).into());
             };
-            load_data(&data_path, format, frame.unwrap_or(data.frame), data.radius_scale)?
+            load_data(&data_path, format, frame.unwrap_or(data.frame), data.radius_scale)
+                .with_context(in_scene)?
         }
         None if frame.is_some() => {
             return Err(Failure::usage(format!(

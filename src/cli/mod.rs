@@ -7,8 +7,6 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-use crate::text::one_line;
-
 mod args;
 mod demo;
 mod failure;
@@ -20,7 +18,7 @@ mod render;
 mod speak;
 
 use args::{Arguments, Command};
-use speak::{answer, tell};
+use speak::{answer, tell, tell_all};
 
 /// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage.
 #[must_use]
@@ -52,13 +50,13 @@ fn explain(error: &clap::Error) -> ExitCode {
             Err(_) => failure::FAILED.into(),
         },
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            tell(text);
+            tell_all(&text);
             failure::USAGE.into()
         }
         _ => {
             let message = text.split("\n\nUsage:").next().unwrap_or_default();
             let message = message.split("\n\nFor more information").next().unwrap_or_default();
-            tell(one_line(message));
+            tell(message);
             failure::USAGE.into()
         }
     }

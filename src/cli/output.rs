@@ -5,7 +5,7 @@ use std::fs::Permissions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
@@ -62,23 +62,39 @@ impl Outputs {
         for (layer, path) in &self.layers {
             files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
         }
+        name_all(files)?;
         if self.picture.is_none() {
             answer(&picture).context("standard output: cannot be written")?;
         }
-        name_all(files)
+        Ok(())
     }
 }
 
-fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
-    let cannot_write = || format!("{}: cannot be written", path.display());
+/// A file beside the one that it will become.
+fn temporary(path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");
     // As any new file: what the umask leaves of this.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder(path)).with_context(cannot_write)?;
+    builder
+        .tempfile_in(folder(path))
+        .map_err(|error| match error.get_ref().and_then(std::error::Error::source) {
+            // Without the temporary file's name, which means nothing to the user.
+            Some(reason) => anyhow!("{reason}"),
+            None => anyhow!(error),
+        })
+        .with_context(|| format!("{}: cannot be written", path.display()))
+}
+
+fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
+    let cannot_write = || format!("{}: cannot be written", path.display());
+    let mut file = temporary(path)?;
     file.write_all(contents).with_context(cannot_write)?;
     file.as_file().sync_all().with_context(cannot_write)?;
+    if let Ok(old) = path.metadata() {
+        file.as_file().set_permissions(old.permissions()).with_context(cannot_write)?;
+    }
     Ok(file)
 }
 
@@ -87,7 +103,9 @@ fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let mut new = Vec::new();
     for (path, file) in files {
         let existed = path.exists();
-        if let Err(error) = file.persist(path) {
+        // What a link points to is replaced, not the link.
+        let target = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if let Err(error) = file.persist(target) {
             for path in new {
                 // What cannot be removed either is still a complete file.
                 let _ = std::fs::remove_file(path);
@@ -114,6 +132,9 @@ fn parse_layer(text: &str) -> Result<(Layer, PathBuf), Failure> {
     let (name, path) = text.split_once('=').ok_or_else(|| {
         Failure::usage(format!("--layer {text}: write LAYER=FILE.npy, such as depth=depth.npy"))
     })?;
+    if path.is_empty() {
+        return Err(Failure::usage(format!("--layer {text}: name a file behind the =")));
+    }
     let layer = name.parse().map_err(|error| Failure::usage(format!("--layer {text}: {error}")))?;
     check_file(Path::new(path), "npy")?;
     Ok((layer, PathBuf::from(path)))
@@ -127,7 +148,12 @@ fn check_file(path: &Path, extension: &str) -> Result<(), Failure> {
             path.display()
         )));
     }
-    if path.is_dir() {
+    let ends_with_separator = path
+        .as_os_str()
+        .as_encoded_bytes()
+        .last()
+        .is_some_and(|b| std::path::is_separator(*b as char));
+    if path.is_dir() || ends_with_separator {
         return Err(Failure::usage(format!("{}: this is a folder; name a file", path.display())));
     }
     let folder = folder(path);
@@ -138,6 +164,8 @@ fn check_file(path: &Path, extension: &str) -> Result<(), Failure> {
             folder.display()
         )));
     }
+    // Better now than after the work.
+    temporary(path).map(drop)?;
     Ok(())
 }
 

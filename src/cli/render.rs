@@ -77,6 +77,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Renders on the device, and says so if that is not what the user would expect.
 pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
     memory::check(&input.film, &input.size_from, layers)?;
+    start_threads()?;
     match device {
         Device::Cpu => on_cpu(input, layers),
         #[cfg(feature = "gpu")]
@@ -99,6 +100,19 @@ pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result
             "this program was built without the feature `gpu`; use --backend cpu",
         )),
     }
+}
+
+/// Starts the threads of rows and pixels. Left to itself, rayon panics where they cannot be had.
+#[cfg(feature = "parallel")]
+fn start_threads() -> Result<(), Failure> {
+    let threads = rayon::ThreadPoolBuilder::new().build_global();
+    Ok(threads.context("threads cannot be started; set RAYON_NUM_THREADS to fewer")?)
+}
+
+#[cfg(not(feature = "parallel"))]
+#[expect(clippy::unnecessary_wraps, reason = "as with threads")]
+fn start_threads() -> Result<(), Failure> {
+    Ok(())
 }
 
 fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {

@@ -3,9 +3,16 @@
 use std::fmt;
 use std::io::{self, Write};
 
-/// One line on standard error.
+use crate::text::one_line;
+
+/// One line on standard error, with nothing in it that a terminal would obey.
 pub(super) fn tell(line: impl fmt::Display) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+    let _ = writeln!(io::stderr().lock(), "{}", one_line(&line.to_string()));
+}
+
+/// Text of several lines on standard error.
+pub(super) fn tell_all(text: &str) {
+    let _ = write!(io::stderr().lock(), "{text}");
 }
 
 /// Text on standard output, which was asked for.

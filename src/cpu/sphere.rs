@@ -7,8 +7,9 @@ use crate::ray::Ray;
 /// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
 /// there, which points away from the centre; `None` for a miss.
 ///
-/// From inside, the first point is on the far wall. By Pythagoras: the centre's foot point on the ray
-/// lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent ray hits.
+/// From inside, or from the wall, the first point is on the far wall. By Pythagoras: the centre's foot
+/// point on the ray lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent
+/// ray hits; a ray that only leaves the wall it starts on does not.
 ///
 /// The normal is taken from the same right triangle, not from the hit point, which far away from a
 /// small sphere is nothing but rounding.
@@ -20,11 +21,18 @@ pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, D
     if half_chord_squared < 0.0 {
         return None;
     }
+    // The product of the distances to both walls: positive outside, zero on the wall.
+    let c = to_center.length_squared() - radius * radius;
     let half_chord = half_chord_squared.sqrt();
-    [-half_chord, half_chord]
-        .into_iter()
-        .find(|from_foot| b + from_foot > 0.0)
-        .map(|from_foot| (b + from_foot, (from_foot * ray.direction - foot_to_center) / radius))
+    let from_foot = if c > 0.0 { -half_chord } else { half_chord };
+    // b + from_foot; where the two would cancel, from (b + from_foot)(b − from_foot) = c, and no more
+    // than the positive one of the two.
+    let t = if b * from_foot >= 0.0 {
+        b + from_foot
+    } else {
+        (c / (b - from_foot)).min(b.max(from_foot))
+    };
+    (t > 0.0).then(|| (t, (from_foot * ray.direction - foot_to_center) / radius))
 }
 
 #[cfg(test)]
@@ -52,6 +60,24 @@ mod tests {
             let hit = intersect(&ray, DVec3::ZERO, 2.0);
             assert_eq!(hit.map(|h| h.0), t, "{case}");
             assert_eq!(hit.map(|h| h.1), normal, "{case}");
+        }
+    }
+
+    /// In any direction, not only along an axis, where rounding is kind.
+    #[test]
+    fn from_the_wall_only_the_far_wall_is_hit() {
+        let mut random = fastrand::Rng::with_seed(16);
+        for _ in 0..10_000 {
+            let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);
+            let ray = Ray { origin: DVec3::X, direction };
+            match intersect(&ray, DVec3::ZERO, 1.0) {
+                Some((t, _)) => {
+                    // Half the chord is a square root, so its error grows towards the tangent.
+                    let bound = 1e-15 / direction.x.abs();
+                    assert!((t + 2.0 * direction.x).abs() < bound, "{direction}: {t}");
+                }
+                None => assert!(direction.x > -1e-7, "{direction}"),
+            }
         }
     }
 

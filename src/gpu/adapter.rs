@@ -27,7 +27,11 @@ pub fn adapters() -> Vec<Adapter> {
         flags: wgpu::InstanceFlags::empty(),
         ..InstanceDescriptor::new_without_display_handle()
     };
-    let instance = Instance::new(descriptor.with_env());
+    let mut descriptor = descriptor.with_env();
+    if variable("WGPU_BACKEND").is_none() {
+        descriptor.backends = PLATFORM_BACKEND;
+    }
+    let instance = Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(Backends::all()));
     let low_power = PowerPreference::from_env() == Some(PowerPreference::LowPower);
     // Stable, so that equals stay in the driver's order.
@@ -76,8 +80,13 @@ pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
 /// # Errors
 /// If there is no adapter, or none has such a name.
 pub fn index_of_choice(adapters: &[Adapter], name: Option<&str>) -> Result<usize, GpuError> {
-    if adapters.is_empty() && name.is_none() {
-        return Err(GpuError::NoAdapter);
+    if adapters.is_empty() {
+        if let Some(value) = variable("WGPU_BACKEND") {
+            return Err(GpuError::NoAdapterOfBackend { value });
+        }
+        if name.is_none() {
+            return Err(GpuError::NoAdapter);
+        }
     }
     let Some(wanted) = name.map(str::to_owned).or_else(name_in_environment) else {
         return Ok(0);
@@ -91,5 +100,10 @@ pub fn index_of_choice(adapters: &[Adapter], name: Option<&str>) -> Result<usize
 }
 
 fn name_in_environment() -> Option<String> {
-    std::env::var("WGPU_ADAPTER_NAME").ok()
+    variable("WGPU_ADAPTER_NAME")
+}
+
+/// A variable that is set to nothing counts as not set.
+fn variable(name: &str) -> Option<String> {
+    std::env::var(name).ok().filter(|value| !value.is_empty())
 }

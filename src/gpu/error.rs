@@ -14,6 +14,12 @@ pub enum GpuError {
         "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
     )]
     NoAdapter,
+    /// `WGPU_BACKEND` names backends that have no adapter.
+    #[error("WGPU_BACKEND={value} leaves no adapter; unset it, or name vulkan, metal or dx12")]
+    NoAdapterOfBackend {
+        /// The variable's value.
+        value: String,
+    },
     /// No adapter has a name that contains the wanted text.
     #[error("no adapter's name contains `{wanted}`; {}", list(available))]
     UnknownAdapter {
@@ -117,13 +123,13 @@ pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Re
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let created = create();
-    // Scopes nest, so they are popped in reverse; the first error wins.
-    for scope in [internal, validation, memory] {
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            return Err(GpuError::from_wgpu(&error));
-        }
+    // Scopes nest, so they are popped in reverse. What lacks memory is then invalid for all that uses
+    // it, so that the last one popped, memory, comes first as a reason.
+    let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
+    match errors.iter().rev().flatten().next() {
+        Some(error) => Err(GpuError::from_wgpu(error)),
+        None => Ok(created),
     }
-    Ok(created)
 }
 
 /// Refuses a buffer that the device could not create or bind.

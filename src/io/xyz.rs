@@ -212,8 +212,9 @@ fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzErro
 }
 
 fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzError> {
-    let comment = lines.next()?.unwrap_or_default();
-    let columns = Columns::from_comment(comment)
+    // In whatever encoding; what matters of it is ASCII.
+    let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
+    let columns = Columns::from_comment(&comment)
         .map_err(|message| XyzError::Properties { line: lines.line, message })?;
     let mut spheres = Vec::new();
     let mut unknown_species = Vec::new();
@@ -231,7 +232,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         };
         last = Some((species, look));
         if !look.is_element && seen.insert(species) {
-            unknown_species.push(species.to_owned());
+            unknown_species.push(shortened(species));
         }
         let sphere = Sphere {
             center: [
@@ -274,7 +275,8 @@ impl Columns {
         for field in fields.chunks(3) {
             let &[name, kind, count] = field else {
                 return Err(format!(
-                    "Properties={properties} is no list of name:type:columns triples"
+                    "Properties={} is no list of name:type:columns triples",
+                    shortened(properties)
                 ));
             };
             let count: usize = count

@@ -73,7 +73,7 @@ fn data_comes_behind_the_files_own_spheres() {
     let bad = pinhole::Sphere::new(more.center, -2.0, more.color);
     let error = file.scene(&[more, bad]).unwrap_err();
     assert_eq!((error.line, error.column), (1, 8));
-    assert!(error.message.starts_with("sphere 1 of a.xyz: its radius is -2"), "{error}");
+    assert!(error.message.starts_with("sphere 1 of a.xyz: its radius is -2.0"), "{error}");
 }
 
 #[test]
@@ -122,15 +122,15 @@ fn errors_name_place_and_remedy() {
         ("frame = 3\n", "line 1, column 9: `frame` concerns `data`, which is not given"),
         (
             "data = 'a.xyz'\nradius_scale = -1.0\n",
-            "line 2, column 16: `radius_scale` is -1; it must be finite and greater than 0",
+            "line 2, column 16: `radius_scale` is -1.0; it must be finite and greater than 0",
         ),
         (
             "[camera.pinhole]\neye = [1, 1, 1]\nlook_at = [1, 1, 1]\n",
-            "line 1, column 2: the eye and the look-at point are both at [1, 1, 1]; move one of them",
+            "line 1, column 2: the eye and the look-at point are both at [1.0, 1.0, 1.0]; move one of them",
         ),
         (
             "[camera.pinhole]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\n",
-            "line 1, column 2: up [0, 1, 0] is parallel to the direction of view; tilt it",
+            "line 1, column 2: up [0.0, 1.0, 0.0] is parallel to the direction of view; tilt it",
         ),
         (
             "[camera.pinhole]\neye = [0, 5, 0]\n",
@@ -154,14 +154,14 @@ fn errors_name_place_and_remedy() {
         ),
         (
             format!("{SPHERE}\n[[spheres]]\ncenter=[0,0,0]\nradius=-1\n"),
-            "line 5, column 1: sphere 1: its radius is -1; ",
+            "line 5, column 1: sphere 1: its radius is -1.0; ",
         ),
         (
             format!("{SPHERE}[[spheres]]\ncenter=[0,inf,0]\nradius=1\n"),
-            "line 4, column 1: sphere 1: its center is (0, inf, 0); ",
+            "line 4, column 1: sphere 1: its center is [0.0, inf, 0.0]; ",
         ),
         ("[[spheres]]\ncenter=[0,0]\nradius=1\n".into(), "line 2, column 8: "),
-        ("[[spheres]]\nradius=1\n".into(), "line 1, column 1: missing field `center`"),
+        ("[[spheres]]\nradius=1\n".into(), "line 1, column 1: missing key `center`"),
         ("[film\n".into(), "line 1, column 6: "),
         ("x = = 1\n".into(), "line 1, column 5: "),
         ("[film]\nwidth = -5\n".into(), "line 2, column 9: "),
@@ -181,6 +181,31 @@ fn errors_name_place_and_remedy() {
             "[camera.pinhole]\neye = [5e-324, 0, 0]\nlook_at = [0, 0, 0]\n".into(),
             "line 1, column 2: the eye and the look-at point are both at ",
         ),
+        (
+            "[[spheres]]\ncenter=[0,0,0,9]\nradius=1\n".into(),
+            "line 2, column 8: invalid length 4, expected a list of 3 numbers",
+        ),
+        (
+            "[camera.pinhole]\neye=[0,0,5,1]\n".into(),
+            "line 2, column 5: invalid length 4, expected a list of 3 numbers",
+        ),
+        (
+            "[camera.orthographic]\nhalf_extent=[1]\n".into(),
+            "line 2, column 13: invalid length 1, expected a list of 2 numbers",
+        ),
+        ("film = [3, 4]\n".into(), "line 1, column 8: invalid type: sequence, expected a table"),
+        (
+            "spheres = [[[0, 0, 0], 1]]\n".into(),
+            "line 1, column 12: invalid type: sequence, expected a table",
+        ),
+        (
+            "camera.pinhole = []\n".into(),
+            "line 1, column 18: invalid type: sequence, expected a table",
+        ),
+        (
+            "[film]\nwidth = 'a'\n".into(),
+            "line 2, column 9: invalid type: string \"a\", expected a whole number",
+        ),
         ("background = [1, 2]\n".into(), "line 1, column 14: "),
         ("background = [1, -2, 0]\n".into(), "line 1, column 14: "),
     ] {
@@ -188,6 +213,21 @@ fn errors_name_place_and_remedy() {
         assert!(found.starts_with(expected), "{found} does not start with {expected}");
         assert!(!found.contains('\n'), "{found}");
     }
+}
+
+#[test]
+fn a_message_is_short_and_harmless() {
+    let long = "x".repeat(100_000);
+    for text in [format!("{long} = 1\n"), format!("background = '{long}'\n")] {
+        assert!(message(&text).len() < 400);
+    }
+}
+
+/// A thousand times as many spheres must not take a million times as long.
+#[test]
+fn many_spheres() {
+    let text = "[[spheres]]\ncenter=[0,0,0]\nradius=1\n".repeat(30_000);
+    assert_eq!(parse(&text).scene(&[]).unwrap().len(), 30_000);
 }
 
 #[test]

@@ -35,6 +35,7 @@ fn ways_to_write_a_file() {
         ("tabs", " 1 \n\nO\t0\t0\t0\n"),
         ("more columns", "1\n\nO 0 0 0 0.1 0.2 0.3 note\n"),
         ("exponents of Fortran", "1\n\nO 0.0D+00 0d0 0E0\n"),
+        ("a comment in two words", "1\na b\nO 0 0 0\n"),
         ("a byte order mark", "\u{feff}1\n\nO 0 0 0\n"),
         ("blank lines before and behind", "\n\n1\n\nO 0 0 0\n\n \n"),
         ("an empty species list key", "1\nProperties2=x\nO 0 0 0\n"),
@@ -42,6 +43,7 @@ fn ways_to_write_a_file() {
         let frame = read(text.as_bytes(), 0).unwrap_or_else(|error| panic!("{case}: {error}"));
         assert_eq!(frame.spheres[0].center, [0.0; 3], "{case}");
     }
+    assert!(read(b"1\n1 \xc5 wide, in Latin-1\nO 0 0 0\n", 0).is_ok());
     assert_eq!(read(b"0\nnothing\n", 0).unwrap().spheres, []);
 }
 
@@ -106,9 +108,13 @@ fn errors_name_line_and_remedy() {
 #[test]
 fn atoms_out_of_range_are_named_by_line() {
     let with_radius = "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n";
-    assert!(message(with_radius).starts_with("line 3: atom 0: its radius is -2; "));
+    assert!(message(with_radius).starts_with("line 3: atom 0: its radius is -2.0; "));
     let far = "2\n\nO 0 0 0\nO 0 1e30 0\n";
-    assert!(message(far).starts_with("line 4: atom 1: its center is (0, 1"), "{}", message(far));
+    assert!(
+        message(far).starts_with("line 4: atom 1: its center is [0.0, 1e30, 0.0]"),
+        "{}",
+        message(far)
+    );
 }
 
 /// A thousand times as many names must not take a million times as long.

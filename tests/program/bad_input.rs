@@ -24,7 +24,12 @@ fn refused(files: &[(&str, &str)], arguments: &str, code: i32, words: &[&str]) {
 fn files_that_cannot_be_read() {
     refused(&[], "render no.toml -o out.png", 1, &["no.toml", "cannot be read", "No such file"]);
     refused(&[], "render no.xyz -o out.png", 1, &["no.xyz", "cannot be read"]);
-    refused(&[("bad.toml", "data = 'no.xyz'\n")], "render bad.toml -o out.png", 1, &["no.xyz"]);
+    refused(
+        &[("bad.toml", "data = 'no.xyz'\n")],
+        "render bad.toml -o out.png",
+        1,
+        &["bad.toml: `data`: no.xyz"],
+    );
     let folder = Folder::new();
     std::fs::create_dir(folder.path("folder.toml")).unwrap();
     let run = folder.run("render folder.toml -o out.png");
@@ -98,6 +103,8 @@ fn outputs() {
     output("-o out.png --layer depth", &["LAYER=FILE.npy"]);
     output("-o out.png --layer depht=d.npy", &["no layer `depht`", "depth"]);
     output("-o out.png --layer depth=d.exr", &["d.exr", ".npy"]);
+    output("-o out.png --layer depth=", &["--layer depth=", "name a file"]);
+    output("-o out.png/", &["out.png/", "folder"]);
     output("-o out.png --layer depth=no/d.npy", &["the folder no does not exist"]);
     output("-o out.png --layer depth=d.npy --layer id=d.npy", &["d.npy", "two outputs"]);
 }
@@ -109,6 +116,43 @@ fn a_failed_layer_leaves_no_picture() {
     let layer = format!("{}.npy", "a".repeat(300));
     let arguments = format!("render scene.toml -o out.png --backend cpu --layer depth={layer}");
     refused(&[], &arguments, 1, &["aaa.npy", "cannot be written"]);
+}
+
+/// Found before anything is rendered: this size would take minutes.
+#[test]
+#[cfg(unix)]
+fn a_folder_that_cannot_be_written() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    let locked = folder.path("locked");
+    std::fs::create_dir(&locked).unwrap();
+    std::fs::set_permissions(&locked, std::fs::Permissions::from_mode(0o555)).unwrap();
+    if std::fs::write(locked.join("probe"), "").is_ok() {
+        // Nothing is locked for the superuser.
+        return;
+    }
+    let run = folder.run("render scene.toml -o locked/out.png --backend cpu --size 9000x9000");
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("locked/out.png: cannot be written"), "{}", run.stderr);
+}
+
+#[test]
+fn control_characters_do_not_reach_the_terminal() {
+    let text = "\"\\u001b[31mred\" = 1\n";
+    let arguments = "render bad.toml -o out.png";
+    refused(&[("bad.toml", text)], arguments, 1, &["bad.toml", "\\u{1b}"]);
+}
+
+#[test]
+fn a_backend_that_is_not_there_is_named() {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    let mut command = folder.command("render scene.toml -o out.png");
+    let output = command.env("WGPU_BACKEND", "nonsense").output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("WGPU_BACKEND=nonsense"), "{stderr}");
+    assert_eq!(folder.files(), ["scene.toml"]);
 }
 
 #[test]

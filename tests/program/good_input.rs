@@ -159,6 +159,22 @@ fn a_new_picture_takes_the_place_of_an_old_one() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_link_and_permissions_stay() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = Folder::with(&[("scene.toml", SCENE), ("real.png", "old")]);
+    let private = std::fs::Permissions::from_mode(0o600);
+    std::fs::set_permissions(folder.path("real.png"), private).unwrap();
+    std::os::unix::fs::symlink("real.png", folder.path("link.png")).unwrap();
+    folder.run("render scene.toml -o link.png --backend cpu").succeeded();
+    assert!(folder.path("link.png").is_symlink());
+    assert_eq!(decode(&folder.read("real.png")).0, 40);
+    let mode = std::fs::metadata(folder.path("real.png")).unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
+}
+
+#[test]
 fn species_that_are_no_elements_are_drawn_and_noted() {
     let folder = Folder::with(&[("beads.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
     let run = folder.run("render beads.xyz -o out.png --size 20x10 --backend cpu").succeeded();

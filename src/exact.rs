@@ -1,0 +1,68 @@
+//! Reading TOML more strictly than serde does by itself: it takes lists for tables, and drops what an
+//! array has too many of.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+
+/// Exactly `N` numbers.
+pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<[f64; N], D::Error> {
+    struct Numbers<const N: usize>;
+
+    impl<'de, const N: usize> Visitor<'de> for Numbers<N> {
+        type Value = [f64; N];
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "a list of {N} numbers")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<[f64; N], A::Error> {
+            let mut numbers = [0.0; N];
+            let mut count = 0;
+            while let Some(number) = seq.next_element()? {
+                if let Some(place) = numbers.get_mut(count) {
+                    *place = number;
+                }
+                count += 1;
+            }
+            if count == N { Ok(numbers) } else { Err(Error::invalid_length(count, &self)) }
+        }
+    }
+
+    deserializer.deserialize_seq(Numbers)
+}
+
+/// As [`array`], for a key that may be left out.
+pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<Option<[f64; N]>, D::Error> {
+    array(deserializer).map(Some)
+}
+
+/// What is a table in the file.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Table<T>(pub(crate) T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Map<T>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Map<T> {
+            type Value = Table<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Table<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(map)).map(Table)
+            }
+        }
+
+        deserializer.deserialize_map(Map(PhantomData))
+    }
+}
