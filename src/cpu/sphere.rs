@@ -81,6 +81,25 @@ mod tests {
         }
     }
 
+    /// With the eye on the wall, up to rounding, and looking along it, `c` and the half chord are
+    /// nothing but rounding.
+    #[test]
+    fn along_the_wall_no_hit_lies_beyond_the_sphere() {
+        let mut random = fastrand::Rng::with_seed(17);
+        let mut hits = 0;
+        for _ in 0..100_000 {
+            let outward = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);
+            let tilt = outward * (random.f64() - 0.5) * 4e-16;
+            let direction = outward.any_orthonormal_vector() + tilt;
+            let ray = Ray { origin: outward, direction };
+            if let Some((t, _)) = intersect(&ray, DVec3::ZERO, 1.0) {
+                assert!(t <= 2.0, "{outward}: {t}");
+                hits += 1;
+            }
+        }
+        assert!(hits > 1000, "{hits}");
+    }
+
     #[test]
     fn a_far_and_tiny_sphere_has_a_unit_normal() {
         let (_, normal) = intersect(&along_z(0.0, -1.0), DVec3::ZERO, 1e-16).unwrap();

@@ -17,6 +17,7 @@ use crate::trial;
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("embedding::a_foreign_encoder_gets_the_spheres_in_its_texture", foreign_frame),
+        trial("embedding::a_picture_larger_than_one_band", several_bands),
         trial("embedding::one_encoder_holds_several_views", several_views),
         trial("embedding::linear_colors_and_data_layers_in_the_hosts_textures", data_layers),
         trial("embedding::what_wgpu_refuses_never_reaches_the_hosts_handler", hosts_handler),
@@ -154,6 +155,28 @@ fn foreign_frame(_: &'static Headless) {
 
     assert_eq!(bytes.len(), size[0] as usize * size[1] as usize * 4);
     assert!(bytes == expected_bytes(&view), "the texture differs from the reference");
+}
+
+/// More pixels than hits fit into one buffer: the host's picture is rendered in two bands.
+fn several_bands(_: &'static Headless) {
+    let host = Host::new();
+    let mut view = View::three_spheres();
+    view.film = Film::new(2400, 1900).unwrap().with_y_axis(view.film.y_axis());
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let target = host.texture(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
+    let targets = Targets { color: &view_of(&target), data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let View { camera, film, settings, .. } = &view;
+    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    let mut encoder = host.encoder();
+    renderer.record(&mut encoder, &scene, &frame).unwrap();
+    let bytes = host.submit_and_read(encoder, &target);
+    // In a picture this large, some pixels lie so close to a silhouette that either color is right.
+    let expected = expected_bytes(&view);
+    let pixels = bytes.chunks(4).zip(expected.chunks(4));
+    let different = pixels.filter(|(a, b)| a != b).count();
+    assert!(different < 20, "{different} pixels differ from the reference");
 }
 
 fn several_views(_: &'static Headless) {

@@ -79,7 +79,7 @@ fn on_the_wall(headless: &'static Headless) {
         let outward = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);
         let along = outward.any_orthonormal_vector();
         let pose = Pose::looking_along(outward, along, outward).unwrap();
-        let camera = PinholeCamera::new(pose, 1.0, [1.0, 1e-5]).unwrap();
+        let camera = PinholeCamera::new(pose, 1.0, [1.0, 2e-7]).unwrap();
         let settings = Settings::default();
         let image = headless.render(&scene, &camera, &film, &settings, LayerSet::ALL).unwrap();
         for depth in image.depth().unwrap().iter().filter(|depth| depth.is_finite()) {

@@ -12,6 +12,7 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("three_spheres", View::three_spheres()),
         ("three_spheres_orthographic", View::three_spheres_orthographic()),
         ("inside_a_sphere", inside_a_sphere()),
+        ("inside_looking_out", inside_looking_out()),
         ("far_and_tiny", far_and_tiny()),
         ("tangent_rays", tangent_rays()),
         ("coincident_spheres", coincident_spheres()),
@@ -79,6 +80,12 @@ fn inside_a_sphere() -> View {
     let spheres =
         [sphere([0.0; 3], 10.0), sphere([0.0, 0.0, -5.0], 1.0), sphere([2.0, 1.0, -11.0], 3.0)];
     view(&spheres, pinhole([0.0, 1.0, 2.0], [0.0, 0.0, -5.0], 90.0, 1.0), (64, 64), headlight())
+}
+
+/// Off the middle, and away from it: every ray leaves the centre behind.
+fn inside_looking_out() -> View {
+    let spheres = [sphere([0.0; 3], 10.0), sphere([1.0, 0.0, 0.0], 14.0)];
+    view(&spheres, pinhole([6.0, 2.0, -1.0], [12.0, 4.0, -2.0], 90.0, 1.0), (64, 64), headlight())
 }
 
 /// So far away that f32 hardly knows where on the sphere a ray arrives.
