@@ -82,18 +82,19 @@ mod tests {
     }
 
     /// With the eye on the wall, up to rounding, and looking along it, `c` and the half chord are
-    /// nothing but rounding.
+    /// nothing but rounding; but what a ray that is so flat cuts off the sphere is short: √(8 · 2⁻⁵³) is
+    /// 3 · 10⁻⁸.
     #[test]
-    fn along_the_wall_no_hit_lies_beyond_the_sphere() {
+    fn along_the_wall_no_hit_is_far() {
         let mut random = fastrand::Rng::with_seed(17);
         let mut hits = 0;
         for _ in 0..100_000 {
             let outward = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);
-            let tilt = outward * (random.f64() - 0.5) * 4e-16;
+            let tilt = outward * (random.f64() - 0.5) * 2e-11;
             let direction = outward.any_orthonormal_vector() + tilt;
             let ray = Ray { origin: outward, direction };
             if let Some((t, _)) = intersect(&ray, DVec3::ZERO, 1.0) {
-                assert!(t <= 2.0, "{outward}: {t}");
+                assert!(t <= 1e-7, "{outward}: {t}");
                 hits += 1;
             }
         }
