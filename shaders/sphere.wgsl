@@ -2,9 +2,9 @@
 //
 // Haines, Guenther and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray
 // Tracing Gems, chapter 7 (2019): the discriminant from the foot point (after Hearn and Baker), so
-// that it does not drown in the squared distance, and the roots as c/q and q, so that neither is a
-// difference of nearly equal numbers. Changed here: the direction has unit length, and only the root
-// that counts is computed. The direction must be unit; a tangent ray hits.
+// that it does not drown in the squared distance, and the roots as q and c/q, so that neither is a
+// difference of nearly equal numbers. Changed here: the direction must have unit length, and only the
+// root that counts is computed. A tangent ray hits.
 
 struct SphereHit {
     // Distance to the first point in front of the origin (from inside: the far wall), or NO_HIT.
@@ -20,32 +20,22 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     let b = dot(to_center, ray.direction);
     let foot_to_center = to_center - b * ray.direction;
     let discriminant = radius * radius - dot(foot_to_center, foot_to_center);
-    // The product of the two roots: negative if the origin is inside.
-    let c = dot(to_center, to_center) - radius * radius;
-
     var hit = SphereHit(NO_HIT, 0.0, foot_to_center);
-    if (discriminant < 0.0 || (c > 0.0 && b <= 0.0)) {
+    if (discriminant < 0.0) {
         return hit;
     }
+    // The product of the distances to both walls: positive outside, zero on the wall.
+    let c = dot(to_center, to_center) - radius * radius;
     let half_chord = sqrt(discriminant);
-    let outside = c > 0.0;
-    hit.from_foot = select(half_chord, -half_chord, outside);
-    // The near root is at most b, and the far root of a ray that leaves at most the half chord. Where
-    // the origin is almost on the wall, rounding can make c and the discriminant disagree; then the
-    // quotient would be larger, or without bound.
+    hit.from_foot = select(half_chord, -half_chord, c > 0.0);
+    // b + from_foot; where the two would cancel, from (b + from_foot)(b - from_foot) = c.
     var t: f32;
-    if (outside) {
-        let q = b + half_chord;
-        t = b;
-        if (c < b * q) { t = c / q; }
-    } else if (b >= 0.0) {
-        t = b + half_chord;
+    if (b * hit.from_foot >= 0.0) {
+        t = b + hit.from_foot;
     } else {
-        let q = b - half_chord;
-        t = half_chord;
-        if (c > half_chord * q) { t = c / q; }
+        t = c / (b - hit.from_foot);
     }
-    // On the wall and leaving, t is zero.
+    // Behind the origin t is negative; on the wall and leaving it is zero.
     if (t > 0.0) {
         hit.t = t;
     }

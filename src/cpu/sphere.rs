@@ -25,13 +25,8 @@ pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, D
     let c = to_center.length_squared() - radius * radius;
     let half_chord = half_chord_squared.sqrt();
     let from_foot = if c > 0.0 { -half_chord } else { half_chord };
-    // b + from_foot; where the two would cancel, from (b + from_foot)(b − from_foot) = c, and no more
-    // than the positive one of the two.
-    let t = if b * from_foot >= 0.0 {
-        b + from_foot
-    } else {
-        (c / (b - from_foot)).min(b.max(from_foot))
-    };
+    // b + from_foot; where the two would cancel, from (b + from_foot)(b − from_foot) = c.
+    let t = if b * from_foot >= 0.0 { b + from_foot } else { c / (b - from_foot) };
     (t > 0.0).then(|| (t, (from_foot * ray.direction - foot_to_center) / radius))
 }
 
