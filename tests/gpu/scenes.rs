@@ -13,6 +13,8 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("three_spheres_orthographic", View::three_spheres_orthographic()),
         ("inside_a_sphere", inside_a_sphere()),
         ("inside_looking_out", inside_looking_out()),
+        ("on_the_wall_looking_in", on_the_wall([0.0, 0.3, 0.1])),
+        ("on_the_wall_looking_out", on_the_wall([5.0, 0.3, 0.1])),
         ("far_and_tiny", far_and_tiny()),
         ("tangent_rays", tangent_rays()),
         ("coincident_spheres", coincident_spheres()),
@@ -86,6 +88,12 @@ fn inside_a_sphere() -> View {
 fn inside_looking_out() -> View {
     let spheres = [sphere([0.0; 3], 10.0), sphere([1.0, 0.0, 0.0], 14.0)];
     view(&spheres, pinhole([6.0, 2.0, -1.0], [12.0, 4.0, -2.0], 90.0, 1.0), (64, 64), headlight())
+}
+
+/// The eye lies exactly on the wall, also in f32: the near wall is behind, or not at all.
+fn on_the_wall(look_at: [f64; 3]) -> View {
+    let camera = pinhole([2.0, 0.0, 0.0], look_at, 90.0, 1.0);
+    view(&[sphere([0.0; 3], 2.0)], camera, (64, 64), headlight())
 }
 
 /// So far away that f32 hardly knows where on the sphere a ray arrives.
