@@ -14,6 +14,8 @@ struct Info {
     version: &'static str,
     /// The best first; `render` takes the one that is `chosen`.
     adapters: Vec<AdapterReport>,
+    /// Why none is chosen, in the words of `render`.
+    problem: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -51,7 +53,7 @@ struct Features {
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let info = Info { version: env!("CARGO_PKG_VERSION"), adapters: adapters() };
+    let info = info();
     let text = if args.json {
         serde_json::to_string_pretty(&info).context("the report")? + "\n"
     } else {
@@ -59,15 +61,26 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     };
     Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 #[cfg(feature = "gpu")]
-fn adapters() -> Vec<AdapterReport> {
-    use crate::gpu::adapter;
+fn info() -> Info {
+    use crate::gpu::{GpuError, adapter};
 
     let adapters = adapter::adapters();
     // The same choice as `render` makes, also when WGPU_ADAPTER_NAME asks for another adapter.
-    let chosen = adapter::index_of_choice(&adapters, None).ok();
-    let is_chosen = |index| chosen == Some(index);
-    adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index))).collect()
+    let choice = adapter::index_of_choice(&adapters, None);
+    let is_chosen = |index| choice == Ok(index);
+    let reports = adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index)));
+    Info {
+        version: VERSION,
+        adapters: reports.collect(),
+        problem: choice.as_ref().err().map(|error| match error {
+            GpuError::NoAdapter => format!("{error}; `render` uses the CPU reference"),
+            refused => format!("`render` refuses: {refused}"),
+        }),
+    }
 }
 
 #[cfg(feature = "gpu")]
@@ -113,15 +126,15 @@ fn report(adapter: &crate::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn adapters() -> Vec<AdapterReport> {
-    Vec::new()
+fn info() -> Info {
+    let problem = "built without the feature `gpu`; `render` uses the CPU reference";
+    Info { version: VERSION, adapters: Vec::new(), problem: Some(problem.to_owned()) }
 }
 
 fn readable(info: &Info) -> String {
     let mut text = format!("pinhole {}\n", info.version);
-    if info.adapters.is_empty() {
-        text += "no Vulkan, Metal or DX12 adapter was found; `render` uses the CPU reference\n";
-        text += "a software adapter on Debian and Ubuntu: apt install mesa-vulkan-drivers\n";
+    if let Some(problem) = &info.problem {
+        text += &format!("{problem}\n");
     }
     for adapter in &info.adapters {
         let mark = if adapter.chosen { ", used by `render`" } else { "" };

@@ -142,6 +142,11 @@ fn a_backend_that_is_not_there_is_named() {
     assert_eq!(output.status.code(), Some(1));
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(stderr.contains("WGPU_BACKEND=nonsense"), "{stderr}");
+    // And `info` says what `render` does.
+    let info = folder.command("info").env("WGPU_BACKEND", "nonsense").output().unwrap();
+    let text = String::from_utf8(info.stdout).unwrap();
+    assert!(text.contains("`render` refuses: WGPU_BACKEND=nonsense"), "{text}");
+    assert!(!text.contains("CPU reference"), "{text}");
     assert_eq!(folder.files(), ["scene.toml"]);
 }
 

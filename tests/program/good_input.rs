@@ -53,7 +53,9 @@ fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
     );
 
     let run = folder.run_without_drivers("info").succeeded();
-    assert!(String::from_utf8(run.stdout).unwrap().contains("no Vulkan, Metal or DX12 adapter"));
+    let text = String::from_utf8(run.stdout).unwrap();
+    assert!(text.contains("no Vulkan, Metal or DX12 adapter"), "{text}");
+    assert!(text.contains("mesa-vulkan-drivers") && text.contains("CPU reference"), "{text}");
 }
 
 /// A name in the environment chooses among adapters; where there are none, there is nothing to choose.
