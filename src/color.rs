@@ -106,13 +106,13 @@ fn decode_srgb8(byte: u8) -> f32 {
     decode_srgb(f64::from(byte) / 255.0) as f32
 }
 
-/// The linear values half-way, in sRGB, between neighbouring bytes. Looking a value up in them takes a
-/// fifth of the time of the inverse transfer function, and rounds to the nearest byte as well.
+/// The linear values half-way, in sRGB, between neighbouring bytes. Looking a value up in them is quicker
+/// than the inverse transfer function, and rounds to the nearest byte as well.
 static BETWEEN_BYTES: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode_srgb((byte as f64 + 0.5) / 255.0) as f32));
 
 fn encode_srgb8(linear: f32) -> u8 {
-    // NaN is below none of them, and so 0.
+    // None of them is at most NaN, which so becomes 0.
     BETWEEN_BYTES.partition_point(|between| *between <= linear) as u8
 }
 

@@ -5,7 +5,28 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, Expected, MapAccess, SeqAccess, Visitor};
+
+/// All elements of a list that must have exactly `N`.
+pub(crate) fn elements<
+    'de,
+    A: SeqAccess<'de>,
+    T: Deserialize<'de> + Copy + Default,
+    const N: usize,
+>(
+    mut seq: A,
+    expected: &dyn Expected,
+) -> Result<[T; N], A::Error> {
+    let mut elements = [T::default(); N];
+    let mut count = 0;
+    while let Some(element) = seq.next_element()? {
+        if let Some(place) = elements.get_mut(count) {
+            *place = element;
+        }
+        count += 1;
+    }
+    if count == N { Ok(elements) } else { Err(Error::invalid_length(count, expected)) }
+}
 
 /// Exactly `N` numbers.
 pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
@@ -20,16 +41,8 @@ pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
             write!(f, "a list of {N} numbers")
         }
 
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<[f64; N], A::Error> {
-            let mut numbers = [0.0; N];
-            let mut count = 0;
-            while let Some(number) = seq.next_element()? {
-                if let Some(place) = numbers.get_mut(count) {
-                    *place = number;
-                }
-                count += 1;
-            }
-            if count == N { Ok(numbers) } else { Err(Error::invalid_length(count, &self)) }
+        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<[f64; N], A::Error> {
+            elements(seq, &self)
         }
     }
 

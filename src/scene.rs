@@ -94,6 +94,12 @@ impl Scene {
         self.bounds
     }
 
+    /// The box that a camera should show: of all spheres, or if there are none a unit cube.
+    #[must_use]
+    pub fn bounds_to_frame(&self) -> Bounds {
+        self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
+    }
+
     /// How many spheres there are.
     #[must_use]
     pub fn len(&self) -> usize {

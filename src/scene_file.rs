@@ -92,7 +92,7 @@ impl SceneFile {
         let defaults = Settings::default();
         Ok(Self {
             film: film.with_y_axis(y),
-            settings: Settings::default()
+            settings: defaults
                 .with_shading(document.shading.unwrap_or(defaults.shading()))
                 .with_background(document.background.map_or(defaults.background(), |c| c.0)),
             data: data(&lines, document.data, document.frame, document.radius_scale)?,
@@ -146,25 +146,10 @@ impl SceneFile {
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
     pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
-        // An empty scene is as good as a unit cube.
-        let unit_cube = Bounds::of_sphere(scene.origin(), 0.5);
         self.camera
             .value
-            .camera(film.aspect(), &scene.bounds().unwrap_or(unit_cube))
+            .camera(film.aspect(), &scene.bounds_to_frame())
             .map_err(|error| self.camera.place.error(error))
-    }
-}
-
-impl Default for SceneFile {
-    /// An empty scene file: everything by default, no spheres.
-    fn default() -> Self {
-        Self {
-            film: Film::default(),
-            settings: Settings::default(),
-            data: None,
-            camera: Placed { value: CameraParameters::default(), place: Place::START },
-            spheres: Vec::new(),
-        }
     }
 }
 
@@ -385,15 +370,8 @@ impl<'de> Deserialize<'de> for ColorValue {
                 LinearRgb::from_css(text).map(ColorValue).map_err(E::custom)
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<ColorValue, A::Error> {
-                let mut rgb = [0.0; 3];
-                for (i, value) in rgb.iter_mut().enumerate() {
-                    *value =
-                        seq.next_element()?.ok_or_else(|| de::Error::invalid_length(i, &self))?;
-                }
-                if seq.next_element::<f32>()?.is_some() {
-                    return Err(de::Error::invalid_length(4, &self));
-                }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ColorValue, A::Error> {
+                let rgb = exact::elements(seq, &self)?;
                 LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
             }
         }

@@ -61,7 +61,7 @@ impl PinholeCamera {
     /// # Errors
     /// If the aspect ratio is not greater than zero, or the eye would have to stand too far away.
     pub fn framing_from_the_front(bounds: &Bounds, aspect: f64) -> Result<Self, CameraError> {
-        let pose = Pose::looking_along(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y)?;
+        let pose = Pose::looking_along(DVec3::ZERO, Pose::DEFAULT_DIRECTION, DVec3::Y)?;
         Self::framing(bounds, pose, Self::DEFAULT_FOV_RADIANS, aspect)
     }
 

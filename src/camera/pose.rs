@@ -80,6 +80,9 @@ pub enum CameraError {
 }
 
 impl Pose {
+    /// Where a camera looks that is told nothing: along −z, as molecule viewers do.
+    pub(super) const DEFAULT_DIRECTION: [f64; 3] = [0.0, 0.0, -1.0];
+
     /// At `eye`, turned towards `look_at`; `up` fixes the roll and need not be perpendicular or unit.
     ///
     /// # Errors
@@ -93,11 +96,13 @@ impl Pose {
         let (eye, look_at, up) = (eye.into(), look_at.into(), up.into());
         checked_point("the eye", eye)?;
         checked_point("the look-at point", look_at)?;
-        if eye == look_at {
-            return Err(CameraError::EyeAtTarget { eye });
-        }
-        let basis = OrthonormalBasis::looking_at(eye, look_at, up)
-            .map_err(|error| camera_error(error, eye, up))?;
+        checked_direction("up", up)?;
+        let basis =
+            OrthonormalBasis::looking_at(eye, look_at, up).map_err(|error| match error {
+                BasisError::Parallel { .. } => CameraError::UpParallelToView { up },
+                // All vectors are finite, and `up` is not zero.
+                _ => CameraError::EyeAtTarget { eye },
+            })?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -112,14 +117,11 @@ impl Pose {
     ) -> Result<Self, CameraError> {
         let (eye, direction, up) = (eye.into(), direction.into(), up.into());
         checked_point("the eye", eye)?;
-        if !direction.is_finite() {
-            return Err(CameraError::Vector { parameter: "the direction", value: direction });
-        }
-        if direction == DVec3::ZERO {
-            return Err(CameraError::Zero { parameter: "the direction" });
-        }
+        checked_direction("the direction", direction)?;
+        checked_direction("up", up)?;
+        // Two finite vectors that are not zero can only be parallel.
         let basis = OrthonormalBasis::from_vectors(-direction, up)
-            .map_err(|error| camera_error(error, eye, up))?;
+            .map_err(|_| CameraError::UpParallelToView { up })?;
         Ok(Self { origin: eye, basis })
     }
 
@@ -152,16 +154,15 @@ fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraErro
     }
 }
 
-/// Eye, target and direction are checked before a basis is built, so nearly all that is left concerns
-/// `up`.
-fn camera_error(error: BasisError, eye: DVec3, up: DVec3) -> CameraError {
-    match error {
-        BasisError::NotFinite { .. } => CameraError::Vector { parameter: "up", value: up },
-        BasisError::Zero { name: "up" | "b" } => CameraError::Zero { parameter: "up" },
-        // Half the distance of the two points is zero in f64.
-        BasisError::Zero { .. } => CameraError::EyeAtTarget { eye },
-        BasisError::Parallel { .. } => CameraError::UpParallelToView { up },
+/// Refuses a vector that says no direction.
+fn checked_direction(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
+    if !value.is_finite() {
+        return Err(CameraError::Vector { parameter, value });
     }
+    if value == DVec3::ZERO {
+        return Err(CameraError::Zero { parameter });
+    }
+    Ok(())
 }
 
 /// Eye, target and up as a scene file gives them.
@@ -204,7 +205,7 @@ impl PoseParameters {
                 message: "`look_at` needs an `eye`; to frame the whole scene give a `direction`",
             }),
             (None, None, direction) => {
-                let direction = direction.unwrap_or([0.0, 0.0, -1.0]);
+                let direction = direction.unwrap_or(Pose::DEFAULT_DIRECTION);
                 Pose::looking_along(DVec3::ZERO, direction, self.up).map(Placement::Framed)
             }
         }

@@ -3,10 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
-use glam::DVec3;
 
 use super::failure::Failure;
-use crate::bounds::Bounds;
 use crate::camera::{Camera, PinholeCamera};
 use crate::film::Film;
 use crate::io::xyz;
@@ -43,8 +41,7 @@ pub(super) enum DataFormat {
 impl Format {
     /// The format that an extension stands for.
     pub(super) fn of(path: &Path) -> Result<Self> {
-        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("toml") => Ok(Self::Scene),
             Some("xyz" | "extxyz") => Ok(Self::Data(DataFormat::Xyz)),
             _ => bail!(
@@ -54,6 +51,11 @@ impl Format {
             ),
         }
     }
+}
+
+/// What stands behind the last dot of a file's name, in small letters.
+pub(super) fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
 /// Reads a scene or data file. `size` and `frame` take the place of what the file says.
@@ -73,10 +75,8 @@ pub(super) fn load(
     let place = || path.display().to_string();
     let (film, size_from) = film(Film::default(), size, path)?;
     let scene = Scene::new(&spheres).with_context(place)?;
-    // Nothing to see is as good as a unit cube.
-    let bounds = scene.bounds().unwrap_or(Bounds::of_sphere(DVec3::ZERO, 0.5));
-    let camera =
-        PinholeCamera::framing_from_the_front(&bounds, film.aspect()).with_context(place)?;
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())
+        .with_context(place)?;
     let (camera, settings) = (Box::new(camera), Settings::default());
     Ok(Input { scene, camera, film, settings, size_from, notes })
 }

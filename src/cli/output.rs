@@ -9,6 +9,7 @@ use anyhow::{Context, Result, anyhow};
 use tempfile::NamedTempFile;
 
 use super::failure::Failure;
+use super::input::extension;
 use super::speak::answer;
 use crate::image::{Image, Layer};
 use crate::io::{npy, png};
@@ -140,11 +141,10 @@ fn parse_layer(text: &str) -> Result<(Layer, PathBuf), Failure> {
     Ok((layer, PathBuf::from(path)))
 }
 
-fn check_file(path: &Path, extension: &str) -> Result<(), Failure> {
-    let found = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    if found.as_deref() != Some(extension) {
+fn check_file(path: &Path, wanted: &str) -> Result<(), Failure> {
+    if extension(path).as_deref() != Some(wanted) {
         return Err(Failure::usage(format!(
-            "{}: this output is written as .{extension}; change its extension",
+            "{}: this output is written as .{wanted}; change its extension",
             path.display()
         )));
     }

@@ -21,7 +21,6 @@ const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
-        backends: PLATFORM_BACKEND,
         // Not the default, which loads validation layers in debug builds: they cost start-up time,
         // and the same layers would have to be installed everywhere.
         flags: wgpu::InstanceFlags::empty(),
@@ -64,14 +63,12 @@ pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     Ok(adapters)
 }
 
-/// The adapter that [`index_of_choice`] names.
+/// The first of the [`candidates`].
 ///
 /// # Errors
 /// As [`index_of_choice`].
 pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
-    let mut adapters = adapters();
-    let index = index_of_choice(&adapters, name)?;
-    Ok(adapters.swap_remove(index))
+    candidates(name)?.into_iter().next().ok_or(GpuError::NoAdapter)
 }
 
 /// Which of [`adapters`] to use: the best whose name contains `name`, or else the value of
