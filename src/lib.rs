@@ -34,6 +34,7 @@
 
 pub use glam;
 
+pub mod accel;
 pub mod basis;
 pub mod bounds;
 pub mod camera;

@@ -1,5 +1,7 @@
 //! Spheres, checked once and then immutable.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use crate::bounds::Bounds;
@@ -15,7 +17,9 @@ use crate::sphere::{Sphere, SphereError};
 pub struct Scene {
     origin: DVec3,
     spheres: Vec<[f32; 4]>,
-    colors: Vec<LinearRgb>,
+    palette: Vec<LinearRgb>,
+    /// Of each sphere, its place in the palette; `None` if all have the first colour.
+    color_indices: Option<Vec<u32>>,
     bounds: Option<Bounds>,
 }
 
@@ -56,6 +60,7 @@ impl Scene {
             .map(|s| Bounds::of_sphere(DVec3::from(s.center), s.radius))
             .reduce(Bounds::union);
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        let (palette, color_indices) = palette(spheres.iter().map(|s| s.color));
         Ok(Self {
             origin,
             spheres: spheres
@@ -65,7 +70,8 @@ impl Scene {
                     [offset.x, offset.y, offset.z, s.radius as f32]
                 })
                 .collect(),
-            colors: spheres.iter().map(|s| s.color).collect(),
+            palette,
+            color_indices,
             bounds,
         })
     }
@@ -82,10 +88,30 @@ impl Scene {
         &self.spheres
     }
 
-    /// The colour of every sphere, in input order.
+    /// The colour of a sphere, by its index in input order.
+    ///
+    /// # Panics
+    /// If there is no such sphere.
     #[must_use]
-    pub fn colors(&self) -> &[LinearRgb] {
-        &self.colors
+    pub fn color(&self, id: u32) -> LinearRgb {
+        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        match &self.color_indices {
+            Some(indices) => self.palette[indices[id as usize] as usize],
+            None => self.palette[0],
+        }
+    }
+
+    /// Every colour that occurs, once; at least one if there is a sphere.
+    #[must_use]
+    pub fn palette(&self) -> &[LinearRgb] {
+        &self.palette
+    }
+
+    /// Of every sphere, in input order, the place of its colour in the palette; `None` if all have the
+    /// first.
+    #[must_use]
+    pub fn color_indices(&self) -> Option<&[u32]> {
+        self.color_indices.as_deref()
     }
 
     /// The box of all spheres in the world, or `None` if there are none.
@@ -122,4 +148,22 @@ fn frame_origin(bounds: Bounds) -> DVec3 {
     let width = bounds.size().max_element();
     let along = |center: f64| if center.abs() <= width { 0.0 } else { f64::from(center as f32) };
     DVec3::from(bounds.center().to_array().map(along))
+}
+
+/// Every colour once, in the order of first use, and the place of each sphere's; `None` if there is but
+/// one.
+fn palette(colors: impl Iterator<Item = LinearRgb>) -> (Vec<LinearRgb>, Option<Vec<u32>>) {
+    let mut palette = Vec::new();
+    let mut places = HashMap::new();
+    let indices: Vec<u32> = colors
+        .map(|color| {
+            *places.entry(color.to_array().map(f32::to_bits)).or_insert_with(|| {
+                palette.push(color);
+                // No more than spheres, which are fewer than 2³².
+                palette.len() as u32 - 1
+            })
+        })
+        .collect();
+    let several = palette.len() > 1;
+    (palette, several.then_some(indices))
 }

@@ -16,7 +16,7 @@ pub fn shade(scene: &Scene, settings: &Settings, ray: &Ray, hit: Option<&Hit>) -
             id: NO_ID,
         };
     };
-    let surface = scene.colors()[hit.id as usize].to_array();
+    let surface = scene.color(hit.id).to_array();
     let color = match settings.shading() {
         Shading::Flat => surface,
         Shading::Headlight => {

@@ -60,7 +60,7 @@ impl SceneBuffers {
         )?;
         let mut spheres = scene.spheres();
         let mut colors: Vec<records::Color> =
-            scene.colors().iter().map(|c| pad(c.to_array())).collect();
+            (0..scene.len()).map(|id| pad(scene.color(id as u32).to_array())).collect();
         if scene.is_empty() {
             spheres = &[[0.0; 4]];
             colors.push([0.0; 4]);

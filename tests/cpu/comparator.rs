@@ -39,9 +39,12 @@ fn spoilt([i, j]: [u32; 2], change: impl FnOnce(&mut Pixel)) -> Vec<Violation> {
 
 /// The scene with every sphere changed.
 fn with_spheres(view: &View, change: impl Fn(&mut Vec<Sphere>)) -> Scene {
-    let spheres = view.scene.spheres().iter().zip(view.scene.colors());
+    let spheres = view.scene.spheres().iter().zip(0..);
     let mut spheres = spheres
-        .map(|(s, color)| Sphere::new([s[0].into(), s[1].into(), s[2].into()], s[3].into(), *color))
+        .map(|(s, id)| {
+            let center = [s[0].into(), s[1].into(), s[2].into()];
+            Sphere::new(center, s[3].into(), view.scene.color(id))
+        })
         .collect();
     change(&mut spheres);
     Scene::new(&spheres).unwrap()

@@ -55,9 +55,9 @@ fn colors_in_three_ways() {
          [[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor=[0.25, 1, 3.5]\n",
     );
     let scene = file.scene(&[]).unwrap();
-    assert_eq!(scene.colors()[0], LinearRgb::from_srgb8([255, 99, 71]));
-    assert_eq!(scene.colors()[0], scene.colors()[1]);
-    assert_eq!(scene.colors()[2].to_array(), [0.25, 1.0, 3.5]);
+    assert_eq!(scene.color(0), LinearRgb::from_srgb8([255, 99, 71]));
+    assert_eq!(scene.color(0), scene.color(1));
+    assert_eq!(scene.color(2).to_array(), [0.25, 1.0, 3.5]);
 }
 
 #[test]

@@ -110,7 +110,7 @@ fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
     let background = view.settings.background();
     let color = |id: &u32| {
-        if *id == NO_ID { background } else { view.scene.colors()[*id as usize] }
+        if *id == NO_ID { background } else { view.scene.color(*id) }
     };
     let rgba = |id| {
         let [r, g, b] = color(id).to_srgb8();

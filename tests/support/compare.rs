@@ -130,8 +130,7 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     // surface faces the ray, and at most by the half chord's change at the silhouette, sqrt(2 r d).
     let along = displacement + (displacement / cosine).min((2.0 * radius * displacement).sqrt());
     let normal = (displacement + along) / radius;
-    let brightest =
-        view.scene.colors()[reference.id as usize].to_array().into_iter().fold(0.0, f32::max);
+    let brightest = view.scene.color(reference.id).to_array().into_iter().fold(0.0, f32::max);
     PixelBounds {
         depth: along,
         normal,

@@ -1,0 +1,24 @@
+//! One ray against one sphere, in f32. Twin of `intersect_sphere` in `shaders/sphere.wgsl`, line by line.
+
+use glam::Vec3;
+
+use super::query::{NO_HIT, RayF32};
+
+/// The distance to the first point of the sphere in front of the ray's origin (from inside: the far
+/// wall), or [`NO_HIT`].
+#[inline]
+#[must_use]
+pub fn intersect_sphere(ray: &RayF32, [x, y, z, radius]: [f32; 4]) -> f32 {
+    let to_center = Vec3::new(x, y, z) - ray.origin;
+    let b = to_center.dot(ray.direction);
+    let foot_to_center = to_center - b * ray.direction;
+    let discriminant = radius * radius - foot_to_center.dot(foot_to_center);
+    if discriminant < 0.0 {
+        return NO_HIT;
+    }
+    let c = to_center.dot(to_center) - radius * radius;
+    let half_chord = discriminant.sqrt();
+    let from_foot = if c > 0.0 { -half_chord } else { half_chord };
+    let t = if b * from_foot >= 0.0 { b + from_foot } else { c / (b - from_foot) };
+    if t > 0.0 { t } else { NO_HIT }
+}
