@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, HeadlessOptions};
 use pinhole::scene_file::SceneFile;
 use pinhole::{Film, LayerSet, cpu};
 
@@ -22,7 +22,7 @@ fn three_spheres(criterion: &mut Criterion) {
     group.bench_function("cpu", |b| {
         b.iter(|| cpu::render(&scene, camera.as_ref(), &film, &file.settings, LayerSet::COLOR));
     });
-    let headless = Headless::open(None).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     for (layers, name) in [(LayerSet::COLOR, "color"), (LayerSet::ALL, "all layers")] {
         // With the copy back to the host, as a headless user has it.
         let name = format!("{}, {name}", headless.adapter_info().name);

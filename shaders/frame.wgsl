@@ -5,14 +5,28 @@ const NO_HIT: f32 = 1e30;
 const NO_ID: u32 = 0xffffffffu;
 
 struct Hit {
+    // From where the ray enters the scene's box.
     t: f32,
+    // Index in input order.
     id: u32,
+    // Index into the spheres of all bricks.
+    place: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-// Row by row, of the tile.
-@group(0) @binding(1) var<storage, read_write> hits: array<Hit>;
+// Row by row, of the tile: the bits of t, id, place, and nothing. One vector, because a software device reads
+// and writes a structure word by word.
+@group(0) @binding(1) var<storage, read_write> hits: array<vec4u>;
 
 fn hit_index(pixel_in_tile: vec2u) -> u32 {
     return pixel_in_tile.y * frame.tile_size.x + pixel_in_tile.x;
+}
+
+fn load_hit(index: u32) -> Hit {
+    let bits = hits[index];
+    return Hit(bitcast<f32>(bits.x), bits.y, bits.z);
+}
+
+fn store_hit(index: u32, hit: Hit) {
+    hits[index] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, 0u);
 }

@@ -13,19 +13,37 @@ struct Frame {
     camera: Camera,
     background: vec3f,
     shading: u32,
+    // The box of all spheres, a little larger.
+    scene_min: vec3f,
+    // How many iterations of loops an invocation may take.
+    iteration_limit: u32,
+    scene_max: vec3f,
+    // +1 if y = +1 is the top row, -1 if it is the bottom row.
+    y_sign: f32,
     film_size: vec2u,
     // The part of the film that this dispatch renders, in pixels.
     tile_origin: vec2u,
     tile_size: vec2u,
     // Where that part lies in the target textures.
     target_origin: vec2u,
-    // +1 if y = +1 is the top row, -1 if it is the bottom row.
-    y_sign: f32,
-    sphere_count: u32,
+    // The first workgroup of the slice of the tile that is traced, in workgroups.
+    first_group: vec2u,
+    // Row i of workgroups is row i * row_step modulo row_count of the tile.
+    row_step: u32,
+    row_count: u32,
 }
 
-// A run of consecutive spheres, short enough for one dispatch.
-struct Slice {
-    first: u32,
-    count: u32,
+// A part of the scene that fits into bindings.
+struct Brick {
+    // Of a grid: its corner, and its cells.
+    min: vec3f,
+    cell_size: f32,
+    cell_counts: vec3u,
+    // How many elements `spheres` has.
+    place_count: u32,
+    // How many places there are in the bricks before this one.
+    first_place: u32,
+    is_first: u32,
+    // The index of the last element of `color_indices`.
+    last_color: u32,
 }

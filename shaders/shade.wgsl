@@ -1,24 +1,35 @@
-// From hits to pixels. Twin: src/cpu/shade.rs.
+// From hits to pixels. One dispatch per brick, each for the pixels whose nearest sphere it holds; the first
+// also for misses. Twin: src/cpu/shade.rs.
 
-@group(1) @binding(0) var<storage, read> spheres: array<vec4f>;
-// Linear colour of each sphere; the fourth component is unused.
-@group(1) @binding(1) var<storage, read> colors: array<vec4f>;
+@group(1) @binding(0) var<uniform> brick: Brick;
+@group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
+// Of each sphere, its place in the palette; one element if all have the first colour.
+@group(1) @binding(2) var<storage, read> color_indices: array<u32>;
+// Linear colours; the fourth component is unused.
+@group(1) @binding(3) var<storage, read> palette: array<vec4f>;
 
 @compute @workgroup_size(8, 8)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (any(invocation.xy >= frame.tile_size)) {
         return;
     }
-    let hit = hits[hit_index(invocation.xy)];
+    let hit = load_hit(hit_index(invocation.xy));
     let pixel = frame.target_origin + invocation.xy;
-    // Not only `hit.id == NO_ID`: an index from a buffer is checked before it is used.
-    if (hit.id >= frame.sphere_count) {
-        write_color(pixel, frame.background);
-        write_layers(pixel, NO_HIT, vec3f(0.0), NO_ID);
+    if (hit.id == NO_ID) {
+        if (brick.is_first != 0u) {
+            write_color(pixel, frame.background);
+            write_layers(pixel, NO_HIT, vec3f(0.0), NO_ID);
+        }
         return;
     }
-    let ray = camera_ray(relative_location(frame.tile_origin + invocation.xy));
-    let normal = sphere_normal(ray, intersect_sphere(ray, spheres[hit.id]));
-    write_color(pixel, surface_color(colors[hit.id].rgb, normal, ray));
-    write_layers(pixel, hit.t, normal, hit.id);
+    let place = hit.place - brick.first_place;
+    // What lies before the brick has become a large number.
+    if (place >= brick.place_count) {
+        return;
+    }
+    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + invocation.xy)));
+    let normal = sphere_normal(entry.ray, intersect_sphere(entry.ray, spheres[place]));
+    let color = palette[color_indices[min(place, brick.last_color)]].rgb;
+    write_color(pixel, surface_color(color, normal, entry.ray));
+    write_layers(pixel, entry.distance + hit.t, normal, hit.id);
 }

@@ -1,28 +1,26 @@
-// Nearest hit by trying every sphere of one slice; slices are dispatched one after the other, in
-// ascending order. Twin: src/cpu/trace.rs.
+// The nearest sphere of every pixel's ray. One dispatch per brick; each keeps what is nearer than what
+// the bricks before it found. Twin: src/accel/mod.rs.
 
-@group(1) @binding(0) var<uniform> slice: Slice;
-// The spheres of the slice: centre in the scene's frame, and radius.
-@group(1) @binding(1) var<storage, read> slice_spheres: array<vec4f>;
-
-@compute @workgroup_size(8, 8)
-fn trace(@builtin(global_invocation_id) invocation: vec3u) {
-    if (any(invocation.xy >= frame.tile_size)) {
+@compute @workgroup_size(64)
+fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = pixel_in_tile(group.xy, lane);
+    if (any(pixel >= frame.tile_size)) {
         return;
     }
-    let ray = camera_ray(relative_location(frame.tile_origin + invocation.xy));
-    let index = hit_index(invocation.xy);
+    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
+    let index = hit_index(pixel);
 
-    var nearest = Hit(NO_HIT, NO_ID);
-    if (slice.first > 0u) {
-        nearest = hits[index];
+    var before = Hit(NO_HIT, NO_ID, 0u);
+    if (brick.is_first == 0u) {
+        before = load_hit(index);
     }
-    for (var i = 0u; i < slice.count; i++) {
-        let t = intersect_sphere(ray, slice_spheres[i]).t;
-        // Ids ascend, so `<` leaves a tie to the smaller id.
-        if (t < nearest.t) {
-            nearest = Hit(t, slice.first + i);
-        }
+    var nearest = Nearest(before.t, before.id, 0u);
+    if (entry.is_inside) {
+        find_nearest(entry.ray, &nearest);
     }
-    hits[index] = nearest;
+    if (nearest.id != before.id) {
+        before = Hit(nearest.t, nearest.id, brick.first_place + nearest.place);
+    }
+    store_hit(index, before);
+    report_spent();
 }

@@ -12,7 +12,7 @@ use super::output::Outputs;
 use super::speak::tell;
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::{GpuError, Headless};
+use crate::gpu::{GpuError, Headless, HeadlessOptions};
 use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
@@ -81,7 +81,10 @@ pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result
     match device {
         Device::Cpu => on_cpu(input, layers),
         #[cfg(feature = "gpu")]
-        Device::Adapter { name, or_cpu } => match Headless::open(name.as_deref()) {
+        Device::Adapter { name, or_cpu } => match Headless::open(&HeadlessOptions {
+            adapter: name.clone(),
+            ..HeadlessOptions::default()
+        }) {
             Ok(headless) => on_gpu(&headless, input, layers),
             Err(GpuError::NoAdapter) if *or_cpu => {
                 tell(

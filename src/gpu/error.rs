@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::image::ImageTooLarge;
 
@@ -58,12 +59,29 @@ pub enum GpuError {
         /// What is needed.
         expected: String,
     },
-    /// The renderer was built without this camera.
-    #[error("this renderer has no pipeline for the {} camera; name it in RendererOptions", camera.name())]
-    NoCamera {
+    /// The renderer was built without this camera or structure.
+    #[error(
+        "this renderer has no pipeline for the {} camera and the structure {}; name both in RendererOptions",
+        camera.name(), structure.name()
+    )]
+    NoPipeline {
         /// The camera's kind.
         camera: CameraKind,
+        /// The scene's structure.
+        structure: Structure,
     },
+    /// The renderer was built without this structure.
+    #[error("this renderer was not built for the structure {}; name it in RendererOptions", structure.name())]
+    NoStructure {
+        /// The scene's structure.
+        structure: Structure,
+    },
+    /// A ray took more steps than a kernel may.
+    #[error("a ray takes more steps than this device may loop for; choose another structure")]
+    Steps,
+    /// The host asked to stop.
+    #[error("stopped before the picture was finished")]
+    Stopped,
     /// `record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,

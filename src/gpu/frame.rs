@@ -6,7 +6,7 @@ use super::error::{GpuError, check_storage_size, scoped};
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
 use super::scene_buffers::{SceneBuffers, SceneId, part};
-use super::tiles::{self, Tile};
+use super::tiles::{self, Groups, Tile};
 use crate::camera::{Camera, CameraKind};
 use crate::film::Film;
 use crate::settings::Settings;
@@ -46,6 +46,10 @@ pub struct Frame {
     target_group: BindGroup,
     size: [u32; 2],
     view: Option<View>,
+    /// Not 0 once a kernel ran into its limit of iterations.
+    status: Buffer,
+    iteration_limit: u32,
+    bytes: u64,
 }
 
 /// What recording needs to know of the view.
@@ -55,6 +59,17 @@ pub(super) struct View {
     pub(super) scene: SceneId,
     /// The sizes of the bands that are rendered, in their order.
     pub(super) bands: Vec<[u32; 2]>,
+    records: Vec<records::Frame>,
+}
+
+/// One brick, for one band.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) band: usize,
+    pub(super) brick: usize,
+    pub(super) groups: Groups,
+    pub(super) is_last_of_band: bool,
+    pub(super) is_last: bool,
 }
 
 impl Frame {
@@ -86,7 +101,13 @@ impl Frame {
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
         let bands = size[1].div_ceil(rows_per_band) as usize;
-        let (records, band_groups, target_group) = scoped(device, || {
+        let (records, status, band_groups, target_group) = scoped(device, || {
+            let status = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole status"),
+                size: size_of::<u32>() as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
             let records = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole frame"),
                 size: (bands * stride) as u64,
@@ -109,6 +130,7 @@ impl Frame {
                             resource: part(&records, band * stride, record_size),
                         },
                         wgpu::BindGroupEntry { binding: 1, resource: hits.as_entire_binding() },
+                        wgpu::BindGroupEntry { binding: 2, resource: status.as_entire_binding() },
                     ],
                 })
             };
@@ -125,7 +147,7 @@ impl Frame {
                 layout: &renderer.layouts.targets,
                 entries: &entries,
             });
-            (records, band_groups, target_group)
+            (records, status, band_groups, target_group)
         })?;
         let Renderer { color, data_layers, .. } = *renderer;
         Ok(Self {
@@ -138,6 +160,9 @@ impl Frame {
             target_group,
             size,
             view: None,
+            status,
+            iteration_limit: iteration_limit(device),
+            bytes: hit_bytes + (bands * stride) as u64,
         })
     }
 
@@ -178,20 +203,62 @@ impl Frame {
         tile: Tile,
         settings: &Settings,
     ) {
-        let (vectors, origin) = (camera.vectors(), scene.origin());
+        let (vectors, space) = (camera.vectors(), scene.space());
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
+        let limit = self.iteration_limit;
+        let records: Vec<_> = bands
+            .iter()
+            .map(|band| records::Frame::new(&vectors, space, film, *band, settings, limit))
+            .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];
-        for (target, band) in bytes.chunks_mut(self.stride).zip(&bands) {
-            let record =
-                records::Frame::new(&vectors, origin, scene.sphere_count(), film, *band, settings);
-            target[..size_of::<records::Frame>()].copy_from_slice(bytemuck::bytes_of(&record));
+        for (target, record) in bytes.chunks_mut(self.stride).zip(&records) {
+            target[..size_of::<records::Frame>()].copy_from_slice(bytemuck::bytes_of(record));
         }
         queue.write_buffer(&self.records, 0, &bytes);
         self.view = Some(View {
             camera: camera.kind(),
             scene: scene.id(),
             bands: bands.into_iter().map(|band| band.size).collect(),
+            records,
         });
+    }
+
+    /// Queues the first workgroup of the slice of a band that is traced next.
+    pub(super) fn set_first_group(&mut self, queue: &Queue, band: usize, first: [u32; 2]) {
+        let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(band)) else {
+            return;
+        };
+        if record.first_group != first {
+            record.first_group = first;
+            let bytes = bytemuck::bytes_of(record);
+            queue.write_buffer(&self.records, (band * self.stride) as u64, bytes);
+        }
+    }
+
+    /// What is to be traced for the view, in order.
+    pub(super) fn parts(&self, scene: &SceneBuffers) -> Vec<Part> {
+        let bands = self.view.as_ref().map_or(&[][..], |view| &view.bands);
+        let (band_count, brick_count) = (bands.len(), scene.bricks().len());
+        let all = (0..band_count).flat_map(|band| (0..brick_count).map(move |brick| (band, brick)));
+        all.map(|(band, brick)| Part {
+            band,
+            brick,
+            groups: Groups::of_size(bands[band]),
+            is_last_of_band: brick + 1 == brick_count,
+            is_last: brick + 1 == brick_count && band + 1 == band_count,
+        })
+        .collect()
+    }
+
+    /// What kernels report: not 0 once one ran into its limit of iterations.
+    pub(super) fn status(&self) -> &Buffer {
+        &self.status
+    }
+
+    /// Bytes of its buffers on the device, without the caller's textures.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// The view, if it is one that this renderer can record of this scene.
@@ -218,6 +285,18 @@ impl Frame {
     /// Group 2 of `shade`.
     pub(super) fn target_group(&self) -> &BindGroup {
         &self.target_group
+    }
+}
+
+/// How many iterations of loops an invocation may take.
+///
+/// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the eight invocations that it
+/// runs together, so that an eighth of that is safe. Elsewhere it is only a bound on what a kernel that is
+/// wrong could do.
+fn iteration_limit(device: &Device) -> u32 {
+    match device.adapter_info().device_type {
+        wgpu::DeviceType::Cpu => 8_000,
+        _ => 1 << 24,
     }
 }
 

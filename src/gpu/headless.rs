@@ -4,26 +4,70 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use wgpu::{Adapter, AdapterInfo, Device, Queue};
+use wgpu::{Adapter, AdapterInfo, ComputePassDescriptor, Device, Limits, Queue};
 
 use super::adapter;
 use super::error::{GpuError, scoped};
 use super::frame::Frame;
-use super::renderer::{ColorTarget, Renderer, RendererOptions};
-use super::scene_buffers::SceneBuffers;
+use super::pace::Pace;
+use super::readback::ReadableTexture;
+use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
+use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::tile_textures::TileTextures;
-use super::tiles::{tile_size, tiles};
+use super::tiles::{Groups, tile_size, tiles};
+use super::timer::{PassTimer, TraceTime};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Structure};
 use crate::camera::{Camera, CameraKind};
 use crate::film::Film;
 use crate::image::{Image, LayerSet};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
-/// How long one submission may take before it is given up.
-const MAX_WAIT: Duration = Duration::from_secs(600);
+/// How a device is opened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadlessOptions {
+    /// The adapter whose name contains this text, as in [`adapter::candidates`].
+    pub adapter: Option<String>,
+    /// What the device may use.
+    pub limits: LimitChoice,
+    /// How long one submission may take before it is given up. Submissions adapt to the device and take
+    /// about 60 milliseconds.
+    pub timeout: Duration,
+}
+
+/// Which limits a device is opened with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitChoice {
+    /// What the adapter has.
+    #[default]
+    Adapter,
+    /// WebGPU's defaults, or less where the adapter has less: what every browser guarantees.
+    WebGpu,
+}
+
+impl Default for HeadlessOptions {
+    /// The best adapter with its own limits; ten minutes.
+    fn default() -> Self {
+        let timeout = Duration::from_secs(600);
+        Self { adapter: None, limits: LimitChoice::Adapter, timeout }
+    }
+}
+
+/// What a render is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Pixels of one brick that were traced; a pixel counts once for every brick.
+    pub done: u64,
+    /// How many there are in all.
+    pub total: u64,
+}
+
+/// Told of progress after every submission; decides whether the render goes on.
+pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// A device for rendering without a display.
 #[derive(Debug)]
@@ -31,13 +75,17 @@ pub struct Headless {
     info: AdapterInfo,
     device: Device,
     queue: Queue,
+    timeout: Duration,
     faults: Arc<Faults>,
     /// Locked for the whole of a render, because faults cannot be told apart by render.
     renderers: Mutex<Renderers>,
 }
 
-/// What has been built so far, by camera and whether there are data layers.
-type Renderers = HashMap<(CameraKind, bool), Renderer>;
+/// What has been built so far.
+type Renderers = HashMap<RendererKey, Renderer>;
+
+/// Camera, structure, whether there are data layers, and whether there are kernels for occlusion.
+type RendererKey = (CameraKind, Structure, bool, bool);
 
 /// What wgpu reported outside any call.
 #[derive(Debug, Default)]
@@ -73,11 +121,11 @@ impl Headless {
     ///
     /// # Errors
     /// If there is no such adapter, or none gives a device.
-    pub fn open(adapter_name: Option<&str>) -> Result<Self, GpuError> {
+    pub fn open(options: &HeadlessOptions) -> Result<Self, GpuError> {
         // Why the best one failed, if all do.
         let mut refusal = GpuError::NoAdapter;
-        for adapter in &adapter::candidates(adapter_name)? {
-            match Self::from_adapter(adapter) {
+        for adapter in &adapter::candidates(options.adapter.as_deref())? {
+            match Self::from_adapter(adapter, options) {
                 Ok(headless) => return Ok(headless),
                 Err(error) if refusal == GpuError::NoAdapter => refusal = error,
                 Err(_) => {}
@@ -86,23 +134,16 @@ impl Headless {
         Err(refusal)
     }
 
-    /// Opens an adapter.
+    /// Opens an adapter, whatever name the options have.
     ///
     /// # Errors
     /// If it gives no device.
-    pub fn from_adapter(adapter: &Adapter) -> Result<Self, GpuError> {
+    pub fn from_adapter(adapter: &Adapter, options: &HeadlessOptions) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let available = adapter.limits();
-        // WebGPU's limits, where the adapter has them, so that a picture does not depend on more; and
-        // all that it has of what bounds the size of pictures and scenes.
-        let mut required_limits = wgpu::Limits::default()
-            .or_worse_values_from(&available)
-            .using_resolution(available.clone());
-        required_limits.max_buffer_size = available.max_buffer_size;
-        required_limits.max_storage_buffer_binding_size = available.max_storage_buffer_binding_size;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("pinhole"),
-            required_limits,
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: required_limits(&adapter.limits(), options.limits),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
         }))
@@ -119,7 +160,8 @@ impl Headless {
         device.set_device_lost_callback(move |_, message| {
             reported.report(GpuError::DeviceLost { message });
         });
-        Ok(Self { info, device, queue, faults, renderers: Mutex::default() })
+        let timeout = options.timeout;
+        Ok(Self { info, device, queue, timeout, faults, renderers: Mutex::default() })
     }
 
     /// Name, driver and kind of the adapter in use.
@@ -140,10 +182,39 @@ impl Headless {
         &self.queue
     }
 
+    /// What would be built of a scene for this device.
+    #[must_use]
+    pub fn plan(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
+        AccelPlan::new(scene.spheres(), choice, binding_limit(&self.device.limits()))
+    }
+
+    /// Copies a scene to the device, brick by brick.
+    ///
+    /// # Errors
+    /// If it does not fit the device, or if the device fails.
+    pub fn upload(&self, scene: &Scene, accel: &Accel) -> Result<SceneBuffers, GpuError> {
+        let _alone = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.faults.forget();
+        // Layouts are all that is needed, and those of one device are the same wherever they are made.
+        let options = RendererOptions {
+            cameras: Vec::new(),
+            structures: vec![accel.structure()],
+            ..RendererOptions::default()
+        };
+        Renderer::new(&self.device, &options)
+            .and_then(|renderer| {
+                SceneBuffers::upload(&renderer, &self.device, &self.queue, scene, accel, || {
+                    let submission = self.queue.submit([]);
+                    self.wait(&[], submission)
+                })
+            })
+            .map_err(|error| self.explained(error))
+    }
+
     /// Renders a picture with one ray through the centre of every pixel.
     ///
-    /// A picture beyond the device's limits is rendered in tiles; it does not depend on them. A device
-    /// renders one picture at a time; other threads wait.
+    /// A picture beyond the device's limits is rendered in tiles, and a scene beyond them in bricks; the
+    /// picture does not depend on them. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
     /// If scene or picture do not fit the device or the host's memory, or if the device fails.
@@ -155,43 +226,164 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.faults.forget();
-        self.renderer(&mut renderers, camera.kind(), layers != LayerSet::COLOR)
-            .and_then(|renderer| self.render_with(renderer, scene, camera, film, settings, layers))
-            .map_err(|error| self.explained(error))
+        let accel = self.plan(scene, AccelChoice::Auto).build(scene.spheres());
+        let buffers = self.upload(scene, &accel)?;
+        drop(accel);
+        let go_on = &mut |_| ControlFlow::Continue(());
+        self.render_uploaded(&buffers, camera, film, settings, layers, go_on)
     }
 
-    fn render_with(
+    /// As [`Headless::render`], of a scene that is on this device already. `watch` is told of progress.
+    ///
+    /// # Errors
+    /// As [`Headless::render`]; [`GpuError::Stopped`] if `watch` says so.
+    pub fn render_uploaded(
         &self,
-        renderer: &Renderer,
-        scene: &Scene,
+        scene: &SceneBuffers,
         camera: &dyn Camera,
         film: &Film,
         settings: &Settings,
         layers: LayerSet,
+        watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
-        let mut image = Image::new(film.width(), film.height(), layers)?;
-        let scene_buffers = SceneBuffers::new(renderer, &self.device, &self.queue, scene)?;
-        let side_limit = self.device.limits().max_texture_dimension_2d;
-        let tile_size = tile_size(film, side_limit, scene.len());
+        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.faults.forget();
+        let data_layers = layers != LayerSet::COLOR;
+        let key = (camera.kind(), scene.structure(), data_layers, false);
+        self.renderer(&mut renderers, key)
+            .and_then(|renderer| {
+                let mut image = Image::new(film.width(), film.height(), layers)?;
+                let view = (camera, film, settings);
+                self.render_tiles(renderer, scene, view, &mut image, watch)?;
+                Ok(image)
+            })
+            .map_err(|error| self.explained(error))
+    }
+
+    fn render_tiles(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        (camera, film, settings): (&dyn Camera, &Film, &Settings),
+        image: &mut Image,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), GpuError> {
+        let tile_size = tile_size(film, self.device.limits().max_texture_dimension_2d);
         let textures = scoped(&self.device, || {
             TileTextures::new(&self.device, tile_size, renderer.data_layers)
         })?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
+        let mut pace = Pace::new(scene.tests_per_ray());
+        let total = film.pixel_count() * scene.bricks().len() as u64;
+        let mut done = 0;
         for tile in tiles(film, tile_size) {
-            frame.set_tile(&self.queue, &scene_buffers, camera, film, tile, settings);
-            let mut encoder =
-                self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            renderer.record(&mut encoder, &scene_buffers, &frame)?;
+            frame.set_tile(&self.queue, scene, camera, film, tile, settings);
+            let mut encoder = self.encoder();
+            for part in frame.parts(scene) {
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, pace.groups()) {
+                    frame.set_first_group(&self.queue, part.band, groups.first);
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    let place = (part.band, part.brick, groups);
+                    renderer.record_trace(&mut pass, scene, &frame, Query::Nearest, place)?;
+                    drop(pass);
+                    if left.is_empty() && part.is_last {
+                        // Shaded and copied in the same submission.
+                        break;
+                    }
+                    let started = Instant::now();
+                    let submission = self.queue.submit([encoder.finish()]);
+                    self.wait(&[], submission)?;
+                    pace.took(groups.count(), started.elapsed());
+                    encoder = self.encoder();
+                    done = (done + groups.pixels()).min(total);
+                    if watch(Progress { done, total }).is_break() {
+                        return Err(GpuError::Stopped);
+                    }
+                }
+                if part.is_last_of_band {
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    renderer.record_shade(&mut pass, scene, &frame, part.band)?;
+                }
+            }
             for texture in textures.all() {
                 texture.record_copy(&mut encoder, tile.size);
             }
+            textures.status().record_copy(&mut encoder, frame.status());
             let submission = self.queue.submit([encoder.finish()]);
-            self.wait(&textures, submission)?;
-            textures.read_into(&mut image, tile)?;
+            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
+            mapped.push(textures.status().buffer());
+            self.wait(&mapped, submission)?;
+            if textures.status().read()? != 0 {
+                return Err(GpuError::Steps);
+            }
+            textures.read_into(image, tile)?;
         }
-        Ok(image)
+        Ok(())
+    }
+
+    /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
+    ///
+    /// # Errors
+    /// As [`Headless::render`]; if the film does not fit into one texture.
+    pub fn measure(
+        &self,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        query: Query,
+    ) -> Result<TraceTime, GpuError> {
+        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.faults.forget();
+        let key = (camera.kind(), scene.structure(), false, query == Query::Any);
+        self.renderer(&mut renderers, key)
+            .and_then(|renderer| self.measure_with(renderer, scene, camera, film, query))
+            .map_err(|error| self.explained(error))
+    }
+
+    fn measure_with(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        query: Query,
+    ) -> Result<TraceTime, GpuError> {
+        let size = [film.width(), film.height()];
+        let textures = scoped(&self.device, || TileTextures::new(&self.device, size, false))?;
+        let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
+        frame.set_view(&self.queue, scene, camera, film, &Settings::default())?;
+        let timer = scoped(&self.device, || PassTimer::new(&self.device, &self.queue))?;
+        let mut pace = Pace::new(scene.tests_per_ray());
+        let mut time = TraceTime::default();
+        for part in frame.parts(scene) {
+            let mut left = vec![part.groups];
+            while let Some(groups) = Groups::take(&mut left, pace.groups()) {
+                frame.set_first_group(&self.queue, part.band, groups.first);
+                let mut encoder = self.encoder();
+                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                    label: Some("pinhole"),
+                    timestamp_writes: timer.as_ref().map(PassTimer::writes),
+                });
+                let place = (part.band, part.brick, groups);
+                renderer.record_trace(&mut pass, scene, &frame, query, place)?;
+                drop(pass);
+                let started = Instant::now();
+                if let Some(timer) = &timer {
+                    timer.record_copy(&mut encoder);
+                }
+                let submission = self.queue.submit([encoder.finish()]);
+                self.wait(&timer.iter().map(PassTimer::buffer).collect::<Vec<_>>(), submission)?;
+                let elapsed = started.elapsed();
+                pace.took(groups.count(), elapsed);
+                time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
+            }
+        }
+        Ok(time)
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
     /// A lost device shows itself as all kinds of errors; this asks it first.
@@ -207,28 +399,33 @@ impl Headless {
     fn renderer<'a>(
         &self,
         renderers: &'a mut Renderers,
-        camera: CameraKind,
-        data_layers: bool,
+        key: RendererKey,
     ) -> Result<&'a Renderer, GpuError> {
-        match renderers.entry((camera, data_layers)) {
+        let (camera, structure, data_layers, occlusion) = key;
+        match renderers.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
             Entry::Vacant(place) => {
-                let color = ColorTarget::Linear32;
-                let options = RendererOptions { color, data_layers, cameras: vec![camera] };
+                let options = RendererOptions {
+                    color: ColorTarget::Linear32,
+                    data_layers,
+                    cameras: vec![camera],
+                    structures: vec![structure],
+                    occlusion,
+                };
                 Ok(place.insert(Renderer::new(&self.device, &options)?))
             }
         }
     }
 
-    /// Waits until the submission is done and its textures' buffers are mapped.
+    /// Waits until the submission is done and the buffers are mapped.
     fn wait(
         &self,
-        textures: &TileTextures,
+        mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,
     ) -> Result<(), GpuError> {
-        for texture in textures.all() {
+        for buffer in mapped {
             let faults = Arc::clone(&self.faults);
-            texture.buffer().map_async(wgpu::MapMode::Read, .., move |mapped| {
+            buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
                 if let Err(error) = mapped {
                     faults.report(GpuError::Device { message: error.to_string() });
                 }
@@ -236,14 +433,28 @@ impl Headless {
         }
         let polled = self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission),
-            timeout: Some(MAX_WAIT),
+            timeout: Some(self.timeout),
         });
         // What the device says of itself is more telling than that polling failed.
         self.faults.check()?;
         match polled {
             Ok(_) => Ok(()),
-            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: MAX_WAIT }),
+            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: self.timeout }),
             Err(error) => Err(GpuError::Device { message: error.to_string() }),
         }
+    }
+}
+
+fn required_limits(available: &Limits, choice: LimitChoice) -> Limits {
+    // WebGPU's limits, where the adapter has them, so that a picture does not depend on more.
+    let webgpu = Limits::default().or_worse_values_from(available);
+    match choice {
+        LimitChoice::WebGpu => webgpu,
+        // And all that it has of what bounds the size of pictures and scenes.
+        LimitChoice::Adapter => Limits {
+            max_buffer_size: available.max_buffer_size,
+            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+            ..webgpu.using_resolution(available.clone())
+        },
     }
 }

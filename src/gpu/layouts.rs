@@ -6,22 +6,28 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use crate::accel::{ListLayout, Structure};
 
 /// The layouts of all groups that the kernels use.
 #[derive(Debug)]
 pub(super) struct Layouts {
     /// Group 0 of every kernel.
     pub(super) frame: BindGroupLayout,
-    /// Group 1 of `trace`.
-    pub(super) slice: BindGroupLayout,
+    /// Group 1 of `trace` and `occluded`: brick, spheres, ids, and the words of the structure.
+    pub(super) brick: Vec<(Structure, BindGroupLayout)>,
     /// Group 1 of `shade`.
-    pub(super) scene: BindGroupLayout,
+    pub(super) surface: BindGroupLayout,
     /// Group 2 of `shade`.
     pub(super) targets: BindGroupLayout,
 }
 
 impl Layouts {
-    pub(super) fn new(device: &Device, color: ColorTarget, data_layers: bool) -> Self {
+    pub(super) fn new(
+        device: &Device,
+        color: ColorTarget,
+        data_layers: bool,
+        structures: &[Structure],
+    ) -> Self {
         let layout = |label, kinds: &[BindingType]| {
             let entries: Vec<_> =
                 (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
@@ -37,17 +43,47 @@ impl Layouts {
         Self {
             frame: layout(
                 "pinhole frame",
-                &[uniform::<records::Frame>(), storage::<records::Hit>(false)],
+                &[
+                    uniform::<records::Frame>(),
+                    storage::<records::Hit>(false),
+                    storage::<u32>(false),
+                ],
             ),
-            slice: layout(
-                "pinhole slice",
-                &[uniform::<records::Slice>(), storage::<records::Sphere>(true)],
-            ),
-            scene: layout(
-                "pinhole scene",
-                &[storage::<records::Sphere>(true), storage::<records::Color>(true)],
+            brick: structures
+                .iter()
+                .map(|structure| {
+                    let mut kinds = vec![
+                        uniform::<records::Brick>(),
+                        storage::<records::Sphere>(true),
+                        storage::<u32>(true),
+                    ];
+                    kinds.extend(word_buffers(*structure));
+                    (*structure, layout("pinhole brick", &kinds))
+                })
+                .collect(),
+            surface: layout(
+                "pinhole surface",
+                &[
+                    uniform::<records::Brick>(),
+                    storage::<records::Sphere>(true),
+                    storage::<u32>(true),
+                    storage::<records::Color>(true),
+                ],
             ),
             targets: layout("pinhole targets", &targets),
+        }
+    }
+}
+
+/// What a structure consists of beside its spheres, from binding 3 on.
+fn word_buffers(structure: Structure) -> Vec<BindingType> {
+    match structure {
+        Structure::List => vec![],
+        Structure::Grid(ListLayout::Copied) | Structure::NestedGrid(ListLayout::Copied) => {
+            vec![storage::<u32>(true)]
+        }
+        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
+            vec![storage::<u32>(true), storage::<u32>(true)]
         }
     }
 }

@@ -87,6 +87,44 @@ impl ReadableTexture {
     }
 }
 
+/// A word that kernels write, and a buffer that the host reads.
+#[derive(Debug)]
+pub(super) struct ReadableWord {
+    buffer: Buffer,
+}
+
+impl ReadableWord {
+    pub(super) fn new(device: &Device, label: &'static str) -> Self {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: size_of::<u32>() as u64,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { buffer }
+    }
+
+    pub(super) fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    pub(super) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, word: &Buffer) {
+        encoder.copy_buffer_to_buffer(word, 0, &self.buffer, 0, size_of::<u32>() as u64);
+    }
+
+    /// The word; unmaps the buffer, which must be mapped.
+    pub(super) fn read(&self) -> Result<u32, GpuError> {
+        let bytes = self
+            .buffer
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::Device { message: error.to_string() })?;
+        let word = bytemuck::pod_read_unaligned(&bytes[..size_of::<u32>()]);
+        drop(bytes);
+        self.buffer.unmap();
+        Ok(word)
+    }
+}
+
 fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }

@@ -1,9 +1,9 @@
 //! Records that cross to WGSL. Twins: the structs of the same names in `shaders/`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-use super::tiles::Tile;
+use super::tiles::{Tile, WORKGROUP_SIDE};
 use crate::camera::CameraVectors;
 use crate::film::{Film, YAxis};
 use crate::settings::{Settings, Shading};
@@ -27,27 +27,41 @@ pub(super) struct Frame {
     camera: Camera,
     background: [f32; 3],
     shading: u32,
+    scene_min: [f32; 3],
+    iteration_limit: u32,
+    scene_max: [f32; 3],
+    y_sign: f32,
     film_size: [u32; 2],
     tile_origin: [u32; 2],
     tile_size: [u32; 2],
     target_origin: [u32; 2],
-    y_sign: f32,
-    sphere_count: u32,
-    _pad: [u32; 2],
+    pub(super) first_group: [u32; 2],
+    row_step: u32,
+    row_count: u32,
 }
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct Slice {
-    pub(super) first: u32,
-    pub(super) count: u32,
+pub(super) struct Brick {
+    pub(super) min: [f32; 3],
+    pub(super) cell_size: f32,
+    pub(super) cell_counts: [u32; 3],
+    pub(super) place_count: u32,
+    pub(super) first_place: u32,
+    pub(super) is_first: u32,
+    pub(super) last_color: u32,
+    pub(super) _pad: u32,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct Hit {
-    t: f32,
-    id: u32,
+/// The bits of distance, id and place, and nothing: one `vec4u`.
+pub(super) type Hit = [u32; 4];
+
+/// Where a scene lies: its frame in the world, and in it the box that rays are moved to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SceneSpace {
+    pub(super) origin: DVec3,
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
 }
 
 /// Centre in the scene's frame, and radius: one `vec4f`.
@@ -76,14 +90,21 @@ impl Camera {
 impl Frame {
     pub(super) fn new(
         vectors: &CameraVectors,
-        scene_origin: DVec3,
-        sphere_count: u32,
+        scene: &SceneSpace,
         film: &Film,
         tile: Tile,
         settings: &Settings,
+        iteration_limit: u32,
     ) -> Self {
+        let row_count = tile.size[1].div_ceil(WORKGROUP_SIDE);
         Self {
-            camera: Camera::new(vectors, scene_origin),
+            camera: Camera::new(vectors, scene.origin),
+            scene_min: scene.min.to_array(),
+            scene_max: scene.max.to_array(),
+            iteration_limit,
+            first_group: [0, 0],
+            row_step: row_step(row_count),
+            row_count,
             background: settings.background().to_array(),
             shading: match settings.shading() {
                 Shading::Flat => 0,
@@ -97,10 +118,22 @@ impl Frame {
                 YAxis::Up => 1.0,
                 YAxis::Down => -1.0,
             },
-            sphere_count,
-            _pad: [0; 2],
         }
     }
+}
+
+/// The step with which rows of workgroups are taken: about the golden ratio of their number, so that any
+/// run of rows is spread evenly over the picture, and without a common factor, so that none is left out.
+fn row_step(row_count: u32) -> u32 {
+    let has_common_factor = |step: u32| {
+        let (mut a, mut b) = (row_count, step);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a != 1
+    };
+    let golden = (f64::from(row_count) * 0.618_033_988_75) as u32;
+    (golden.max(1)..).find(|step| !has_common_factor(*step)).unwrap_or(1)
 }
 
 #[cfg(test)]
@@ -151,15 +184,27 @@ mod tests {
                 camera,
                 background,
                 shading,
+                scene_min,
+                iteration_limit,
+                scene_max,
+                y_sign,
                 film_size,
                 tile_origin,
                 tile_size,
                 target_origin,
-                y_sign,
-                sphere_count
+                first_group,
+                row_step,
+                row_count
             }),
-            layout!(Slice { first, count }),
-            layout!(Hit { t, id }),
+            layout!(Brick {
+                min,
+                cell_size,
+                cell_counts,
+                place_count,
+                first_place,
+                is_first,
+                last_color
+            }),
         ];
         for kernel in shaders::all_kernels() {
             let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
@@ -175,7 +220,11 @@ mod tests {
                 }
             }
         }
-        let trace = shaders::trace_kernel(crate::camera::CameraKind::Pinhole).source();
+        let trace = shaders::trace_kernel(
+            crate::camera::CameraKind::Pinhole,
+            crate::accel::Structure::List,
+        )
+        .source();
         for (name, _) in &records {
             assert!(trace.contains(&format!("struct {name} ")), "no kernel declares {name}");
         }
@@ -201,9 +250,23 @@ mod tests {
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let settings = Settings::default().with_shading(shading);
-            let frame = Frame::new(&vectors, DVec3::ZERO, 0, &film, tile, &settings);
+            let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
+            let frame = Frame::new(&vectors, &scene, &film, tile, &settings, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
+        }
+    }
+
+    #[test]
+    fn rows_are_a_permutation() {
+        for count in (1..300).chain([1024, 4096]) {
+            let step = row_step(count);
+            assert!(count * step < 1 << 24, "the kernel's remainder is exact below 2^24");
+            let mut seen = vec![false; count as usize];
+            for row in 0..count {
+                seen[(row * step % count) as usize] = true;
+            }
+            assert!(seen.iter().all(|s| *s), "{count}");
         }
     }
 }

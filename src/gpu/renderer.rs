@@ -1,13 +1,14 @@
 //! Pipelines, and recording a frame with them.
 
-use wgpu::{ComputePipeline, Device, TextureFormat};
+use wgpu::{ComputePass, ComputePipeline, Device, TextureFormat};
 
 use super::error::{GpuError, scoped};
 use super::frame::Frame;
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
 use super::shaders::{self, Kernel};
-use super::tiles::WORKGROUP_SIDE;
+use super::tiles::Groups;
+use crate::accel::Structure;
 use crate::camera::CameraKind;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
@@ -52,15 +53,21 @@ pub struct RendererOptions {
     pub data_layers: bool,
     /// The cameras that frames will use.
     pub cameras: Vec<CameraKind>,
+    /// The structures that scenes will have.
+    pub structures: Vec<Structure>,
+    /// Whether kernels are built that ask only whether a ray hits anything, for measurements.
+    pub occlusion: bool,
 }
 
 impl Default for RendererOptions {
-    /// Eight-bit colour, no data layers, every camera.
+    /// Eight-bit colour, no data layers, every camera, every structure that is chosen by itself.
     fn default() -> Self {
         Self {
             color: ColorTarget::default(),
             data_layers: false,
             cameras: CameraKind::ALL.to_vec(),
+            structures: Structure::AUTOMATIC.to_vec(),
+            occlusion: false,
         }
     }
 }
@@ -71,14 +78,23 @@ pub struct Renderer {
     pub(super) layouts: Layouts,
     pub(super) color: ColorTarget,
     pub(super) data_layers: bool,
-    pipelines: Vec<CameraPipelines>,
+    shade: Vec<(CameraKind, ComputePipeline)>,
+    trace: Vec<(CameraKind, Structure, TracePipelines)>,
 }
 
 #[derive(Debug)]
-struct CameraPipelines {
-    camera: CameraKind,
-    trace: ComputePipeline,
-    shade: ComputePipeline,
+struct TracePipelines {
+    nearest: ComputePipeline,
+    any: Option<ComputePipeline>,
+}
+
+/// What a ray is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    /// Which sphere is the nearest.
+    Nearest,
+    /// Whether there is any.
+    Any,
 }
 
 impl Renderer {
@@ -87,25 +103,30 @@ impl Renderer {
     /// # Errors
     /// If the device refuses a kernel, which is a defect of this crate or of the driver.
     pub fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
-        let RendererOptions { color, data_layers, ref cameras } = *options;
-        let layouts = scoped(device, || Layouts::new(device, color, data_layers))?;
-        let pipelines = cameras
-            .iter()
-            .map(|&camera| {
-                let trace = shaders::trace_kernel(camera);
-                let shade = shaders::shade_kernel(camera, color, data_layers);
-                Ok(CameraPipelines {
-                    camera,
-                    trace: pipeline(device, &trace, &[&layouts.frame, &layouts.slice])?,
-                    shade: pipeline(
-                        device,
-                        &shade,
-                        &[&layouts.frame, &layouts.scene, &layouts.targets],
-                    )?,
-                })
-            })
-            .collect::<Result<_, GpuError>>()?;
-        Ok(Self { layouts, color, data_layers, pipelines })
+        let RendererOptions { color, data_layers, ref structures, .. } = *options;
+        let layouts = scoped(device, || Layouts::new(device, color, data_layers, structures))?;
+        let mut renderer =
+            Self { layouts, color, data_layers, shade: Vec::new(), trace: Vec::new() };
+        for &camera in &options.cameras {
+            let kernel = shaders::shade_kernel(camera, color, data_layers);
+            let Layouts { frame, surface, targets, .. } = &renderer.layouts;
+            let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
+            renderer.shade.push((camera, shade));
+            for (structure, brick) in &renderer.layouts.brick {
+                let groups = [frame, brick];
+                let nearest = shaders::trace_kernel(camera, *structure);
+                let any = options
+                    .occlusion
+                    .then(|| shaders::occluded_kernel(camera, *structure))
+                    .map(|kernel| pipeline(device, &kernel, &groups));
+                let pipelines = TracePipelines {
+                    nearest: pipeline(device, &nearest, &groups)?,
+                    any: any.transpose()?,
+                };
+                renderer.trace.push((camera, *structure, pipelines));
+            }
+        }
+        Ok(renderer)
     }
 
     /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
@@ -123,26 +144,72 @@ impl Renderer {
         frame: &Frame,
     ) -> Result<(), GpuError> {
         let view = frame.view(self, scene)?;
-        let pipelines = self
-            .pipelines
-            .iter()
-            .find(|pipelines| pipelines.camera == view.camera)
-            .ok_or(GpuError::NoCamera { camera: view.camera })?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
         });
-        for (band, size) in frame.band_groups().iter().zip(&view.bands) {
-            let [width, height] = size.map(|side| side.div_ceil(WORKGROUP_SIDE));
-            pass.set_bind_group(0, band, &[]);
-            pass.set_pipeline(&pipelines.trace);
-            for slice in scene.slices() {
-                pass.set_bind_group(1, slice, &[]);
-                pass.dispatch_workgroups(width, height, 1);
+        for (band, size) in view.bands.iter().enumerate() {
+            let all = Groups::of_size(*size);
+            for brick in 0..scene.bricks().len() {
+                self.record_trace(&mut pass, scene, frame, Query::Nearest, (band, brick, all))?;
             }
-            pass.set_pipeline(&pipelines.shade);
-            pass.set_bind_group(1, scene.group(), &[]);
-            pass.set_bind_group(2, frame.target_group(), &[]);
+            self.record_shade(&mut pass, scene, frame, band)?;
+        }
+        Ok(())
+    }
+
+    /// Records the tracing of a brick for a slice of a band; the band's record must name its first group.
+    pub(super) fn record_trace(
+        &self,
+        pass: &mut ComputePass<'_>,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        query: Query,
+        (band, brick, groups): (usize, usize, Groups),
+    ) -> Result<(), GpuError> {
+        let camera = frame.view(self, scene)?.camera;
+        let structure = scene.structure();
+        let pipelines = self
+            .trace
+            .iter()
+            .find(|(kind, of, _)| *kind == camera && *of == structure)
+            .map(|(_, _, pipelines)| pipelines)
+            .ok_or(GpuError::NoPipeline { camera, structure })?;
+        let pipeline = match query {
+            Query::Nearest => &pipelines.nearest,
+            Query::Any => {
+                pipelines.any.as_ref().ok_or(GpuError::NoPipeline { camera, structure })?
+            }
+        };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        pass.set_bind_group(1, &scene.bricks()[brick].trace_group, &[]);
+        pass.dispatch_workgroups(groups.size[0], groups.size[1], 1);
+        Ok(())
+    }
+
+    /// Records the shading of a band whose hits are complete.
+    pub(super) fn record_shade(
+        &self,
+        pass: &mut ComputePass<'_>,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        band: usize,
+    ) -> Result<(), GpuError> {
+        let view = frame.view(self, scene)?;
+        let camera = view.camera;
+        let pipeline = self
+            .shade
+            .iter()
+            .find(|(kind, _)| *kind == camera)
+            .map(|(_, pipeline)| pipeline)
+            .ok_or(GpuError::NoPipeline { camera, structure: scene.structure() })?;
+        let [width, height] = Groups::of_size(view.bands[band]).size;
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        pass.set_bind_group(2, frame.target_group(), &[]);
+        for brick in scene.bricks() {
+            pass.set_bind_group(1, &brick.surface_group, &[]);
             pass.dispatch_workgroups(width, height, 1);
         }
         Ok(())
@@ -157,10 +224,13 @@ fn pipeline(
     let name = kernel.name();
     let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
     scoped(device, || {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(&name),
-            source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
-        });
+        let module = shader_module(
+            device,
+            wgpu::ShaderModuleDescriptor {
+                label: Some(&name),
+                source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
+            },
+        );
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&name),
             bind_group_layouts: &groups,
@@ -183,6 +253,22 @@ fn pipeline(
     })
 }
 
+/// Without the counter that wgpu puts into every loop against endless ones, which takes 4 to 14 % of a
+/// trace; bounds checks stay.
+#[expect(unsafe_code, reason = "every loop of our kernels ends by itself, see below")]
+fn shader_module(
+    device: &Device,
+    descriptor: wgpu::ShaderModuleDescriptor<'_>,
+) -> wgpu::ShaderModule {
+    let checks = wgpu::ShaderRuntimeChecks {
+        force_loop_bounding: false,
+        ..wgpu::ShaderRuntimeChecks::checked()
+    };
+    // SAFETY: what a loop without wgpu's counter must not do is run for ever. Our loops either count up to
+    // a number from a uniform, or ask `spend` in every iteration and leave when it says so.
+    unsafe { device.create_shader_module_trusted(descriptor, checks) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -194,9 +280,15 @@ mod tests {
         assert_eq!(device.limits().max_storage_buffer_binding_size, 128 << 20);
         for &color in ColorTarget::ALL {
             for data_layers in [false, true] {
-                let options = RendererOptions { color, data_layers, ..RendererOptions::default() };
+                let options = RendererOptions {
+                    color,
+                    data_layers,
+                    structures: Structure::ALL.to_vec(),
+                    occlusion: true,
+                    ..RendererOptions::default()
+                };
                 let renderer = Renderer::new(&device, &options).unwrap();
-                assert_eq!(renderer.pipelines.len(), CameraKind::ALL.len());
+                assert_eq!(renderer.shade.len(), CameraKind::ALL.len());
             }
         }
     }
@@ -205,12 +297,12 @@ mod tests {
     #[test]
     fn a_refused_kernel_is_an_error_that_names_the_part() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
-        let layouts = Layouts::new(&device, ColorTarget::Srgb8, false);
+        let layouts = Layouts::new(&device, ColorTarget::Srgb8, false, &[Structure::List]);
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
-            let kernel =
-                shaders::trace_kernel(CameraKind::Pinhole).with_part("broken.wgsl", broken);
-            match pipeline(&device, &kernel, &[&layouts.frame, &layouts.slice]) {
+            let kernel = shaders::trace_kernel(CameraKind::Pinhole, Structure::List)
+                .with_part("broken.wgsl", broken);
+            match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
                 Err(GpuError::Device { message }) => {
                     assert!(message.contains("broken.wgsl:"), "{message}");
                 }

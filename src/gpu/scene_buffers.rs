@@ -3,19 +3,13 @@
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
-use wgpu::{BindGroup, Buffer, Device, Queue};
+use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
 use super::error::{GpuError, check_storage_size, scoped};
-use super::records;
+use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use crate::scene::Scene;
-
-/// How many spheres one dispatch tries.
-///
-/// Mesa 22.3's lavapipe leaves all loops of an invocation, silently, after 65,535 iterations. A
-/// multiple of 2¹⁴, so that a slice starts at a multiple of any offset alignment.
-const SLICE_LEN: usize = 3 << 14;
 
 /// Tells scenes on devices apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,126 +26,250 @@ impl SceneId {
 #[derive(Debug)]
 pub struct SceneBuffers {
     id: SceneId,
-    origin: DVec3,
-    sphere_count: u32,
-    group: BindGroup,
-    slices: Vec<BindGroup>,
+    space: SceneSpace,
+    structure: Structure,
+    bricks: Vec<BrickBuffers>,
+    bytes: u64,
+    tests_per_ray: usize,
+}
+
+/// A brick, bound for the kernels.
+#[derive(Debug)]
+pub(super) struct BrickBuffers {
+    /// Group 1 of `trace` and `occluded`.
+    pub(super) trace_group: BindGroup,
+    /// Group 1 of `shade`.
+    pub(super) surface_group: BindGroup,
 }
 
 impl SceneBuffers {
-    /// Copies the scene to the device.
+    /// Copies the scene to the device, with a structure that suits it.
     ///
     /// The copy is queued; it is done before anything that is submitted later.
     ///
     /// # Errors
-    /// If the spheres do not fit into one binding of the device, or into its memory.
+    /// As [`SceneBuffers::with_accel`].
     pub fn new(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
         scene: &Scene,
     ) -> Result<Self, GpuError> {
-        // A binding must not be empty.
-        let count = scene.len().max(1);
-        check_storage_size(
-            device,
-            "the buffer of spheres",
-            (count * size_of::<records::Sphere>()) as u64,
-        )?;
-        let mut spheres = scene.spheres();
-        let mut colors: Vec<records::Color> =
-            (0..scene.len()).map(|id| pad(scene.color(id as u32).to_array())).collect();
-        if scene.is_empty() {
-            spheres = &[[0.0; 4]];
-            colors.push([0.0; 4]);
+        let plan =
+            AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding_limit(&device.limits()));
+        Self::with_accel(renderer, device, queue, scene, &plan.build(scene.spheres()))
+    }
+
+    /// Copies the scene to the device, with a structure that was built for it.
+    ///
+    /// The copy is queued; it is done before anything that is submitted later.
+    ///
+    /// # Errors
+    /// If the renderer was not built for this structure, if a brick does not fit into the bindings of the
+    /// device, or the whole into its memory.
+    pub fn with_accel(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+        accel: &Accel,
+    ) -> Result<Self, GpuError> {
+        Self::upload(renderer, device, queue, scene, accel, || Ok(()))
+    }
+
+    /// As [`SceneBuffers::with_accel`]; calls `flush` after every brick, so that the host may submit what is
+    /// queued and its copy is freed.
+    pub(super) fn upload(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+        accel: &Accel,
+        mut flush: impl FnMut() -> Result<(), GpuError>,
+    ) -> Result<Self, GpuError> {
+        let mut upload = Upload { renderer, device, queue, scene, first_place: 0, bytes: 0 };
+        let palette: Vec<records::Color> =
+            or_one(scene.palette().iter().map(|c| pad(c.to_array())).collect());
+        check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
+        let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
+        let mut bricks = Vec::new();
+        for brick in accel.bricks() {
+            bricks.push(upload.brick(brick, accel.structure(), &palette)?);
+            flush()?;
         }
-        let (group, slices) = scoped(device, || {
-            let storage = wgpu::BufferUsages::STORAGE;
-            let spheres = buffer(device, queue, "pinhole spheres", storage, spheres);
-            let colors = buffer(device, queue, "pinhole colors", storage, &colors);
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole scene"),
-                layout: &renderer.layouts.scene,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: spheres.as_entire_binding() },
-                    wgpu::BindGroupEntry { binding: 1, resource: colors.as_entire_binding() },
-                ],
-            });
-            (group, slice_groups(renderer, device, queue, &spheres, scene.len()))
-        })?;
+        let (min, max) = accel.bounds();
         Ok(Self {
             id: SceneId::new(),
-            origin: scene.origin(),
-            sphere_count: scene.len() as u32,
-            group,
-            slices,
+            space: SceneSpace { origin: scene.origin(), min, max },
+            structure: accel.structure(),
+            bricks,
+            bytes: upload.bytes,
+            tests_per_ray: match accel.structure() {
+                Structure::List => {
+                    accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0)
+                }
+                _ => 0,
+            },
         })
+    }
+
+    /// Bytes of all its buffers on the device.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     pub(super) fn id(&self) -> SceneId {
         self.id
     }
 
-    pub(super) fn origin(&self) -> DVec3 {
-        self.origin
+    /// How many spheres a ray tries in one dispatch, if it is many.
+    pub(super) fn tests_per_ray(&self) -> usize {
+        self.tests_per_ray
     }
 
-    pub(super) fn sphere_count(&self) -> u32 {
-        self.sphere_count
+    pub(super) fn space(&self) -> &SceneSpace {
+        &self.space
     }
 
-    /// Group 1 of `shade`.
-    pub(super) fn group(&self) -> &BindGroup {
-        &self.group
+    pub(super) fn structure(&self) -> Structure {
+        self.structure
     }
 
-    /// Group 1 of `trace`, one per dispatch, in the order of ids. At least one, so that an empty
-    /// scene's rays are marked as misses.
-    pub(super) fn slices(&self) -> &[BindGroup] {
-        &self.slices
+    /// In the order in which they are traced. At least one, so that an empty scene's rays are marked as
+    /// misses.
+    pub(super) fn bricks(&self) -> &[BrickBuffers] {
+        &self.bricks
     }
 }
 
-fn slice_groups(
-    renderer: &Renderer,
-    device: &Device,
-    queue: &Queue,
-    spheres: &Buffer,
-    sphere_count: usize,
-) -> Vec<BindGroup> {
-    let slices: Vec<records::Slice> = (0..sphere_count.max(1))
-        .step_by(SLICE_LEN)
-        .map(|first| records::Slice {
-            first: first as u32,
-            count: (sphere_count - first).min(SLICE_LEN) as u32,
+/// A copy in progress.
+struct Upload<'a> {
+    renderer: &'a Renderer,
+    device: &'a Device,
+    queue: &'a Queue,
+    scene: &'a Scene,
+    first_place: u32,
+    bytes: u64,
+}
+
+impl Upload<'_> {
+    fn brick(
+        &mut self,
+        brick: &Brick,
+        structure: Structure,
+        palette: &Buffer,
+    ) -> Result<BrickBuffers, GpuError> {
+        let Brick { index, spheres, ids } = brick;
+        let layouts = &self.renderer.layouts;
+        let trace_layout = layouts
+            .brick
+            .iter()
+            .find(|(of, _)| *of == structure)
+            .map(|(_, layout)| layout)
+            .ok_or(GpuError::NoStructure { structure })?;
+        let colors: Vec<u32> = match self.scene.color_indices() {
+            Some(indices) => ids.iter().map(|id| indices[*id as usize]).collect(),
+            None => vec![0],
+        };
+        let colors = or_one(colors);
+        let mut record = records::Brick {
+            place_count: spheres.len() as u32,
+            first_place: self.first_place,
+            is_first: u32::from(self.first_place == 0),
+            last_color: colors.len() as u32 - 1,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        // A binding must not be empty.
+        let (no_sphere, no_word) = ([[0.0; 4]], [0]);
+        let spheres = if spheres.is_empty() { &no_sphere[..] } else { spheres };
+        let ids = if ids.is_empty() { &no_word[..] } else { ids };
+        let mut words: Vec<&[u32]> = Vec::new();
+        match index {
+            Index::List => {}
+            Index::Grid(grid) => {
+                record.min = grid.min.to_array();
+                record.cell_size = grid.cell_size;
+                record.cell_counts = grid.cell_counts;
+                words.push(&grid.cells);
+                words.extend(grid.references.as_deref());
+            }
+        }
+        self.first_place += record.place_count;
+        for (what, bytes) in [
+            ("the buffer of spheres", size_of_val(spheres)),
+            ("the buffer of colors", size_of_val(&colors[..])),
+        ]
+        .into_iter()
+        .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
+        {
+            check_storage_size(self.device, what, bytes as u64)?;
+        }
+        scoped(self.device, || {
+            let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
+            let spheres = self.storage("pinhole spheres", spheres);
+            let ids = self.storage("pinhole ids", ids);
+            let colors = self.storage("pinhole colors", &colors);
+            let words: Vec<Buffer> =
+                words.iter().map(|words| self.storage("pinhole structure", words)).collect();
+            let group = |label, layout, buffers: &[&Buffer]| {
+                let entries: Vec<_> = (0..)
+                    .zip(buffers)
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                        binding,
+                        resource: buffer.as_entire_binding(),
+                    })
+                    .collect();
+                let descriptor =
+                    wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
+                self.device.create_bind_group(&descriptor)
+            };
+            let mut traced = vec![&record, &spheres, &ids];
+            traced.extend(&words);
+            BrickBuffers {
+                trace_group: group("pinhole brick", trace_layout, &traced),
+                surface_group: group(
+                    "pinhole surface",
+                    &layouts.surface,
+                    &[&record, &spheres, &colors, palette],
+                ),
+            }
         })
-        .collect();
-    let stride = device.limits().min_uniform_buffer_offset_alignment as usize;
-    let mut bytes = vec![0_u8; slices.len() * stride];
-    for (target, slice) in bytes.chunks_mut(stride).zip(&slices) {
-        target[..size_of::<records::Slice>()].copy_from_slice(bytemuck::bytes_of(slice));
     }
-    let uniforms = buffer(device, queue, "pinhole slices", wgpu::BufferUsages::UNIFORM, &bytes);
-    let sphere_size = size_of::<records::Sphere>();
-    slices
-        .iter()
-        .enumerate()
-        .map(|(index, slice)| {
-            let first = slice.first as usize * sphere_size;
-            let bytes = slice.count.max(1) as usize * sphere_size;
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("pinhole slice"),
-                layout: &renderer.layouts.slice,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: part(&uniforms, index * stride, size_of::<records::Slice>()),
-                    },
-                    wgpu::BindGroupEntry { binding: 1, resource: part(spheres, first, bytes) },
-                ],
-            })
-        })
-        .collect()
+
+    fn storage<T: bytemuck::Pod>(&mut self, label: &'static str, contents: &[T]) -> Buffer {
+        self.buffer(label, BufferUsages::STORAGE, contents)
+    }
+
+    fn buffer<T: bytemuck::Pod>(
+        &mut self,
+        label: &'static str,
+        usage: BufferUsages,
+        contents: &[T],
+    ) -> Buffer {
+        let contents: &[u8] = bytemuck::cast_slice(contents);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: contents.len() as u64,
+            usage: usage | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, contents);
+        self.bytes += contents.len() as u64;
+        buffer
+    }
+}
+
+/// What one storage binding can hold on a device with such limits.
+pub(super) fn binding_limit(limits: &wgpu::Limits) -> u64 {
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
+fn or_one<T: bytemuck::Zeroable>(mut values: Vec<T>) -> Vec<T> {
+    if values.is_empty() {
+        values.push(T::zeroed());
+    }
+    values
 }
 
 fn pad([r, g, b]: [f32; 3]) -> records::Color {
@@ -165,54 +283,4 @@ pub(super) fn part(buffer: &Buffer, offset: usize, size: usize) -> wgpu::Binding
         offset: offset as u64,
         size: NonZeroU64::new(size as u64),
     })
-}
-
-fn buffer<T: bytemuck::Pod>(
-    device: &Device,
-    queue: &Queue,
-    label: &'static str,
-    usage: wgpu::BufferUsages,
-    contents: &[T],
-) -> Buffer {
-    let contents: &[u8] = bytemuck::cast_slice(contents);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: contents.len() as u64,
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    queue.write_buffer(&buffer, 0, contents);
-    buffer
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::RendererOptions;
-    use crate::{LinearRgb, Sphere};
-
-    /// On a device whose bindings hold 1024 bytes: 64 spheres.
-    #[test]
-    fn too_many_spheres_for_a_binding_are_an_error_before_any_allocation() {
-        let required_limits =
-            wgpu::Limits { max_storage_buffer_binding_size: 1024, ..wgpu::Limits::default() };
-        let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-        let (device, queue) = Device::noop(&descriptor);
-        let renderer = Renderer::new(&device, &RendererOptions::default()).unwrap();
-        let upload = |count| {
-            let sphere = Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
-            let scene = Scene::new(&vec![sphere; count]).unwrap();
-            SceneBuffers::new(&renderer, &device, &queue, &scene)
-        };
-        assert!(upload(64).is_ok());
-        assert_eq!(
-            upload(65).unwrap_err(),
-            GpuError::Limit {
-                what: "the buffer of spheres",
-                needed: 65 * 16,
-                limit_name: "max_storage_buffer_binding_size",
-                limit: 1024,
-            }
-        );
-    }
 }

@@ -4,6 +4,7 @@
 //! complete module system for a folder of this size. This is the only file that knows how it is done.
 
 use super::renderer::ColorTarget;
+use crate::accel::{ListLayout, Structure};
 use crate::camera::{CameraKind, camera_table};
 
 /// One WGSL file.
@@ -30,10 +31,32 @@ pub(super) struct Kernel {
 }
 
 /// Finds the nearest sphere of every ray.
-pub(super) fn trace_kernel(camera: CameraKind) -> Kernel {
-    let mut parts = common_parts(camera).to_vec();
+pub(super) fn trace_kernel(camera: CameraKind, structure: Structure) -> Kernel {
+    let mut parts = walk_parts(camera, structure);
     parts.push(part!("trace.wgsl"));
     Kernel { entry_point: "trace", parts }
+}
+
+/// Finds whether every ray hits anything.
+pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure) -> Kernel {
+    let mut parts = walk_parts(camera, structure);
+    parts.push(part!("occluded.wgsl"));
+    Kernel { entry_point: "occluded", parts }
+}
+
+fn walk_parts(camera: CameraKind, structure: Structure) -> Vec<Part> {
+    let mut parts = common_parts(camera).to_vec();
+    parts.extend([part!("schedule.wgsl"), part!("brick.wgsl")]);
+    match structure {
+        Structure::List => parts.push(part!("list.wgsl")),
+        Structure::Grid(layout) => {
+            parts.extend([part!("grid_ray.wgsl"), part!("grid.wgsl"), list_part(layout)]);
+        }
+        Structure::NestedGrid(layout) => {
+            parts.extend([part!("grid_ray.wgsl"), part!("nested_grid.wgsl"), list_part(layout)]);
+        }
+    }
+    parts
 }
 
 /// Turns hits into colour and, if wanted, data layers.
@@ -52,13 +75,21 @@ pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: 
     Kernel { entry_point: "shade", parts }
 }
 
-fn common_parts(camera: CameraKind) -> [Part; 6] {
+fn list_part(layout: ListLayout) -> Part {
+    match layout {
+        ListLayout::Copied => part!("list_copied.wgsl"),
+        ListLayout::Referenced => part!("list_referenced.wgsl"),
+    }
+}
+
+fn common_parts(camera: CameraKind) -> [Part; 7] {
     [
         part!("records.wgsl"),
         part!("frame.wgsl"),
         part!("film.wgsl"),
         part!("ray.wgsl"),
         camera_part(camera),
+        part!("enter.wgsl"),
         part!("sphere.wgsl"),
     ]
 }
@@ -77,7 +108,16 @@ camera_table!(define_camera_part);
 impl Kernel {
     /// The entry point and the parts that distinguish this kernel from others.
     pub(super) fn name(&self) -> String {
-        let varying = ["camera_", "color_", "layers_"];
+        let varying = [
+            "camera_",
+            "color_",
+            "layers_",
+            "list",
+            "grid.",
+            "nested_grid",
+            "wide_tree",
+            "binary_tree",
+        ];
         self.parts
             .iter()
             .filter(|part| varying.iter().any(|prefix| part.file.starts_with(prefix)))
@@ -139,7 +179,10 @@ impl Kernel {
 pub(super) fn all_kernels() -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for &camera in CameraKind::ALL {
-        kernels.push(trace_kernel(camera));
+        for &structure in Structure::ALL {
+            kernels.push(trace_kernel(camera, structure));
+            kernels.push(occluded_kernel(camera, structure));
+        }
         for &color in ColorTarget::ALL {
             for data_layers in [false, true] {
                 kernels.push(shade_kernel(camera, color, data_layers));
@@ -174,14 +217,17 @@ mod tests {
     #[test]
     fn every_kernel_composes_and_validates() {
         let kernels = all_kernels();
-        assert_eq!(kernels.len(), CameraKind::ALL.len() * (1 + 2 * ColorTarget::ALL.len()));
+        assert_eq!(
+            kernels.len(),
+            CameraKind::ALL.len() * (2 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+        );
         for kernel in kernels {
             let module =
                 validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));
             let entry = &module.entry_points[0];
             assert_eq!(module.entry_points.len(), 1, "{}", kernel.name());
             assert_eq!(entry.name, kernel.entry_point);
-            assert_eq!(entry.workgroup_size, [8, 8, 1]);
+            assert_eq!(entry.workgroup_size.iter().product::<u32>(), 64);
         }
     }
 

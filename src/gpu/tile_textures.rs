@@ -4,7 +4,7 @@ use wgpu::Device;
 
 use super::error::GpuError;
 use super::frame::{DataTargets, Targets};
-use super::readback::ReadableTexture;
+use super::readback::{ReadableTexture, ReadableWord};
 use super::records::NO_HIT;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::tiles::Tile;
@@ -14,6 +14,7 @@ use crate::image::Image;
 pub(super) struct TileTextures {
     color: ReadableTexture,
     data: Option<DataTextures>,
+    status: ReadableWord,
 }
 
 #[derive(Debug)]
@@ -33,6 +34,7 @@ impl TileTextures {
                 normal: texture("pinhole normal", NORMAL_FORMAT),
                 id: texture("pinhole id", ID_FORMAT),
             }),
+            status: ReadableWord::new(device, "pinhole status"),
         }
     }
 
@@ -45,6 +47,11 @@ impl TileTextures {
                 id: data.id.view(),
             }),
         }
+    }
+
+    /// What kernels reported.
+    pub(super) fn status(&self) -> &ReadableWord {
+        &self.status
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &ReadableTexture> {

@@ -5,10 +5,6 @@ use crate::film::Film;
 /// The most pixels of a tile: its largest buffer then takes about 64 MiB, half of WebGPU's smallest limit.
 pub(super) const MAX_PIXELS: u64 = 1 << 22;
 
-/// About how many spheres are tried in one submission: some seconds of a software device's time. Tiles
-/// are not cut below one workgroup, so that with more than 2²⁴ spheres it becomes more.
-const TESTS_PER_SUBMISSION: u64 = 1 << 30;
-
 /// The side of a workgroup, as in `@workgroup_size(8, 8)`.
 pub(super) const WORKGROUP_SIDE: u32 = 8;
 
@@ -21,17 +17,56 @@ pub(super) struct Tile {
     pub(super) in_target: [u32; 2],
 }
 
-/// The size of tiles for a device whose textures have sides of at most `side_limit` pixels.
-pub(super) fn tile_size(film: &Film, side_limit: u32, sphere_count: usize) -> [u32; 2] {
-    let pixels = (TESTS_PER_SUBMISSION / sphere_count.max(1) as u64).min(MAX_PIXELS) as u32;
-    let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
-    if pixels / width >= WORKGROUP_SIDE {
-        return [width, height.min(pixels / width)];
+/// A rectangle of workgroups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Groups {
+    pub(super) first: [u32; 2],
+    pub(super) size: [u32; 2],
+}
+
+impl Groups {
+    /// Those that cover so many pixels.
+    pub(super) fn of_size(pixels: [u32; 2]) -> Self {
+        Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
-    // One row of workgroups, and as many of them as may be.
-    let side = WORKGROUP_SIDE;
-    let narrow = (pixels / (side * side)).max(1) * side;
-    [width.min(narrow), height.min(side)]
+
+    /// How many there are.
+    pub(super) fn count(self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    /// How many pixels they render, if none lies beyond the picture.
+    pub(super) fn pixels(self) -> u64 {
+        self.count() * u64::from(WORKGROUP_SIDE * WORKGROUP_SIDE)
+    }
+
+    /// Takes about `count` workgroups out of those that are left: whole rows, or a part of one.
+    pub(super) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
+        let Self { first: [x, y], size: [width, height] } = left.pop()?;
+        let mut leave = |first: [u32; 2], size: [u32; 2]| {
+            if size[0] > 0 && size[1] > 0 {
+                left.push(Self { first, size });
+            }
+        };
+        let rows = (count / u64::from(width)).min(u64::from(height)) as u32;
+        if rows > 0 {
+            leave([x, y + rows], [width, height - rows]);
+            return Some(Self { first: [x, y], size: [width, rows] });
+        }
+        // Less than a row, so it fits.
+        let columns = (count as u32).max(1);
+        leave([x, y + 1], [width, height - 1]);
+        leave([x + columns, y], [width - columns, 1]);
+        Some(Self { first: [x, y], size: [columns, 1] })
+    }
+}
+
+/// The size of tiles for a device whose textures have sides of at most `side_limit` pixels.
+pub(super) fn tile_size(film: &Film, side_limit: u32) -> [u32; 2] {
+    let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
+    // No side exceeds 2^15 on any device, so that at least one row of workgroups fits.
+    let rows = (MAX_PIXELS / u64::from(width)) as u32;
+    [width, height.min((rows / WORKGROUP_SIDE).max(1) * WORKGROUP_SIDE)]
 }
 
 /// Cuts a tile into bands of at most so many rows.
@@ -62,11 +97,9 @@ mod tests {
 
     #[test]
     fn tiles_cover_every_pixel_once() {
-        for (width, height, spheres) in
-            [(1, 1, 0), (1, 5000, 3), (9000, 3, 1), (4096, 4096, 10), (801, 599, 1_000_000)]
-        {
+        for (width, height) in [(1, 1), (1, 5000), (9000, 3), (4096, 4096), (801, 599)] {
             let film = Film::new(width, height).unwrap();
-            let size = tile_size(&film, 8192, spheres);
+            let size = tile_size(&film, 8192);
             assert!(size[0] <= 8192 && size[1] <= 8192);
             let mut covered = vec![0_u8; film.pixel_count() as usize];
             for tile in tiles(&film, size) {
@@ -81,12 +114,20 @@ mod tests {
     }
 
     #[test]
-    fn more_spheres_make_smaller_tiles_of_whole_workgroups() {
-        let film = Film::new(4096, 4096).unwrap();
-        assert_eq!(tile_size(&film, 8192, 3), [4096, 1024]);
-        assert_eq!(tile_size(&film, 8192, 10_000), [4096, 26]);
-        assert_eq!(tile_size(&film, 8192, 1_000_000), [128, 8]);
-        assert_eq!(tile_size(&film, 8192, 100_000_000), [8, 8]);
+    fn slices_cover_every_workgroup_once() {
+        for (size, count) in [([5, 7], 1), ([5, 7], 4), ([5, 7], 5), ([5, 7], 12), ([5, 7], 1000)] {
+            let mut left = vec![Groups { first: [0, 0], size }];
+            let mut covered = [[0; 5]; 7];
+            while let Some(part) = Groups::take(&mut left, count) {
+                assert!(part.count() <= count);
+                for y in part.first[1]..part.first[1] + part.size[1] {
+                    for x in part.first[0]..part.first[0] + part.size[0] {
+                        covered[y as usize][x as usize] += 1;
+                    }
+                }
+            }
+            assert_eq!(covered, [[1; 5]; 7], "{count}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use libtest_mimic::Trial;
 use pinhole::LayerSet;
-use pinhole::gpu::{GpuError, Headless, wgpu};
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, wgpu};
 
 use crate::support::View;
 use crate::trial;
@@ -16,15 +16,19 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
+fn open(adapter: &str) -> Result<Headless, GpuError> {
+    Headless::open(&HeadlessOptions { adapter: Some(adapter.to_owned()), ..Default::default() })
+}
+
 fn part_of_a_name(headless: &'static Headless) {
     let name = &headless.adapter_info().name;
     let part = name.split_whitespace().next().unwrap().to_uppercase();
-    let found = Headless::open(Some(&part)).unwrap();
+    let found = open(&part).unwrap();
     assert_eq!(&found.adapter_info().name, name);
 }
 
 fn unknown_name(headless: &'static Headless) {
-    match Headless::open(Some("no such adapter")) {
+    match open("no such adapter") {
         Err(GpuError::UnknownAdapter { wanted, available }) => {
             assert_eq!(wanted, "no such adapter");
             assert!(available.contains(&headless.adapter_info().name));
@@ -34,7 +38,7 @@ fn unknown_name(headless: &'static Headless) {
 }
 
 fn destroyed(_: &'static Headless) {
-    let headless = Headless::open(None).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     headless.device().destroy();
     let View { scene, camera, film, settings } = View::three_spheres();
     let result = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR);
@@ -43,7 +47,7 @@ fn destroyed(_: &'static Headless) {
 
 /// The device is lent out; what goes wrong there is not the next render's.
 fn callers_fault(_: &'static Headless) {
-    let headless = Headless::open(None).unwrap();
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     // No usage at all is invalid.
     let _ = headless.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("the caller's"),

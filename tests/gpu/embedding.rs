@@ -309,7 +309,10 @@ fn not_ready(_: &'static Headless) {
     set_view(&Film::new(8, 8).unwrap()).unwrap();
     assert_eq!(
         renderer.record(&mut encoder, &scene, &frame),
-        Err(GpuError::NoCamera { camera: CameraKind::Pinhole })
+        Err(GpuError::NoPipeline {
+            camera: CameraKind::Pinhole,
+            structure: pinhole::accel::Structure::List
+        })
     );
     assert_eq!(renderer.record(&mut encoder, &again, &frame), Err(GpuError::OtherScene));
     let linear = RendererOptions { color: ColorTarget::Linear16, ..options };

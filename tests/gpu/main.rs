@@ -17,11 +17,12 @@ mod scenes;
 use std::sync::LazyLock;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use pinhole::gpu::Headless;
+use pinhole::gpu::{Headless, HeadlessOptions};
 
 /// One device for all tests, so that it is opened, and printed, once.
-static HEADLESS: LazyLock<Result<Headless, String>> =
-    LazyLock::new(|| Headless::open(None).map_err(|error| error.to_string()));
+static HEADLESS: LazyLock<Result<Headless, String>> = LazyLock::new(|| {
+    Headless::open(&HeadlessOptions::default()).map_err(|error| error.to_string())
+});
 
 fn headless() -> Result<&'static Headless, Failed> {
     HEADLESS.as_ref().map_err(|error| {

@@ -1,0 +1,31 @@
+// A camera's ray from where it enters the scene's box. What is then computed about spheres is as exact as
+// the scene is large, however far away the camera is.
+
+struct Entry {
+    // Starts in the box or on its wall.
+    ray: Ray,
+    // From the camera to the ray's origin.
+    distance: f32,
+    // Whether the ray meets the box at all.
+    is_inside: bool,
+}
+
+// The smallest size of a direction's component in a division: a quotient of lengths stays finite.
+const SMALLEST: f32 = 0x1p-60;
+
+fn inverse_direction(direction: vec3f) -> vec3f {
+    let size = max(abs(direction), vec3f(SMALLEST));
+    return 1.0 / select(-size, size, direction >= vec3f(0.0));
+}
+
+fn enter_scene(ray: Ray) -> Entry {
+    let inverse = inverse_direction(ray.direction);
+    let a = (frame.scene_min - ray.origin) * inverse;
+    let b = (frame.scene_max - ray.origin) * inverse;
+    let near = min(a, b);
+    let far = max(a, b);
+    let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
+    let t_far = min(far.x, min(far.y, far.z));
+    let entered = Ray(ray.origin + t_near * ray.direction, ray.direction);
+    return Entry(entered, t_near, t_near <= t_far);
+}

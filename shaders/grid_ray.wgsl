@@ -1,0 +1,73 @@
+// A ray among a grid's cells, and the nearest sphere so far. Parts of `grid.wgsl` and `nested_grid.wgsl`.
+
+@group(1) @binding(3) var<storage, read> cells: array<u32>;
+
+// What a cell's word is, in its two highest bits; the others are a number.
+const KIND: u32 = 3u << 30u;
+const EMPTY: u32 = 0u;
+const LIST: u32 = 1u << 30u;
+const GRID: u32 = 2u << 30u;
+
+struct GridRay {
+    // Per axis: 1 for a ray that ascends, or 0.
+    ahead: vec3f,
+    // Per axis: 1 or -1.
+    step: vec3f,
+    // The plane p of an axis, counted in cells from the grid's corner, is base + p * delta away.
+    base: vec3f,
+    delta: vec3f,
+    // Where the ray is, counted in cells: start + t * speed.
+    start: vec3f,
+    speed: vec3f,
+    // Where it enters and leaves the grid.
+    t_enter: f32,
+    t_leave: f32,
+}
+
+// The nearest sphere of this brick.
+struct Found {
+    t: f32,
+    place: u32,
+}
+
+const NO_PLACE: u32 = 0xffffffffu;
+
+fn least(v: vec3f) -> f32 {
+    return min(v.x, min(v.y, v.z));
+}
+
+fn grid_ray(ray: Ray) -> GridRay {
+    let forward = ray.direction >= vec3f(0.0);
+    let ahead = select(vec3f(0.0), vec3f(1.0), forward);
+    let step = select(vec3f(-1.0), vec3f(1.0), forward);
+    let inverse = inverse_direction(ray.direction);
+    let base = (brick.min - ray.origin) * inverse;
+    let delta = brick.cell_size * inverse;
+    let counts = vec3f(brick.cell_counts);
+    let near = base + (1.0 - ahead) * counts * delta;
+    let t_enter = max(max(near.x, max(near.y, near.z)), 0.0);
+    let t_leave = least(base + ahead * counts * delta);
+    let per_cell = 1.0 / brick.cell_size;
+    let start = (ray.origin - brick.min) * per_cell;
+    return GridRay(ahead, step, base, delta, start, ray.direction * per_cell, t_enter, t_leave);
+}
+
+// The cell in which the ray enters the grid.
+fn first_cell(along: GridRay) -> vec3f {
+    let cell = floor(along.start + along.t_enter * along.speed);
+    return clamp(cell, vec3f(0.0), vec3f(brick.cell_counts) - 1.0);
+}
+
+fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+    var found = Found((*nearest).t, NO_PLACE);
+    walk(ray, &found, false);
+    if (found.place != NO_PLACE) {
+        offer(nearest, found.t, found.place);
+    }
+}
+
+fn find_any(ray: Ray, t_max: f32) -> bool {
+    var found = Found(t_max, NO_PLACE);
+    walk(ray, &found, true);
+    return found.place != NO_PLACE;
+}

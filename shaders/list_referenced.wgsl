@@ -1,0 +1,31 @@
+// A cell's list is a run of places of spheres; the last one's highest bit is set.
+//
+// They ascend in id, and the nearest of this list replaces one that is as near: the cell in which a ray's
+// nearest point lies has all spheres that share the point, and is the last that is tested. So of equal
+// distances the smallest id wins, and no id need be read.
+
+@group(1) @binding(4) var<storage, read> references: array<u32>;
+
+fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
+    var t = NO_HIT;
+    var place = NO_PLACE;
+    var at = start;
+    loop {
+        let reference = references[at];
+        let candidate = reference & 0x7fffffffu;
+        let here = intersect_sphere(ray, spheres[candidate]).t;
+        if (here < t) {
+            t = here;
+            place = candidate;
+        }
+        if (reference != candidate) {
+            break;
+        }
+        at++;
+    }
+    // Every list has an end, so that it is enough to count here.
+    spent += at - start;
+    if (place != NO_PLACE && t <= (*found).t) {
+        *found = Found(t, place);
+    }
+}

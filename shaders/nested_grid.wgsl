@@ -1,0 +1,69 @@
+// Walks two levels of cells: a grid, and the grids inside its crowded cells. Twin: src/accel/grid_walk.rs.
+//
+// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
+// planes are computed from the plane's number and never added up, so that their error does not grow.
+// An empty cell knows how many around it are empty, and all of them are crossed in one step.
+
+fn walk(ray: Ray, found: ptr<function, Found>, stop_at_first: bool) {
+    let along = grid_ray(ray);
+    var t = along.t_enter;
+    if (t > along.t_leave || t > (*found).t) {
+        return;
+    }
+    let counts = vec3f(brick.cell_counts);
+    let strides = vec3f(1.0, counts.x, counts.x * counts.y);
+    var cell = first_cell(along);
+    loop {
+        let word = cells[u32(dot(cell, strides))];
+        let kind = word & KIND;
+        // An empty cell's word is the number of empty cells around it.
+        let reach = select(0.0, f32(word), kind == EMPTY);
+        let planes = along.base + (cell + along.step * reach + along.ahead) * along.delta;
+        let t_leave = least(planes);
+        if (kind != EMPTY) {
+            walk_cell(ray, along, word, cell, t, t_leave, found, stop_at_first);
+        }
+        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).place != NO_PLACE);
+        if (is_done || t_leave >= along.t_leave || !spend(1u)) {
+            break;
+        }
+        t = t_leave;
+        let there = floor(along.start + t * along.speed);
+        let kept = clamp(clamp(there, cell - reach, cell + reach), vec3f(0.0), counts - 1.0);
+        cell = select(kept, cell + along.step * (reach + 1.0), planes <= vec3f(t_leave));
+    }
+}
+
+// A cell with a list counts as a grid of one cell.
+fn walk_cell(
+    ray: Ray,
+    along: GridRay,
+    word: u32,
+    cell: vec3f,
+    t_enter: f32,
+    t_leave: f32,
+    found: ptr<function, Found>,
+    stop_at_first: bool,
+) {
+    let is_grid = (word & KIND) == GRID;
+    let side = f32(1u << select(0u, (word >> 27u) & 7u, is_grid));
+    let strides = vec3f(1.0, side, side * side);
+    let there = floor((along.start + t_enter * along.speed - cell) * side);
+    var inner = clamp(there, vec3f(0.0), vec3f(side - 1.0));
+    loop {
+        var inner_word = word;
+        if (is_grid) {
+            inner_word = cells[(word & 0x7ffffffu) * 8u + u32(dot(inner, strides))];
+        }
+        let planes = along.base + (cell + (inner + along.ahead) / side) * along.delta;
+        let t_inner = least(planes);
+        if ((inner_word & KIND) == LIST) {
+            test_list(ray, inner_word & ~KIND, found);
+        }
+        let is_done = (*found).t <= t_inner || (stop_at_first && (*found).place != NO_PLACE);
+        if (is_done || t_inner >= t_leave || !spend(1u)) {
+            break;
+        }
+        inner = select(inner, inner + along.step, planes <= vec3f(t_inner));
+    }
+}

@@ -1,0 +1,19 @@
+// Whether every pixel's ray hits anything at all. Leaves at the first hit, whichever it is. A pixel's hit
+// has the distance 0 and no id.
+
+@compute @workgroup_size(64)
+fn occluded(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = pixel_in_tile(group.xy, lane);
+    if (any(pixel >= frame.tile_size)) {
+        return;
+    }
+    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
+    let index = hit_index(pixel);
+    let is_known = brick.is_first == 0u && load_hit(index).t < NO_HIT;
+    var t = select(NO_HIT, 0.0, is_known);
+    if (entry.is_inside && !is_known && find_any(entry.ray, NO_HIT)) {
+        t = 0.0;
+    }
+    store_hit(index, Hit(t, NO_ID, 0u));
+    report_spent();
+}

@@ -1,0 +1,30 @@
+// Which pixel an invocation renders, and what it reports.
+
+// Not 0 if an invocation ran into the limit of iterations.
+@group(0) @binding(2) var<storage, read_write> status: array<atomic<u32>, 1>;
+
+// A workgroup renders 8x8 pixels. Its lanes follow a Z-order curve, so that the 8 or 32 that run together
+// lie close together. Rows of workgroups are taken in the order that the host chose: software devices give
+// each thread one run of workgroups, and sky must not be the share of one of them.
+fn pixel_in_tile(group: vec2u, lane: u32) -> vec2u {
+    let row = remainder((frame.first_group.y + group.y) * frame.row_step, frame.row_count);
+    let in_group = vec2u(every_second_bit(lane), every_second_bit(lane >> 1u));
+    return vec2u(frame.first_group.x + group.x, row) * 8u + in_group;
+}
+
+// a % b, for a below 2^24: software devices divide integers lane by lane.
+fn remainder(a: u32, b: u32) -> u32 {
+    let rest = a - u32(f32(a) / f32(b)) * b;
+    // A quotient that was rounded up leaves a rest below zero.
+    return select(rest, rest + b, rest >= b);
+}
+
+fn every_second_bit(lane: u32) -> u32 {
+    return (lane & 1u) | ((lane >> 1u) & 2u) | ((lane >> 2u) & 4u);
+}
+
+fn report_spent() {
+    if (spent > frame.iteration_limit) {
+        atomicOr(&status[0], 1u);
+    }
+}

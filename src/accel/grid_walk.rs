@@ -1,0 +1,121 @@
+//! Walks a grid in f32. Twin of `shaders/grid.wgsl`, line by line.
+
+use glam::{BVec3, Vec3};
+
+use super::grid::{Grid, word};
+use super::query::{NO_HIT, Nearest, RayF32, inverse_direction};
+use super::sphere::intersect_sphere;
+
+/// The nearest sphere of this brick.
+struct Found {
+    t: f32,
+    place: Option<u32>,
+}
+
+impl Grid {
+    /// Offers every sphere that may be nearer than `nearest`, until none can be.
+    ///
+    /// `spheres` and `ids` are in the order of the grid's places.
+    pub fn find_nearest(
+        &self,
+        spheres: &[[f32; 4]],
+        ids: &[u32],
+        ray: &RayF32,
+        nearest: &mut Nearest,
+    ) {
+        let mut found = Found { t: nearest.t, place: None };
+        self.walk(spheres, ray, &mut found, false);
+        if let Some(place) = found.place {
+            nearest.offer(found.t, ids[place as usize]);
+        }
+    }
+
+    /// Whether any sphere is nearer than `t_max`.
+    #[must_use]
+    pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
+        let mut found = Found { t: t_max, place: None };
+        self.walk(spheres, ray, &mut found, true);
+        found.place.is_some()
+    }
+
+    fn walk(&self, spheres: &[[f32; 4]], ray: &RayF32, found: &mut Found, stop_at_first: bool) {
+        let forward = ray.direction.cmpge(Vec3::ZERO);
+        let ahead = Vec3::select(forward, Vec3::ONE, Vec3::ZERO);
+        let step = Vec3::select(forward, Vec3::ONE, Vec3::NEG_ONE);
+        let inverse = inverse_direction(ray.direction);
+        let counts = Vec3::from(self.cell_counts.map(|count| count as f32));
+        let base = (self.min - ray.origin) * inverse;
+        let delta = self.cell_size * inverse;
+        let near = base + (1.0 - ahead) * counts * delta;
+        let t_end = (base + ahead * counts * delta).min_element();
+        let mut t = near.max_element().max(0.0);
+        if t > t_end || t > found.t {
+            return;
+        }
+        let per_cell = 1.0 / self.cell_size;
+        let start = (ray.origin - self.min) * per_cell;
+        let speed = ray.direction * per_cell;
+        let strides = Vec3::new(1.0, counts.x, counts.x * counts.y);
+        let is_done =
+            |found: &Found, t: f32| found.t <= t || (stop_at_first && found.place.is_some());
+        let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
+        loop {
+            let outer = self.word(cell.dot(strides) as usize);
+            let kind = outer & word::KIND;
+            let reach = if kind == word::EMPTY { outer as f32 } else { 0.0 };
+            let planes = base + (cell + step * reach + ahead) * delta;
+            let t_leave = planes.min_element();
+            if kind != word::EMPTY {
+                let level = if kind == word::GRID { (outer >> word::LEVEL_SHIFT) & 7 } else { 0 };
+                let side = (1_u32 << level) as f32;
+                let inner_strides = Vec3::new(1.0, side, side * side);
+                let last = Vec3::splat(side - 1.0);
+                let mut inner = ((start + t * speed - cell) * side).floor().clamp(Vec3::ZERO, last);
+                loop {
+                    let mut inner_word = outer;
+                    if kind == word::GRID {
+                        let first = (outer & 0x07ff_ffff) as usize * 8;
+                        inner_word = self.word(first + inner.dot(inner_strides) as usize);
+                    }
+                    let inner_planes = base + (cell + (inner + ahead) / side) * delta;
+                    let t_inner = inner_planes.min_element();
+                    if inner_word & word::KIND == word::LIST {
+                        self.test_list(spheres, ray, inner_word & !word::KIND, found);
+                    }
+                    if is_done(found, t_inner) || t_inner >= t_leave {
+                        break;
+                    }
+                    let crossed: BVec3 = inner_planes.cmple(Vec3::splat(t_inner));
+                    inner = Vec3::select(crossed, inner + step, inner);
+                }
+            }
+            if is_done(found, t_leave) || t_leave >= t_end {
+                break;
+            }
+            t = t_leave;
+            let crossed = (start + t * speed).floor().clamp(cell - reach, cell + reach);
+            let kept = crossed.clamp(Vec3::ZERO, counts - 1.0);
+            let left: BVec3 = planes.cmple(Vec3::splat(t_leave));
+            cell = Vec3::select(left, cell + step * (reach + 1.0), kept);
+        }
+    }
+
+    /// Rounding may name a cell beyond the last; a kernel then reads another word, and so may this.
+    fn word(&self, index: usize) -> u32 {
+        self.cells.get(index).copied().unwrap_or(word::EMPTY)
+    }
+
+    /// The nearest of a list replaces one that is as near; why, `shaders/list_copied.wgsl` says.
+    fn test_list(&self, spheres: &[[f32; 4]], ray: &RayF32, start: u32, found: &mut Found) {
+        let mut best = Found { t: NO_HIT, place: None };
+        for place in self.list(spheres, start) {
+            let t = intersect_sphere(ray, spheres[place as usize]);
+            if t < best.t {
+                best = Found { t, place: Some(place) };
+            }
+        }
+        if best.place.is_some() && best.t <= found.t {
+            *found = best;
+        }
+    }
+}

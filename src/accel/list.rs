@@ -1,0 +1,24 @@
+//! No structure: every sphere. Twin of `shaders/list.wgsl`.
+
+use super::query::{NO_HIT, Nearest, RayF32};
+use super::sphere::intersect_sphere;
+
+/// Offers the nearest of the spheres, which ascend in id.
+pub fn find_nearest(spheres: &[[f32; 4]], ids: &[u32], ray: &RayF32, nearest: &mut Nearest) {
+    let mut best = (NO_HIT, 0);
+    for (place, sphere) in spheres.iter().enumerate() {
+        let t = intersect_sphere(ray, *sphere);
+        if t < best.0 {
+            best = (t, place);
+        }
+    }
+    if best.0 < NO_HIT {
+        nearest.offer(best.0, ids[best.1]);
+    }
+}
+
+/// Whether any sphere is nearer than `t_max`.
+#[must_use]
+pub fn find_any(spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
+    spheres.iter().any(|sphere| intersect_sphere(ray, *sphere) < t_max)
+}

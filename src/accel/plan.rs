@@ -1,0 +1,236 @@
+//! What will be built, why, and how large it may become: decided before anything is allocated.
+
+use std::fmt;
+
+use super::brick::{Accel, Brick, Index, Structure};
+use super::divide::divide;
+use super::grid::ListLayout;
+use super::grid_build::{BuiltGrid, GridBudget, build_grid};
+use super::statistics::SceneStatistics;
+
+/// What a user asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum AccelChoice {
+    /// What suits the data.
+    #[default]
+    Auto,
+    /// Two levels of cells.
+    Grid,
+    /// Every sphere is tried: slow, and what the others are compared with.
+    List,
+}
+
+/// Up to so many spheres no structure pays.
+const FEW: usize = 32;
+
+/// How many spheres one dispatch tries without a structure: below the 65,535 iterations after which Mesa
+/// 22.3's lavapipe leaves a loop silently.
+const LIST_LEN: usize = 3 << 14;
+
+/// Up to so many spheres, lists are runs of copies: faster by a quarter on lavapipe, for about twice the
+/// memory.
+const MOST_COPIED: usize = 2_000_000;
+
+/// Of one buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannedBuffer {
+    /// What it holds.
+    pub name: &'static str,
+    /// At most so many bytes, in all bricks together.
+    pub bytes: u64,
+    /// At most so many bytes in one brick, which is what one binding must hold.
+    pub bytes_per_binding: u64,
+}
+
+/// What will be built of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AccelPlan {
+    /// What it was decided from.
+    pub statistics: SceneStatistics,
+    /// The structure.
+    pub structure: Structure,
+    /// Why this one.
+    pub reason: String,
+    /// In how many bricks.
+    pub brick_count: usize,
+    /// How large the grid of one brick may become.
+    budget: GridBudget,
+    /// Of the whole scene, on the device.
+    pub buffers: Vec<PlannedBuffer>,
+}
+
+impl AccelPlan {
+    /// Decides for a scene's spheres and a device whose bindings hold so many bytes.
+    #[must_use]
+    pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
+        let statistics = SceneStatistics::of(spheres);
+        let (structure, reason) = decide(&statistics, choice);
+        let count = statistics.count;
+        let most_per_brick = most_per_brick(structure, binding_bytes);
+        let brick_count = count.div_ceil(most_per_brick).max(1);
+        let budget = grid_budget(structure, count.div_ceil(brick_count));
+        let mut plan =
+            Self { statistics, structure, reason, brick_count, budget, buffers: Vec::new() };
+        plan.buffers = plan.list_buffers();
+        plan
+    }
+
+    /// Bytes of all buffers.
+    #[must_use]
+    pub fn device_bytes(&self) -> u64 {
+        self.buffers.iter().map(|buffer| buffer.bytes).sum()
+    }
+
+    /// Bytes of host memory that building takes at most, beside the scene itself.
+    #[must_use]
+    pub fn host_bytes(&self) -> u64 {
+        let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
+        let structure: u64 = self.device_bytes();
+        let building = match self.structure {
+            Structure::List => 0,
+            // Sorted spheres with their ids; lists as places, twice.
+            _ => per_brick * 24 + 8 * self.budget.listed as u64,
+        };
+        structure + building
+    }
+
+    /// Builds it, of the spheres that were planned for.
+    #[must_use]
+    pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
+        let (min, max) = self.statistics.inflated_bounds();
+        let margin = self.statistics.margin();
+        let bricks: Vec<Brick> = match self.structure {
+            // Slices in the order of ids.
+            Structure::List => spheres
+                .chunks(LIST_LEN)
+                .zip((0_u32..).step_by(LIST_LEN))
+                .map(|(spheres, first)| Brick {
+                    index: Index::List,
+                    spheres: spheres.to_vec(),
+                    ids: (first..first + spheres.len() as u32).collect(),
+                })
+                .collect(),
+            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
+                split(spheres, self.brick_count)
+                    .into_iter()
+                    .filter(|ids| !ids.is_empty())
+                    .map(|ids| {
+                        let BuiltGrid { grid, spheres, ids } =
+                            build_grid(spheres, &ids, margin, layout, self.budget);
+                        Brick { index: Index::Grid(grid), spheres, ids }
+                    })
+                    .collect()
+            }
+        };
+        let structure = final_structure(self.structure, &bricks);
+        Accel { structure, bricks: or_empty(bricks), min, max }
+    }
+
+    fn list_buffers(&self) -> Vec<PlannedBuffer> {
+        let bricks = self.brick_count as u64;
+        let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
+        let listed = self.budget.listed as u64;
+        let places = match self.structure {
+            Structure::Grid(ListLayout::Copied) => listed,
+            _ => per_brick,
+        };
+        let mut buffers = vec![("spheres", 16 * places), ("ids", 4 * places)];
+        if let Structure::Grid(layout) = self.structure {
+            buffers.push(("cells", 4 * self.budget.cells as u64));
+            if layout == ListLayout::Referenced {
+                buffers.push(("references", 4 * listed));
+            }
+        }
+        buffers
+            .into_iter()
+            .map(|(name, bytes)| PlannedBuffer {
+                name,
+                bytes: bytes * bricks,
+                bytes_per_binding: bytes,
+            })
+            .collect()
+    }
+}
+
+impl fmt::Display for AccelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Grid => "grid",
+            Self::List => "list",
+        })
+    }
+}
+
+fn decide(statistics: &SceneStatistics, choice: AccelChoice) -> (Structure, String) {
+    let count = statistics.count;
+    let (layout, why) = if count <= MOST_COPIED {
+        (ListLayout::Copied, "few enough to copy into cells")
+    } else {
+        (ListLayout::Referenced, "too many to copy into cells")
+    };
+    match choice {
+        AccelChoice::List => (Structure::List, "asked for".to_owned()),
+        _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
+        AccelChoice::Auto if count <= FEW => {
+            (Structure::List, format!("up to {FEW} spheres, no structure pays"))
+        }
+        AccelChoice::Auto => (Structure::Grid(layout), format!("{count} spheres, {why}")),
+        AccelChoice::Grid => (Structure::Grid(layout), format!("asked for; {why}")),
+    }
+}
+
+fn grid_budget(structure: Structure, count: usize) -> GridBudget {
+    // A small scene may have more a sphere: it is little in all.
+    match structure {
+        Structure::Grid(ListLayout::Copied) => {
+            GridBudget { listed: count * 17 / 4 + (1 << 16), cells: count + (1 << 18) }
+        }
+        Structure::Grid(ListLayout::Referenced) => {
+            GridBudget { listed: count * 3 + (1 << 16), cells: count * 2 / 5 + (1 << 16) }
+        }
+        _ => GridBudget { listed: 0, cells: 0 },
+    }
+}
+
+/// How many spheres a brick may have, so that each of its buffers fits into a binding.
+fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
+    let most = (binding_bytes / 16).min(1 << 30) as usize;
+    let fits = |count: usize| {
+        let budget = grid_budget(structure, count);
+        let bytes = match structure {
+            Structure::Grid(ListLayout::Copied) => 16 * budget.listed,
+            _ => 16 * count,
+        };
+        bytes.max(4 * budget.cells).max(4 * budget.listed) as u64 <= binding_bytes
+    };
+    if structure == Structure::List {
+        return LIST_LEN.min(most).max(1);
+    }
+    // The largest count that fits, by bisection.
+    let (mut low, mut high) = (1, most.max(1));
+    while low < high {
+        let middle = low + (high - low).div_ceil(2);
+        if fits(middle) { low = middle } else { high = middle - 1 }
+    }
+    low
+}
+
+/// A grid is nested if one of its bricks is.
+fn final_structure(planned: Structure, bricks: &[Brick]) -> Structure {
+    let is_nested =
+        bricks.iter().any(|brick| matches!(&brick.index, Index::Grid(grid) if grid.is_nested()));
+    match planned {
+        Structure::Grid(layout) if is_nested => Structure::NestedGrid(layout),
+        planned => planned,
+    }
+}
+
+/// An empty scene has an empty brick.
+fn or_empty(mut bricks: Vec<Brick>) -> Vec<Brick> {
+    if bricks.is_empty() {
+        bricks.push(Brick { index: Index::List, spheres: Vec::new(), ids: Vec::new() });
+    }
+    bricks
+}

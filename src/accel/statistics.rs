@@ -1,0 +1,106 @@
+//! What a scene's spheres are like, from one pass over them.
+
+use glam::Vec3;
+
+use super::parallel::{chunks, map};
+
+/// Sizes and places of spheres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneStatistics {
+    /// How many there are.
+    pub count: usize,
+    /// The corner of their box, in the scene's frame, with the smallest coordinates.
+    pub min: Vec3,
+    /// The opposite corner.
+    pub max: Vec3,
+    /// The smallest radius.
+    pub radius_min: f32,
+    /// The largest radius.
+    pub radius_max: f32,
+    /// The mean radius.
+    pub radius_mean: f32,
+    /// The share of the spheres that lie in the densest of the equal cubes that the box is divided into,
+    /// 16 along the longest side; evenly spread spheres have one over the number of cubes.
+    pub crowding: f32,
+}
+
+/// Cubes along the longest side.
+const CUBES: usize = 16;
+
+impl SceneStatistics {
+    /// Of spheres in the scene's frame: centre and radius.
+    #[must_use]
+    pub fn of(spheres: &[[f32; 4]]) -> Self {
+        let ranges = chunks(spheres.len(), 1 << 16);
+        let parts = map(ranges.len(), |i| {
+            let nothing = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
+            spheres[ranges[i].clone()].iter().fold(
+                nothing,
+                |(min, max, least, most, sum), &[x, y, z, r]| {
+                    let center = Vec3::new(x, y, z);
+                    (
+                        min.min(center - r),
+                        max.max(center + r),
+                        least.min(r),
+                        most.max(r),
+                        sum + f64::from(r),
+                    )
+                },
+            )
+        });
+        if parts.is_empty() {
+            let (min, max) = (Vec3::ZERO, Vec3::ZERO);
+            let (radius_min, radius_max, radius_mean) = (0.0, 0.0, 0.0);
+            return Self { count: 0, min, max, radius_min, radius_max, radius_mean, crowding: 0.0 };
+        }
+        let mut all = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
+        for part in parts {
+            all.0 = all.0.min(part.0);
+            all.1 = all.1.max(part.1);
+            all.2 = all.2.min(part.2);
+            all.3 = all.3.max(part.3);
+            all.4 += part.4;
+        }
+        let (min, max, radius_min, radius_max, sum) = all;
+        let radius_mean = (sum / spheres.len() as f64) as f32;
+        let crowding = crowding(spheres, min, max);
+        Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, crowding }
+    }
+
+    /// How far from a sphere's surface the f32 arithmetic of a ray that starts in the box can stray: 2⁻¹⁸
+    /// of the box's diagonal.
+    ///
+    /// No vector from a ray's origin to a centre is longer than the diagonal D. With u = 2⁻²³ for one
+    /// rounding, because WGSL lets either neighbour be the result, the foot point of the sphere test is off
+    /// by less than 9 u D, and the positions of planes and cells by less than 6 u D; 2⁻¹⁸ D is 32 u D.
+    #[must_use]
+    pub fn margin(&self) -> f32 {
+        const PART: f32 = 1.0 / (1 << 18) as f32;
+        let diagonal = (self.max - self.min).length();
+        // A coordinate is rounded to f32 before anything else is.
+        let farthest = self.min.abs().max(self.max.abs()).max_element();
+        (diagonal * PART).max(farthest * (1.0 / (1 << 22) as f32))
+    }
+
+    /// The box that rays are moved to before they are traced.
+    #[must_use]
+    pub fn inflated_bounds(&self) -> (Vec3, Vec3) {
+        let margin = 2.0 * self.margin();
+        (self.min - margin, self.max + margin)
+    }
+}
+
+/// From a sample.
+fn crowding(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
+    const SAMPLES: usize = 1 << 16;
+    let cube = (max - min).max_element() / CUBES as f32;
+    let mut counts = vec![0_u32; CUBES * CUBES * CUBES];
+    let mut sampled = 0;
+    for [x, y, z, _] in spheres.iter().step_by(spheres.len().div_ceil(SAMPLES).max(1)) {
+        let place = ((Vec3::new(*x, *y, *z) - min) / cube).to_array();
+        let [i, j, k] = place.map(|p| (p as usize).min(CUBES - 1));
+        counts[(k * CUBES + j) * CUBES + i] += 1;
+        sampled += 1;
+    }
+    counts.iter().max().map_or(0.0, |most| *most as f32 / sampled.max(1) as f32)
+}

@@ -1,0 +1,60 @@
+//! How much work is submitted at once.
+
+use std::time::Duration;
+
+/// What a submission should take: long enough that the waiting between two of them does not count, short
+/// enough for a watchdog, a progress bar and Ctrl-C.
+const TARGET: Duration = Duration::from_millis(60);
+
+/// How many workgroups the first submission has: some milliseconds of a software device's time.
+const FIRST: u64 = 2048;
+
+/// Adapts to the device, from one submission to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    next: u64,
+}
+
+impl Pace {
+    /// For rays of which each tries about so many spheres.
+    pub(super) fn new(tests_per_ray: usize) -> Self {
+        // A list of spheres costs a thousand times what a structure does.
+        Self { next: (FIRST * 128 / tests_per_ray.max(128) as u64).max(1) }
+    }
+
+    /// How many workgroups the next submission should have.
+    pub(super) fn groups(self) -> u64 {
+        self.next
+    }
+
+    /// Takes note of what a submission took. What looks quick may have been sky, so that it grows by steps.
+    pub(super) fn took(&mut self, groups: u64, elapsed: Duration) {
+        let ratio = TARGET.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
+        self.next = ((groups as f64 * ratio.min(8.0)) as u64).max(1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slow_device_gets_less_and_a_quick_one_more() {
+        let mut pace = Pace::new(1);
+        assert_eq!(pace.groups(), FIRST);
+        pace.took(FIRST, Duration::from_millis(600));
+        assert_eq!(pace.groups(), FIRST / 10);
+        pace.took(FIRST / 10, Duration::from_secs(3600));
+        assert_eq!(pace.groups(), 1);
+        pace.took(1, Duration::ZERO);
+        assert_eq!(pace.groups(), 8);
+        pace.took(1000, Duration::from_millis(30));
+        assert_eq!(pace.groups(), 2000);
+    }
+
+    /// 49,152 spheres for each of 64 rays are three million tests.
+    #[test]
+    fn without_a_structure_the_first_submission_is_short() {
+        assert_eq!(Pace::new(3 << 14).groups(), 5);
+    }
+}
