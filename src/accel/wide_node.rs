@@ -178,17 +178,18 @@ pub(super) fn octant_slots(boxes: &[Extent]) -> [usize; 8] {
     let mut slots = [0; 8];
     let mut free = 0xff_u32;
     for &mut child in order {
-        let mut best = (f32::MIN, 0);
+        let mut best = None;
         for slot in (0..8_usize).filter(|slot| free >> slot & 1 == 1) {
             let sign = |axis: usize| if slot >> axis & 1 == 1 { 1.0 } else { -1.0 };
             let along = outward[child].dot(Vec3A::new(sign(0), sign(1), sign(2)));
-            if along > best.0 {
-                best = (along, slot);
+            if best.is_none_or(|(most, _)| along > most) {
+                best = Some((along, slot));
             }
         }
-        // A box of finite size lies in every octant by more than f32::MIN.
-        slots[child] = best.1;
-        free &= !(1 << best.1);
+        // There are as many slots as there can be children.
+        let slot = best.map_or(0, |(_, slot)| slot);
+        slots[child] = slot;
+        free &= !(1 << slot);
     }
     slots
 }

@@ -171,7 +171,7 @@ fn spheres_in_order() {
         &(0..1_000).map(|i| [i as f32 * 1e-3, 0.0, 0.0, 1.0 + i as f32]).collect(),
         800,
     );
-    let geometric = (0..1_000).map(|i| [1.05_f32.powi(i), 0.0, 0.0, 0.02 * 1.05_f32.powi(i)]);
+    let geometric = (0..1_000).map(|i| [1.03_f32.powi(i), 0.0, 0.0, 0.01 * 1.03_f32.powi(i)]);
     check("geometric", &geometric.collect(), 800);
     // Face-centred cubic, touching neighbours.
     let lattice = (0..20 * 20 * 20).filter_map(|i| {
