@@ -63,8 +63,8 @@ impl Item {
     /// One item for every sphere (centre, radius).
     pub(super) fn all(spheres: &[[f32; 4]], margin: f32) -> Vec<Self> {
         let largest = spheres.iter().flatten().fold(margin, |largest, x| largest.max(x.abs()));
-        // Two roundings of numbers that are at most 3 · largest: `reach`, and `center ± reach`.
-        let roundings = largest * (4.0 * f32::EPSILON);
+        // Three roundings of numbers that are at most 4 · largest: twice in `reach`, and `center ± reach`.
+        let roundings = largest * (8.0 * f32::EPSILON);
         let item = |(id, &[x, y, z, radius]): (usize, &[f32; 4])| Self {
             center: [x, y, z],
             reach: radius + margin + roundings,

@@ -19,7 +19,7 @@
 //!    holds for hits from inside, and where rounding alone puts a hit in front of o.
 //! 3. *The box test moves a plane by at most 8 u.* (plane − o) · 1/d has three roundings, q · step + start
 //!    three more, each a relative one of a length of at most 2 D, and an error of t along the axis i is one
-//!    of d_i times that in space. Components of the direction below [`SMALLEST_COMPONENT`] are replaced by
+//!    of `d_i` times that in space. Components of the direction below [`SMALLEST_COMPONENT`] are replaced by
 //!    it, which bends a ray by 2⁻⁴⁰ D at most.
 //!
 //! Together less than 40 u: if the sphere test gives t, then the box test of every box around the sphere

@@ -1,5 +1,7 @@
 //! What a tree must be, whatever its nodes look like, and what it costs.
 
+use std::array::from_fn;
+
 /// Why a tree is not one that a kernel may walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -106,15 +108,8 @@ pub(super) trait Tree {
 type Bounds = [[f64; 3]; 2];
 const NOTHING: Bounds = [[f64::MAX; 3], [f64::MIN; 3]];
 
-fn union([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
-    [0, 1, 2].map(|i| (a[i].min(c[i]), b[i].max(d[i]))).into_iter().enumerate().fold(
-        NOTHING,
-        |mut all, (i, (low, high))| {
-            all[0][i] = low;
-            all[1][i] = high;
-            all
-        },
-    )
+fn union(a: Bounds, b: Bounds) -> Bounds {
+    [from_fn(|i| a[0][i].min(b[0][i])), from_fn(|i| a[1][i].max(b[1][i]))]
 }
 
 fn contains(outer: Bounds, inner: Bounds) -> bool {

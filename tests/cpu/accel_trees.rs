@@ -31,7 +31,7 @@ fn unit(rng: &mut Rng) -> Vec3 {
     loop {
         let v = Vec3::from_array([(); 3].map(|()| rng.f32() * 2.0 - 1.0));
         if (0.01..1.0).contains(&v.length_squared()) {
-            return v.normalize();
+            return v / v.length();
         }
     }
 }
