@@ -2,9 +2,11 @@
 
 use glam::Vec3;
 
+use super::binary_tree::BinaryTree;
 use super::grid::{Grid, ListLayout};
 use super::list;
 use super::query::{Nearest, RayF32};
+use super::wide_tree::WideTree;
 
 /// The structures that exist, as kernels know them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,6 +18,10 @@ pub enum Structure {
     Grid(ListLayout),
     /// Two levels of cells.
     NestedGrid(ListLayout),
+    /// A tree with eight children a node, compressed.
+    WideTree,
+    /// A tree with two children a node: simple, and a second opinion.
+    BinaryTree,
 }
 
 impl Structure {
@@ -36,6 +42,8 @@ impl Structure {
             Self::Grid(ListLayout::Referenced) => "grid, cells refer to spheres",
             Self::NestedGrid(ListLayout::Copied) => "nested grids, spheres copied into cells",
             Self::NestedGrid(ListLayout::Referenced) => "nested grids, cells refer to spheres",
+            Self::WideTree => "8-wide tree",
+            Self::BinaryTree => "binary tree",
         }
     }
 }
@@ -47,6 +55,10 @@ pub enum Index {
     List,
     /// Two levels of cells.
     Grid(Grid),
+    /// Eight children a node.
+    WideTree(WideTree),
+    /// Two children a node.
+    BinaryTree(BinaryTree),
 }
 
 /// A part of a scene.
@@ -68,6 +80,8 @@ impl Brick {
         match index {
             Index::List => list::find_nearest(spheres, ids, ray, nearest),
             Index::Grid(grid) => grid.find_nearest(spheres, ids, ray, nearest),
+            Index::WideTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
+            Index::BinaryTree(tree) => tree.find_nearest(spheres, ids, ray, nearest),
         }
     }
 
@@ -78,6 +92,8 @@ impl Brick {
         match index {
             Index::List => list::find_any(spheres, ray, t_max),
             Index::Grid(grid) => grid.find_any(spheres, ray, t_max),
+            Index::WideTree(tree) => tree.find_any(spheres, ray, t_max),
+            Index::BinaryTree(tree) => tree.find_any(spheres, ray, t_max),
         }
     }
 }

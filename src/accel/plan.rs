@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+use super::binary_tree::BinaryTree;
 use super::brick::{Accel, Brick, Index, Structure};
 use super::divide::divide;
 use super::grid::ListLayout;
 use super::grid_build::{BuiltGrid, GridBudget, build_grid};
 use super::statistics::SceneStatistics;
+use super::wide_tree::WideTree;
 
 /// What a user asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -17,6 +19,10 @@ pub enum AccelChoice {
     Auto,
     /// Two levels of cells.
     Grid,
+    /// A tree with eight children a node.
+    Tree,
+    /// A tree with two children a node: slower, and simpler.
+    BinaryTree,
     /// Every sphere is tried: slow, and what the others are compared with.
     List,
 }
@@ -31,6 +37,12 @@ const LIST_LEN: usize = 3 << 14;
 /// Up to so many spheres, lists are runs of copies: faster by a quarter on lavapipe, for about twice the
 /// memory.
 const MOST_COPIED: usize = 2_000_000;
+
+/// At most so many bytes of nodes a sphere: a wide node is 80 bytes.
+const WIDE_BYTES: u64 = 14;
+
+/// At most so many bytes of nodes a sphere: a node of 64 bytes has leaves of three or four, two of them.
+const BINARY_BYTES: u64 = 32;
 
 /// Of one buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,11 +112,12 @@ impl AccelPlan {
     pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
         let (min, max) = self.statistics.inflated_bounds();
         let margin = self.statistics.margin();
+        let per_brick = self.statistics.count.div_ceil(self.brick_count).max(1);
         let bricks: Vec<Brick> = match self.structure {
             // Slices in the order of ids.
             Structure::List => spheres
-                .chunks(LIST_LEN)
-                .zip((0_u32..).step_by(LIST_LEN))
+                .chunks(per_brick)
+                .zip((0_u32..).step_by(per_brick))
                 .map(|(spheres, first)| Brick {
                     index: Index::List,
                     spheres: spheres.to_vec(),
@@ -112,7 +125,7 @@ impl AccelPlan {
                 })
                 .collect(),
             Structure::Grid(layout) | Structure::NestedGrid(layout) => {
-                split(spheres, self.brick_count)
+                divide(spheres, self.brick_count)
                     .into_iter()
                     .filter(|ids| !ids.is_empty())
                     .map(|ids| {
@@ -122,9 +135,38 @@ impl AccelPlan {
                     })
                     .collect()
             }
+            Structure::WideTree => self.build_trees(spheres, |spheres| {
+                let tree = WideTree::build(spheres, margin);
+                (tree.ids().to_vec(), Index::WideTree(tree))
+            }),
+            Structure::BinaryTree => self.build_trees(spheres, |spheres| {
+                let tree = BinaryTree::build(spheres, margin);
+                (tree.ids().to_vec(), Index::BinaryTree(tree))
+            }),
         };
         let structure = final_structure(self.structure, &bricks);
         Accel { structure, bricks: or_empty(bricks), min, max }
+    }
+
+    /// `build` gives a tree of some spheres, and their order in it.
+    fn build_trees(
+        &self,
+        spheres: &[[f32; 4]],
+        build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
+    ) -> Vec<Brick> {
+        divide(spheres, self.brick_count)
+            .into_iter()
+            .filter(|ids| !ids.is_empty())
+            .map(|ids| {
+                let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+                let (order, index) = build(&own);
+                Brick {
+                    index,
+                    spheres: order.iter().map(|place| own[*place as usize]).collect(),
+                    ids: order.iter().map(|place| ids[*place as usize]).collect(),
+                }
+            })
+            .collect()
     }
 
     fn list_buffers(&self) -> Vec<PlannedBuffer> {
@@ -136,6 +178,11 @@ impl AccelPlan {
             _ => per_brick,
         };
         let mut buffers = vec![("spheres", 16 * places), ("ids", 4 * places)];
+        match self.structure {
+            Structure::WideTree => buffers.push(("nodes", WIDE_BYTES * per_brick + 80)),
+            Structure::BinaryTree => buffers.push(("nodes", BINARY_BYTES * per_brick + 64)),
+            _ => {}
+        }
         if let Structure::Grid(layout) = self.structure {
             buffers.push(("cells", 4 * self.budget.cells as u64));
             if layout == ListLayout::Referenced {
@@ -158,6 +205,8 @@ impl fmt::Display for AccelChoice {
         f.write_str(match self {
             Self::Auto => "auto",
             Self::Grid => "grid",
+            Self::Tree => "tree",
+            Self::BinaryTree => "binary-tree",
             Self::List => "list",
         })
     }
@@ -171,8 +220,10 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice) -> (Structure, Stri
         (ListLayout::Referenced, "too many to copy into cells")
     };
     match choice {
-        AccelChoice::List => (Structure::List, "asked for".to_owned()),
         _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
+        AccelChoice::List => (Structure::List, "asked for".to_owned()),
+        AccelChoice::Tree => (Structure::WideTree, "asked for".to_owned()),
+        AccelChoice::BinaryTree => (Structure::BinaryTree, "asked for".to_owned()),
         AccelChoice::Auto if count <= FEW => {
             (Structure::List, format!("up to {FEW} spheres, no structure pays"))
         }
@@ -201,6 +252,7 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
         let budget = grid_budget(structure, count);
         let bytes = match structure {
             Structure::Grid(ListLayout::Copied) => 16 * budget.listed,
+            Structure::BinaryTree => 32 * count,
             _ => 16 * count,
         };
         bytes.max(4 * budget.cells).max(4 * budget.listed) as u64 <= binding_bytes

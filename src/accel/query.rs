@@ -34,7 +34,7 @@ impl Nearest {
     /// so that the answer does not depend on the order of the spheres.
     #[inline]
     pub fn offer(&mut self, t: f32, id: u32) {
-        if t < self.t || (t == self.t && id < self.id) {
+        if t < self.t || (t <= self.t && id < self.id) {
             *self = Self { t, id };
         }
     }

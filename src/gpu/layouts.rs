@@ -79,6 +79,7 @@ impl Layouts {
 fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
         Structure::List => vec![],
+        Structure::WideTree | Structure::BinaryTree => vec![storage::<[u32; 4]>(true)],
         Structure::Grid(ListLayout::Copied) | Structure::NestedGrid(ListLayout::Copied) => {
             vec![storage::<u32>(true)]
         }

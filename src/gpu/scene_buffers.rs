@@ -194,6 +194,8 @@ impl Upload<'_> {
                 words.push(&grid.cells);
                 words.extend(grid.references.as_deref());
             }
+            Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
+            Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
         }
         self.first_place += record.place_count;
         for (what, bytes) in [

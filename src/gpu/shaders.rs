@@ -49,6 +49,16 @@ fn walk_parts(camera: CameraKind, structure: Structure) -> Vec<Part> {
     parts.extend([part!("schedule.wgsl"), part!("brick.wgsl")]);
     match structure {
         Structure::List => parts.push(part!("list.wgsl")),
+        Structure::WideTree => parts.extend([
+            part!("slab.wgsl"),
+            part!("leaf.wgsl"),
+            part!("wide_group.wgsl"),
+            part!("wide_node.wgsl"),
+            part!("wide_tree.wgsl"),
+        ]),
+        Structure::BinaryTree => {
+            parts.extend([part!("slab.wgsl"), part!("leaf.wgsl"), part!("binary_tree.wgsl")])
+        }
         Structure::Grid(layout) => {
             parts.extend([part!("grid_ray.wgsl"), part!("grid.wgsl"), list_part(layout)]);
         }

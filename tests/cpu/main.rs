@@ -9,6 +9,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod accel_trees;
 mod basis;
 mod camera;
 mod comparator;

@@ -1,0 +1,103 @@
+// The two-child tree, nearer child first. Twin: src/accel/binary_tree_trace.rs.
+
+// Two vec4u a child: its box's low corner and its link; its high corner and its count.
+@group(1) @binding(3) var<storage, read> nodes: array<vec4u>;
+
+// A level leaves at most one entry on the stack. The host builds no deeper tree.
+const BINARY_LEVELS: u32 = 30u;
+// The count of a child that is a node.
+const BINARY_INNER: u32 = 0xffffffffu;
+// The entry of a box that is not entered; greater than any distance.
+const NO_ENTRY: f32 = 2e30;
+
+struct BinaryChild {
+    // Index of the node, or of the leaf's first sphere.
+    link: u32,
+    count: u32,
+    // Where the ray enters the box, or NO_ENTRY.
+    entry: f32,
+}
+
+fn binary_child(ray: SlabRay, node: u32, side: u32) -> BinaryChild {
+    let low = nodes[4u * node + 2u * side];
+    let high = nodes[4u * node + 2u * side + 1u];
+    let a = (bitcast<vec3f>(low.xyz) - ray.origin) * ray.inverse;
+    let b = (bitcast<vec3f>(high.xyz) - ray.origin) * ray.inverse;
+    let near = min(a, b);
+    let far = max(a, b);
+    let entry = max(max(near.x, near.y), max(near.z, 0.0));
+    let exit = min(min(far.x, far.y), far.z);
+    return BinaryChild(low.w, high.w, select(NO_ENTRY, entry, entry <= exit));
+}
+
+// Link and entry of a child that is a node; no entry for a leaf.
+fn way(child: BinaryChild) -> vec2u {
+    return vec2u(child.link, bitcast<u32>(select(NO_ENTRY, child.entry, child.count == BINARY_INNER)));
+}
+
+fn offer_child(ray: Ray, child: BinaryChild, nearest: ptr<function, Nearest>) {
+    if (child.count != BINARY_INNER && child.entry <= (*nearest).t) {
+        offer_leaf(ray, child.link, child.count, nearest);
+    }
+}
+
+fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+    var stack: array<vec2u, BINARY_LEVELS>;
+    var top = 0u;
+    let slab = slab_ray(ray);
+    var next = vec2u(0u, 0u);
+    var near = BinaryChild();
+    var far = BinaryChild();
+    // One node, its pops and two leaves of four: a pop was pushed by another node.
+    while (spend(12u)) {
+        let left = binary_child(slab, next.x, 0u);
+        let right = binary_child(slab, next.x, 1u);
+        near = left;
+        far = right;
+        if (right.entry < left.entry) {
+            near = right;
+            far = left;
+        }
+        offer_child(ray, near, nearest);
+        offer_child(ray, far, nearest);
+        let far_way = way(far);
+        next = way(near);
+        if (bitcast<f32>(next.y) > (*nearest).t) {
+            next = far_way;
+        } else if (bitcast<f32>(far_way.y) <= (*nearest).t) {
+            stack[top] = far_way;
+            top++;
+        }
+        while (bitcast<f32>(next.y) > (*nearest).t) {
+            if (top == 0u) {
+                return;
+            }
+            top--;
+            next = stack[top];
+        }
+    }
+}
+
+fn find_any(ray: Ray, t_max: f32) -> bool {
+    var stack: array<u32, BINARY_LEVELS>;
+    // The root, which is node 0.
+    var top = 1u;
+    let slab = slab_ray(ray);
+    while (top > 0u && spend(11u)) {
+        top--;
+        let node = stack[top];
+        for (var side = 0u; side < 2u; side++) {
+            let child = binary_child(slab, node, side);
+            if (child.entry > t_max) {
+                continue;
+            }
+            if (child.count == BINARY_INNER) {
+                stack[top] = child.link;
+                top++;
+            } else if (any_in_leaf(ray, child.link, child.count, t_max)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}

@@ -1,0 +1,118 @@
+//! Boxes while a tree is built.
+
+use glam::{Vec3, Vec3A};
+
+/// A box in the scene's frame, in f32; empty to begin with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub(super) low: Vec3A,
+    pub(super) high: Vec3A,
+}
+
+impl Extent {
+    pub(super) const EMPTY: Self =
+        Self { low: Vec3A::splat(f32::MAX), high: Vec3A::splat(f32::MIN) };
+
+    #[inline]
+    pub(super) fn with_point(self, point: Vec3A) -> Self {
+        Self { low: self.low.min(point), high: self.high.max(point) }
+    }
+
+    #[inline]
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    #[inline]
+    pub(super) fn center(self) -> Vec3A {
+        0.5 * self.low + 0.5 * self.high
+    }
+
+    /// Half the surface, or zero if empty. A length is at most 2⁵⁹, so nothing overflows.
+    #[inline]
+    pub(super) fn half_area(self) -> f32 {
+        let size = (self.high - self.low).max(Vec3A::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
+    /// The axis, 0 to 2, along which the box is longest; the first of equals.
+    #[inline]
+    pub(super) fn longest_axis(self) -> usize {
+        let size = self.high - self.low;
+        if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        }
+    }
+}
+
+/// A sphere while a tree is built: what it takes to move it about and to box it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    pub(super) center: [f32; 3],
+    /// At least radius and margin; so much more that `center ± reach` in f32 contains both.
+    pub(super) reach: f32,
+    /// Index in input order.
+    pub(super) id: u32,
+}
+
+impl Item {
+    /// One item for every sphere (centre, radius).
+    pub(super) fn all(spheres: &[[f32; 4]], margin: f32) -> Vec<Self> {
+        let largest = spheres.iter().flatten().fold(margin, |largest, x| largest.max(x.abs()));
+        // Three roundings of numbers that are at most 4 · largest: twice in `reach`, and `center ± reach`.
+        let roundings = largest * (8.0 * f32::EPSILON);
+        let item = |(id, &[x, y, z, radius]): (usize, &[f32; 4])| Self {
+            center: [x, y, z],
+            reach: radius + margin + roundings,
+            // A scene has fewer than 2³² spheres.
+            id: id as u32,
+        };
+        spheres.iter().enumerate().map(item).collect()
+    }
+
+    #[inline]
+    pub(super) fn center(&self) -> Vec3A {
+        Vec3::from_array(self.center).into()
+    }
+
+    #[inline]
+    pub(super) fn extent(&self) -> Extent {
+        let (center, reach) = (self.center(), Vec3A::splat(self.reach));
+        Extent { low: center - reach, high: center + reach }
+    }
+
+    /// The box of many, and the box of their centres.
+    pub(super) fn extents(items: &[Self]) -> (Extent, Extent) {
+        items.iter().fold((Extent::EMPTY, Extent::EMPTY), |(boxes, centers), item| {
+            (boxes.union(item.extent()), centers.with_point(item.center()))
+        })
+    }
+
+    /// Moves the items so that the first `at` have the smallest centres along an axis; of equal centres
+    /// the smaller id comes first, so that the sets depend on nothing but the spheres.
+    pub(super) fn select(items: &mut [Self], at: usize, axis: usize) {
+        if at < items.len() {
+            items.select_nth_unstable_by(at, |a, b| {
+                a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id))
+            });
+        }
+    }
+}
+
+/// Runs two tasks, at the same time if `large` and the feature `parallel` is on.
+pub(super) fn both<A: Send, B: Send>(
+    large: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    if large {
+        return rayon::join(first, second);
+    }
+    let _ = large;
+    (first(), second())
+}

@@ -1,0 +1,41 @@
+//! The spheres of one leaf. Twin of `shaders/leaf.wgsl`.
+
+use super::query::{NO_HIT, Nearest, RayF32};
+use super::sphere::intersect_sphere;
+
+/// Offers the nearest sphere of a leaf. Ids ascend within a leaf, so `<` leaves a tie to the smaller one,
+/// and one offer is enough.
+#[inline]
+pub(super) fn offer_leaf(
+    spheres: &[[f32; 4]],
+    ids: &[u32],
+    first: u32,
+    count: u32,
+    ray: &RayF32,
+    nearest: &mut Nearest,
+) {
+    let mut t = NO_HIT;
+    let mut place = first;
+    for i in first..first + count {
+        let found = intersect_sphere(ray, spheres[i as usize]);
+        if found < t {
+            t = found;
+            place = i;
+        }
+    }
+    if t < NO_HIT {
+        nearest.offer(t, ids[place as usize]);
+    }
+}
+
+/// Whether a sphere of a leaf is hit before `t_max`.
+#[inline]
+pub(super) fn any_in_leaf(
+    spheres: &[[f32; 4]],
+    first: u32,
+    count: u32,
+    ray: &RayF32,
+    t_max: f32,
+) -> bool {
+    (first..first + count).any(|i| intersect_sphere(ray, spheres[i as usize]) < t_max)
+}

@@ -1,0 +1,231 @@
+//! What a tree must be, whatever its nodes look like, and what it costs.
+
+use std::array::from_fn;
+
+/// Why a tree is not one that a kernel may walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TreeError {
+    /// A child's box does not contain the spheres below it, with their margin.
+    #[error("the box of slot {slot} of node {node} does not contain what is below it")]
+    Box {
+        /// Index of the node.
+        node: u32,
+        /// The child's slot.
+        slot: u32,
+    },
+    /// A child is not a later node that no other slot points to, or a leaf not a range of spheres.
+    #[error("slot {slot} of node {node} points to the wrong place")]
+    Link {
+        /// Index of the node.
+        node: u32,
+        /// The child's slot.
+        slot: u32,
+    },
+    /// The ids of a leaf do not ascend.
+    #[error("the ids of the leaf in slot {slot} of node {node} do not ascend")]
+    Order {
+        /// Index of the node.
+        node: u32,
+        /// The child's slot.
+        slot: u32,
+    },
+    /// A place in leaf order is not in exactly one leaf, or its id is not that of exactly one sphere.
+    #[error("the sphere in place {place} is not in exactly one leaf")]
+    Sphere {
+        /// The place in leaf order.
+        place: u32,
+    },
+    /// A node is no child of any other.
+    #[error("node {node} is not reached")]
+    Unreached {
+        /// Index of the node.
+        node: u32,
+    },
+    /// The tree has other levels than it says, or more than a kernel's stack serves.
+    #[error("the tree has {found} levels; it says {stated}, and may have {most}")]
+    Levels {
+        /// How many were counted.
+        found: u32,
+        /// How many the tree says it has.
+        stated: u32,
+        /// How many a kernel's stack serves.
+        most: u32,
+    },
+}
+
+/// What a tree takes, and what a ray pays for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TreeStatistics {
+    /// How many nodes there are.
+    pub nodes: usize,
+    /// How many leaves there are.
+    pub leaves: usize,
+    /// Nodes on the longest way from the root, both ends included.
+    pub levels: u32,
+    /// Bytes of nodes for each sphere.
+    pub bytes_per_sphere: f64,
+    /// Spheres in a leaf, on average.
+    pub spheres_per_leaf: f64,
+    /// How many nodes a random line through the root's box is expected to meet, by the surface area of
+    /// boxes.
+    pub expected_nodes: f64,
+    /// How many spheres such a line is expected to be tried against.
+    pub expected_spheres: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// Index of the node.
+    Inner(u32),
+    /// Place of the first sphere, and how many.
+    Leaf(u32, u32),
+}
+
+/// A child, as the kernel reads it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Child {
+    pub(super) slot: u32,
+    /// Low and high, decoded.
+    pub(super) bounds: [[f64; 3]; 2],
+    pub(super) target: Target,
+}
+
+/// A tree, as a kernel reads it.
+pub(super) trait Tree {
+    const BYTES_PER_NODE: usize;
+    /// How many levels the kernel's stack serves.
+    const MOST_LEVELS: u32;
+    const MOST_IN_LEAF: u32;
+
+    fn node_count(&self) -> usize;
+    fn ids(&self) -> &[u32];
+    fn levels(&self) -> u32;
+    fn children(&self, node: usize) -> impl Iterator<Item = Child>;
+}
+
+type Bounds = [[f64; 3]; 2];
+const NOTHING: Bounds = [[f64::MAX; 3], [f64::MIN; 3]];
+
+fn union(a: Bounds, b: Bounds) -> Bounds {
+    [from_fn(|i| a[0][i].min(b[0][i])), from_fn(|i| a[1][i].max(b[1][i]))]
+}
+
+fn contains(outer: Bounds, inner: Bounds) -> bool {
+    (0..3).all(|i| outer[0][i] <= inner[0][i] && inner[1][i] <= outer[1][i])
+}
+
+fn half_area([low, high]: Bounds) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|i| (high[i] - low[i]).max(0.0));
+    x * y + y * z + z * x
+}
+
+/// Walks the nodes from the last to the first. A child comes after its parent, so what is below a node is
+/// known when the node is met, and no link can lead in a circle.
+pub(super) fn validate<T: Tree>(
+    tree: &T,
+    spheres: &[[f32; 4]],
+    margin: f32,
+) -> Result<(), TreeError> {
+    let ids = tree.ids();
+    let mut seen = vec![false; spheres.len()];
+    for (place, id) in ids.iter().enumerate() {
+        match seen.get_mut(*id as usize) {
+            Some(seen) if !*seen => *seen = true,
+            _ => return Err(TreeError::Sphere { place: place as u32 }),
+        }
+    }
+    if ids.len() != spheres.len() {
+        return Err(TreeError::Sphere { place: ids.len() as u32 });
+    }
+
+    let count = tree.node_count();
+    let mut below = vec![NOTHING; count];
+    let mut levels = vec![1_u32; count];
+    let mut reached = vec![false; count];
+    let mut placed = vec![false; ids.len()];
+    for node in (0..count).rev() {
+        for child in tree.children(node) {
+            let (node_id, slot) = (node as u32, child.slot);
+            let link = TreeError::Link { node: node_id, slot };
+            let content = match child.target {
+                Target::Inner(inner) => {
+                    let inner = inner as usize;
+                    if inner <= node || inner >= count || reached[inner] {
+                        return Err(link);
+                    }
+                    reached[inner] = true;
+                    levels[node] = levels[node].max(levels[inner] + 1);
+                    below[inner]
+                }
+                Target::Leaf(first, length) => {
+                    let (first, length) = (first as usize, length as usize);
+                    let end = first.saturating_add(length);
+                    if length == 0 || length > T::MOST_IN_LEAF as usize || end > ids.len() {
+                        return Err(link);
+                    }
+                    if !ids[first..end].is_sorted() {
+                        return Err(TreeError::Order { node: node_id, slot });
+                    }
+                    let mut content = NOTHING;
+                    for place in first..end {
+                        if placed[place] {
+                            return Err(TreeError::Sphere { place: place as u32 });
+                        }
+                        placed[place] = true;
+                        let sphere = spheres[ids[place] as usize];
+                        content = union(content, inflated(sphere, margin));
+                    }
+                    content
+                }
+            };
+            if !contains(child.bounds, content) {
+                return Err(TreeError::Box { node: node_id, slot });
+            }
+            below[node] = union(below[node], content);
+        }
+    }
+    if let Some(node) = (1..count).find(|node| !reached[*node]) {
+        return Err(TreeError::Unreached { node: node as u32 });
+    }
+    if let Some(place) = placed.iter().position(|placed| !placed) {
+        return Err(TreeError::Sphere { place: place as u32 });
+    }
+    let (found, stated) = (levels[0], tree.levels());
+    if found != stated || found > T::MOST_LEVELS {
+        return Err(TreeError::Levels { found, stated, most: T::MOST_LEVELS });
+    }
+    Ok(())
+}
+
+fn inflated([x, y, z, radius]: [f32; 4], margin: f32) -> Bounds {
+    let reach = f64::from(radius) + f64::from(margin);
+    [[x, y, z].map(|x| f64::from(x) - reach), [x, y, z].map(|x| f64::from(x) + reach)]
+}
+
+pub(super) fn statistics<T: Tree>(tree: &T) -> TreeStatistics {
+    let root = tree.children(0).fold(NOTHING, |all, child| union(all, child.bounds));
+    let whole = half_area(root);
+    let (mut leaves, mut nodes_met, mut spheres_met) = (0, 1.0, 0.0);
+    for child in (0..tree.node_count()).flat_map(|node| tree.children(node)) {
+        let chance = half_area(child.bounds) / whole;
+        match child.target {
+            Target::Inner(_) => nodes_met += chance,
+            Target::Leaf(_, count) => {
+                leaves += 1;
+                spheres_met += chance * f64::from(count);
+            }
+        }
+    }
+    let spheres = tree.ids().len().max(1) as f64;
+    TreeStatistics {
+        nodes: tree.node_count(),
+        leaves,
+        levels: tree.levels(),
+        bytes_per_sphere: (tree.node_count() * T::BYTES_PER_NODE) as f64 / spheres,
+        spheres_per_leaf: tree.ids().len() as f64 / leaves.max(1) as f64,
+        expected_nodes: nodes_met,
+        expected_spheres: spheres_met,
+    }
+}

@@ -1,0 +1,232 @@
+//! Damage that `validate` must find, and the WGSL twins: their constants, and that they compose.
+
+use std::path::Path;
+
+use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
+use super::slab::SMALLEST_COMPONENT;
+use super::tree_check::TreeError;
+use super::wide_tree::{WIDE_LEVELS, WideTree};
+use super::wide_tree_build::levels_by_halves;
+
+const MARGIN: f32 = 1e-5;
+
+fn spheres(count: usize) -> Vec<[f32; 4]> {
+    let mut random = fastrand::Rng::with_seed(7);
+    (0..count).map(|_| [random.f32(), random.f32(), random.f32(), 0.02]).collect()
+}
+
+fn found_in_wide(plant: impl Fn(&mut WideTree)) -> Result<(), TreeError> {
+    let spheres = spheres(2_000);
+    let mut tree = WideTree::build(&spheres, MARGIN);
+    assert_eq!(tree.validate(&spheres), Ok(()));
+    plant(&mut tree);
+    tree.validate(&spheres)
+}
+
+/// A node, and two of its slots, that hold leaves or inner children.
+fn two_slots(tree: &WideTree, inner: bool) -> (usize, usize, usize) {
+    (0..tree.nodes.len())
+        .find_map(|n| {
+            let node = &tree.nodes[n];
+            let of_kind = |slot: &usize| match inner {
+                true => node.inner_mask() >> slot & 1 == 1,
+                false => node.byte(6, *slot) != 0,
+            };
+            let mut slots = (0..8).filter(of_kind);
+            Some((n, slots.next()?, slots.next()?))
+        })
+        .unwrap()
+}
+
+fn swap_bytes(tree: &mut WideTree, n: usize, words: usize, a: usize, b: usize) {
+    let node = &mut tree.nodes[n];
+    let (x, y) = (node.byte(words, a), node.byte(words, b));
+    node.set_byte(words, a, y);
+    node.set_byte(words, b, x);
+}
+
+#[test]
+fn damage_to_a_wide_tree_is_found() {
+    for inner in [false, true] {
+        for words in [8, 10, 12] {
+            let shrunk = found_in_wide(|tree| {
+                let (n, slot, _) = two_slots(tree, inner);
+                let byte = tree.nodes[n].byte(words, slot);
+                tree.nodes[n].set_byte(words, slot, byte + 1);
+            });
+            assert!(matches!(shrunk, Err(TreeError::Box { .. })), "{inner} {words}: {shrunk:?}");
+            let shrunk = found_in_wide(|tree| {
+                let (n, slot, _) = two_slots(tree, inner);
+                let byte = tree.nodes[n].byte(words + 6, slot);
+                tree.nodes[n].set_byte(words + 6, slot, byte - 1);
+            });
+            assert!(matches!(shrunk, Err(TreeError::Box { .. })), "{inner} {words}: {shrunk:?}");
+        }
+        let swapped = found_in_wide(|tree| {
+            let (n, a, b) = two_slots(tree, inner);
+            for words in [8, 10, 12, 14, 16, 18] {
+                swap_bytes(tree, n, words, a, b);
+            }
+        });
+        assert!(matches!(swapped, Err(TreeError::Box { .. })), "{inner}: {swapped:?}");
+    }
+    let swapped = found_in_wide(|tree| {
+        let (n, a, b) = two_slots(tree, false);
+        swap_bytes(tree, n, 6, a, b);
+    });
+    assert!(matches!(swapped, Err(TreeError::Box { .. })), "{swapped:?}");
+
+    let dropped = found_in_wide(|tree| {
+        let (n, slot, _) = two_slots(tree, false);
+        tree.nodes[n].set_byte(6, slot, 0);
+    });
+    assert!(matches!(dropped, Err(TreeError::Sphere { .. })), "{dropped:?}");
+    let dropped = found_in_wide(|tree| {
+        let (n, slot, _) = two_slots(tree, true);
+        tree.nodes[n].0[3] &= !(1 << (24 + slot));
+    });
+    assert!(dropped.is_err());
+
+    for word in [4, 5] {
+        for wrong in [0, 1, u32::MAX] {
+            let offset = found_in_wide(|tree| {
+                let (n, ..) = two_slots(tree, word == 4);
+                // A wrong neighbour, too, if the value happens to be right.
+                let right = tree.nodes[n].0[word];
+                tree.nodes[n].0[word] = if right == wrong { wrong + 1 } else { wrong };
+            });
+            assert!(offset.is_err(), "word {word} as {wrong}");
+        }
+    }
+    let order = found_in_wide(|tree| tree.ids.swap(0, 1));
+    assert!(order.is_err());
+    let twice = found_in_wide(|tree| tree.ids[0] = tree.ids[1]);
+    assert!(matches!(twice, Err(TreeError::Sphere { .. })), "{twice:?}");
+    let understated = found_in_wide(|tree| tree.levels -= 1);
+    assert!(matches!(understated, Err(TreeError::Levels { .. })), "{understated:?}");
+    let more = found_in_wide(|tree| tree.nodes.push(tree.nodes[0]));
+    assert!(more.is_err());
+}
+
+fn found_in_binary(plant: impl Fn(&mut BinaryTree)) -> Result<(), TreeError> {
+    let spheres = spheres(2_000);
+    let mut tree = BinaryTree::build(&spheres, MARGIN);
+    assert_eq!(tree.validate(&spheres), Ok(()));
+    plant(&mut tree);
+    tree.validate(&spheres)
+}
+
+#[test]
+fn damage_to_a_binary_tree_is_found() {
+    let last = |tree: &BinaryTree| tree.nodes.len() - 1;
+    for axis in 0..3 {
+        for at_root in [true, false] {
+            let at = |tree: &BinaryTree| if at_root { 0 } else { last(tree) };
+            let low = found_in_binary(|tree| {
+                let n = at(tree);
+                tree.nodes[n].0[1].low[axis] += 1e-4;
+            });
+            assert!(matches!(low, Err(TreeError::Box { .. })), "{low:?}");
+            let high = found_in_binary(|tree| {
+                let n = at(tree);
+                tree.nodes[n].0[1].high[axis] -= 1e-4;
+            });
+            assert!(matches!(high, Err(TreeError::Box { .. })), "{high:?}");
+        }
+    }
+    let swapped = found_in_binary(|tree| {
+        let [left, right] = &mut tree.nodes[0].0;
+        std::mem::swap(&mut left.link, &mut right.link);
+    });
+    assert!(matches!(swapped, Err(TreeError::Box { .. })), "{swapped:?}");
+    let dropped = found_in_binary(|tree| {
+        let n = last(tree);
+        tree.nodes[n].0[1].count -= 1;
+    });
+    assert!(matches!(dropped, Err(TreeError::Sphere { .. })), "{dropped:?}");
+    let dropped = found_in_binary(|tree| tree.nodes[0].0[1].count = 0);
+    assert!(dropped.is_err());
+    for wrong in [0, 1, 1_000_000, u32::MAX] {
+        assert!(found_in_binary(|tree| tree.nodes[0].0[1].link = wrong).is_err(), "{wrong}");
+        let leaf = found_in_binary(|tree| {
+            let n = last(tree);
+            tree.nodes[n].0[1].link = wrong;
+        });
+        assert!(leaf.is_err(), "{wrong}");
+    }
+    let understated = found_in_binary(|tree| tree.levels -= 1);
+    assert!(matches!(understated, Err(TreeError::Levels { .. })), "{understated:?}");
+    assert_eq!(BINARY_INNER, u32::MAX);
+}
+
+/// The depths are theorems; these are their arithmetic.
+#[test]
+fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
+    assert_eq!([1, 24, 25, 192, 193].map(levels_by_halves), [1, 1, 2, 2, 3]);
+    assert!(levels_by_halves(u32::MAX as usize) <= 11);
+    const { assert!(WIDE_LEVELS >= 11) };
+    assert!((u32::MAX as usize).div_ceil(1 << BINARY_LEVELS) <= 4);
+}
+
+fn wgsl(file: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn constants_are_those_of_the_kernels() {
+    let declares = |file: &str, line: &str| assert!(wgsl(file).contains(line), "{file}: {line}");
+    declares("wide_tree.wgsl", &format!("const WIDE_LEVELS: u32 = {WIDE_LEVELS}u;"));
+    declares("binary_tree.wgsl", &format!("const BINARY_LEVELS: u32 = {BINARY_LEVELS}u;"));
+    declares("binary_tree.wgsl", &format!("const BINARY_INNER: u32 = {BINARY_INNER:#x}u;"));
+    let exponent = SMALLEST_COMPONENT.log2();
+    declares("slab.wgsl", &format!("const SMALLEST_COMPONENT: f32 = 0x1p{exponent};"));
+}
+
+#[test]
+fn both_walks_compose_and_validate() {
+    // What other parts declare.
+    let others = "
+        const NO_HIT: f32 = 1e30;
+        struct Nearest { t: f32, id: u32, place: u32 }
+        @group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
+        @group(1) @binding(2) var<storage, read> ids: array<u32>;
+        @group(1) @binding(4) var<storage, read_write> answers: array<Nearest>;
+        fn offer(nearest: ptr<function, Nearest>, t: f32, place: u32) {
+            if (t <= (*nearest).t && (t < (*nearest).t || ids[place] < (*nearest).id)) {
+                *nearest = Nearest(t, ids[place], place);
+            }
+        }
+        var<private> budget: u32 = 60000u;
+        fn spend(iterations: u32) -> bool {
+            budget -= min(budget, iterations);
+            return budget > 0u;
+        }
+        @compute @workgroup_size(64)
+        fn walk(@builtin(global_invocation_id) invocation: vec3u) {
+            let ray = Ray(vec3f(vec2f(invocation.xy), 0.0), vec3f(0.0, 0.0, 1.0));
+            var nearest = Nearest(NO_HIT, 0xffffffffu, 0u);
+            if (find_any(ray, NO_HIT)) {
+                find_nearest(ray, &nearest);
+            }
+            answers[invocation.x] = nearest;
+        }";
+    let shared = ["ray.wgsl", "sphere.wgsl", "slab.wgsl", "leaf.wgsl"];
+    let wide = ["wide_node.wgsl", "wide_group.wgsl", "wide_tree.wgsl"];
+    for walk in [&wide[..], &["binary_tree.wgsl"]] {
+        let parts = shared.iter().chain(walk).map(|file| wgsl(file));
+        let source: String = parts.chain([others.to_owned()]).collect();
+        let module = naga::front::wgsl::parse_str(&source)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
+        naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            // Nothing beyond WebGPU's core.
+            naga::valid::Capabilities::empty(),
+        )
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
+    }
+    for file in shared.iter().chain(&wide).chain(&["binary_tree.wgsl"]) {
+        assert!(wgsl(file).lines().count() <= 100, "{file}");
+    }
+}

@@ -1,0 +1,195 @@
+//! One node of the compressed 8-wide tree.
+//!
+//! After Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+//! BVHs" (2017): the boxes of up to eight children on a grid of 256³ cells over the node, and the children
+//! in slots that say in which octant of the node they lie, so that one table of bits orders them for every
+//! direction. Changed here: a leaf's count is a number, not unary, and hits stay in slots until they are
+//! ordered at once; an inner child needs no byte of its own.
+
+use glam::Vec3A;
+
+use super::extent::Extent;
+use super::slab::SlabRay;
+
+/// How many spheres a leaf may hold.
+pub const WIDE_LEAF: usize = 3;
+
+/// A node of 80 bytes: twenty words, or five `vec4u`.
+///
+/// | words | hold |
+/// |---|---|
+/// | 0, 1, 2 | the grid's origin x, y, z: f32 |
+/// | 3 | bits 0–7, 8–15, 16–23: exponents of the cell's sizes x, y, z, as in an f32; bits 24–31: the inner mask, bit s for slot s |
+/// | 4 | index of the first inner child; the others follow in the order of their slots |
+/// | 5 | index of the first sphere of the node's leaves |
+/// | 6, 7 | a byte for each slot that holds a leaf: bits 0–4 the first sphere, counted from word 5; bits 5–7 how many spheres, 1 to 3. Zero for inner children and empty slots |
+/// | 8, 9; 10, 11; 12, 13 | a byte for each slot: low x; low y; low z, in cells |
+/// | 14, 15; 16, 17; 18, 19 | a byte for each slot: high x; high y; high z, in cells |
+///
+/// Slot 0 is the lowest byte of the first word, slot 4 of the second. Bits 0, 1, 2 of a slot's number say
+/// whether the child lies towards +x, +y, +z. An empty slot has neither inner bit nor spheres; its box
+/// does not matter, but low is 255 and high is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[repr(transparent)]
+pub struct WideNode(pub [u32; 20]);
+
+/// What a slot holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    Empty,
+    /// Index of the node.
+    Inner(u32),
+    /// Place of the first sphere, and how many.
+    Leaf(u32, u32),
+}
+
+impl WideNode {
+    /// Without children.
+    pub(super) fn empty() -> Self {
+        let mut words = [0; 20];
+        words[3] = 0x007f_7f7f;
+        words[8..14].fill(u32::MAX);
+        Self(words)
+    }
+
+    /// A node whose children have these boxes; slots hold nothing yet.
+    pub(super) fn with_boxes(boxes: &[Option<Extent>; 8]) -> Self {
+        let whole = boxes.iter().flatten().fold(Extent::EMPTY, |all, b| all.union(*b));
+        let mut node = Self::empty();
+        for axis in 0..3 {
+            let origin = whole.low[axis];
+            node.0[axis] = origin.to_bits();
+            let exponent = cell_exponent(f64::from(whole.high[axis]) - f64::from(origin));
+            node.0[3] &= !(0xff << (8 * axis));
+            node.0[3] |= exponent << (8 * axis);
+            let cell = f64::from(f32::from_bits(exponent << 23));
+            for (slot, child) in boxes.iter().enumerate() {
+                let Some(child) = child else { continue };
+                let cells = |x: f32| (f64::from(x) - f64::from(origin)) / cell;
+                // Conversions to u8 saturate.
+                node.set_byte(8 + 2 * axis, slot, cells(child.low[axis]).floor() as u8);
+                node.set_byte(14 + 2 * axis, slot, cells(child.high[axis]).ceil() as u8);
+            }
+        }
+        node
+    }
+
+    pub(super) fn byte(&self, word: usize, slot: usize) -> u8 {
+        (self.0[word + slot / 4] >> (8 * (slot % 4))) as u8
+    }
+
+    pub(super) fn set_byte(&mut self, word: usize, slot: usize, byte: u8) {
+        let shift = 8 * (slot % 4);
+        let word = &mut self.0[word + slot / 4];
+        *word = *word & !(0xff << shift) | u32::from(byte) << shift;
+    }
+
+    pub(super) fn set_inner(&mut self, slot: usize) {
+        self.0[3] |= 1 << (24 + slot);
+    }
+
+    /// `offset` counts from the node's first sphere.
+    pub(super) fn set_leaf(&mut self, slot: usize, offset: usize, count: usize) {
+        self.set_byte(6, slot, (count << 5 | offset) as u8);
+    }
+
+    pub(super) fn inner_mask(&self) -> u32 {
+        self.0[3] >> 24
+    }
+
+    /// What the kernel finds in a slot.
+    pub(super) fn slot(&self, slot: usize) -> Slot {
+        let mask = self.inner_mask();
+        if mask >> slot & 1 == 1 {
+            return Slot::Inner(self.0[4].wrapping_add((mask & ((1 << slot) - 1)).count_ones()));
+        }
+        match self.byte(6, slot) {
+            0 => Slot::Empty,
+            byte => Slot::Leaf(self.0[5].wrapping_add(u32::from(byte & 31)), u32::from(byte >> 5)),
+        }
+    }
+
+    fn origin(&self) -> Vec3A {
+        Vec3A::from_array([0, 1, 2].map(|axis| f32::from_bits(self.0[axis])))
+    }
+
+    fn cell(&self) -> Vec3A {
+        let size = |axis: usize| f32::from_bits((self.0[3] >> (8 * axis) & 0xff) << 23);
+        Vec3A::from_array([0, 1, 2].map(size))
+    }
+
+    /// The box of a slot: low and high of each axis.
+    pub(super) fn slot_box(&self, slot: usize) -> [[f64; 3]; 2] {
+        [8, 14].map(|words| {
+            [0, 1, 2].map(|axis| {
+                let cells = f64::from(self.byte(words + 2 * axis, slot));
+                f64::from(self.origin()[axis]) + cells * f64::from(self.cell()[axis])
+            })
+        })
+    }
+
+    /// Bit s says whether the ray enters the box of slot s at `t_max` or before. Twin of `wide_node` in
+    /// `shaders/wide_node.wgsl`.
+    #[inline]
+    pub(super) fn hits(&self, ray: &SlabRay, t_max: f32) -> u32 {
+        let mut entry = [0.0_f32; 8];
+        let mut exit = [t_max; 8];
+        for axis in 0..3 {
+            let inverse = ray.inverse[axis];
+            let step = self.cell()[axis] * inverse;
+            let start = (self.origin()[axis] - ray.origin[axis]) * inverse;
+            let (low, high) = (8 + 2 * axis, 14 + 2 * axis);
+            let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
+            let planes = |word: usize| {
+                let bytes = u64::from(self.0[word + 1]) << 32 | u64::from(self.0[word]);
+                bytes.to_le_bytes().map(|cells| f32::from(cells) * step + start)
+            };
+            let (near, far) = (planes(near), planes(far));
+            for slot in 0..8 {
+                entry[slot] = entry[slot].max(near[slot]);
+                exit[slot] = exit[slot].min(far[slot]);
+            }
+        }
+        (0..8).fold(0, |mask, slot| mask | u32::from(entry[slot] <= exit[slot]) << slot)
+    }
+}
+
+/// The exponent, as in an f32, of the smallest power of two of which 255 reach as far as `length`.
+fn cell_exponent(length: f64) -> u32 {
+    let cell = (length / 255.0) as f32;
+    let exponent = (cell.to_bits() >> 23).clamp(1, 253);
+    let reaches = |exponent: u32| f64::from(f32::from_bits(exponent << 23)) * 255.0 >= length;
+    if reaches(exponent) { exponent } else { exponent + 1 }
+}
+
+/// The slot of each child, by its box: the children that lie farthest out choose first, each the free
+/// octant that it lies in most.
+pub(super) fn octant_slots(boxes: &[Extent]) -> [usize; 8] {
+    let whole = boxes.iter().fold(Extent::EMPTY, |all, b| all.union(*b)).center();
+    let mut outward = [Vec3A::ZERO; 8];
+    let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
+    for (outward, child) in outward.iter_mut().zip(boxes) {
+        *outward = child.center() - whole;
+    }
+    let size = |child: &usize| outward[*child].abs().element_sum();
+    let order = &mut order[..boxes.len()];
+    order.sort_unstable_by(|a, b| size(b).total_cmp(&size(a)).then(a.cmp(b)));
+    let mut slots = [0; 8];
+    let mut free = 0xff_u32;
+    for &mut child in order {
+        let mut best = None;
+        for slot in (0..8_usize).filter(|slot| free >> slot & 1 == 1) {
+            let sign = |axis: usize| if slot >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            let along = outward[child].dot(Vec3A::new(sign(0), sign(1), sign(2)));
+            if best.is_none_or(|(most, _)| along > most) {
+                best = Some((along, slot));
+            }
+        }
+        // There are as many slots as there can be children.
+        let slot = best.map_or(0, |(_, slot)| slot);
+        slots[child] = slot;
+        free &= !(1 << slot);
+    }
+    slots
+}

@@ -1,0 +1,175 @@
+//! Builds the compressed 8-wide tree from the top, level by level.
+//!
+//! A node's spheres are cut in two, and the parts again, until there are eight; parts of at most three
+//! spheres are leaves. No binary tree is made first.
+
+use super::extent::{Extent, Item, both};
+use super::split::Cluster;
+use super::wide_node::{WIDE_LEAF, WideNode, octant_slots};
+use super::wide_tree::WIDE_LEVELS;
+
+/// A node of at most this many spheres has leaves only.
+const LEAVES_ONLY: usize = 8 * WIDE_LEAF;
+/// A part becomes a child of its own if it has about so many spheres; fewer waste slots, more waste
+/// levels.
+const SPHERES_A_CHILD: usize = 16;
+/// From so many spheres on, two threads are worth their start.
+const PARALLEL: usize = 1 << 13;
+/// How many nodes are held as drafts at a time.
+const DRAFTS: usize = 1 << 14;
+
+/// How many levels a tree of `count` spheres needs if every cut is a half: the least L ≥ 1 with
+/// 3 · 8^L ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c wherever n ≤ 8 c.
+pub(super) fn levels_by_halves(count: usize) -> u32 {
+    let mut levels = 1;
+    let mut reach = LEAVES_ONLY;
+    while reach < count {
+        levels += 1;
+        reach = reach.saturating_mul(8);
+    }
+    levels
+}
+
+/// Nodes, ids in leaf order, and the number of levels.
+///
+/// There are at most [`WIDE_LEVELS`]. At every node of level l, from 0, with n spheres,
+/// l + [`levels_by_halves`]`(n)` is at most that: for the root because there are fewer than 2³² spheres,
+/// which need 11. Where it is less, cuts are free, since a child has fewer spheres than its parent. Where
+/// it is equal, cuts are halves, and a child needs one level less than its parent.
+pub(super) fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
+    let mut ids = Vec::with_capacity(items.len());
+    if items.is_empty() {
+        return (vec![WideNode::empty()], ids, 1);
+    }
+    let mut nodes = Vec::new();
+    let mut level = vec![Cluster::new(items)];
+    let mut levels = 0;
+    while !level.is_empty() {
+        let first_of_next = nodes.len() + level.len();
+        let mut next = Vec::new();
+        let mut rest = level.into_iter();
+        loop {
+            let some: Vec<_> = rest.by_ref().take(DRAFTS).collect();
+            if some.is_empty() {
+                break;
+            }
+            for draft in drafts(some, levels) {
+                let mut node = draft.node;
+                // Fewer than 2³² spheres, and fewer nodes than spheres.
+                node.0[4] = (first_of_next + next.len()) as u32;
+                node.0[5] = ids.len() as u32;
+                ids.extend_from_slice(&draft.ids[..draft.leaf_spheres]);
+                next.extend(draft.inner);
+                nodes.push(node);
+            }
+        }
+        level = next;
+        levels += 1;
+    }
+    nodes.shrink_to_fit();
+    (nodes, ids, levels)
+}
+
+/// A node that does not know yet where its children are.
+struct Draft<'a> {
+    node: WideNode,
+    /// The ids of its leaves' spheres.
+    ids: [u32; LEAVES_ONLY],
+    leaf_spheres: usize,
+    /// Its inner children, in the order of their slots.
+    inner: Vec<Cluster<'a>>,
+}
+
+#[cfg(feature = "parallel")]
+fn drafts(clusters: Vec<Cluster<'_>>, level: u32) -> Vec<Draft<'_>> {
+    use rayon::prelude::*;
+    clusters.into_par_iter().map(|cluster| draft(cluster, level)).collect()
+}
+
+#[cfg(not(feature = "parallel"))]
+fn drafts(clusters: Vec<Cluster<'_>>, level: u32) -> Vec<Draft<'_>> {
+    clusters.into_iter().map(|cluster| draft(cluster, level)).collect()
+}
+
+fn draft(cluster: Cluster<'_>, level: u32) -> Draft<'_> {
+    let mut parts = Vec::with_capacity(8);
+    if cluster.len() <= LEAVES_ONLY {
+        cut_into_leaves(cluster, &mut parts);
+    } else if level + levels_by_halves(cluster.len()) >= WIDE_LEVELS {
+        cut(cluster, 8, true, &mut parts);
+    } else {
+        let slots = cluster.len().div_ceil(SPHERES_A_CHILD).min(8);
+        cut(cluster, slots, false, &mut parts);
+    }
+
+    let mut extents = [Extent::EMPTY; 8];
+    for (extent, part) in extents.iter_mut().zip(&parts) {
+        *extent = part.extent;
+    }
+    let slot_of = octant_slots(&extents[..parts.len()]);
+    let mut in_slots = [const { None }; 8];
+    for (part, slot) in parts.into_iter().zip(slot_of) {
+        in_slots[slot] = Some(part);
+    }
+    let boxes = in_slots.each_ref().map(|part| part.as_ref().map(|p| p.extent));
+    let mut draft = Draft {
+        node: WideNode::with_boxes(&boxes),
+        ids: [0; LEAVES_ONLY],
+        leaf_spheres: 0,
+        inner: Vec::new(),
+    };
+    for (slot, part) in in_slots.into_iter().enumerate() {
+        let Some(part) = part else { continue };
+        if part.len() > WIDE_LEAF {
+            draft.node.set_inner(slot);
+            draft.inner.push(part);
+            continue;
+        }
+        draft.node.set_leaf(slot, draft.leaf_spheres, part.len());
+        let ids = &mut draft.ids[draft.leaf_spheres..draft.leaf_spheres + part.len()];
+        for (id, item) in ids.iter_mut().zip(&*part.items) {
+            *id = item.id;
+        }
+        ids.sort_unstable();
+        draft.leaf_spheres += part.len();
+    }
+    draft
+}
+
+/// Cuts a cluster into at most `slots` parts, each with a share of the slots by number.
+fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<Cluster<'a>>) {
+    let count = cluster.len();
+    if slots == 1 || count <= WIDE_LEAF {
+        parts.push(cluster);
+        return;
+    }
+    let (first, second) =
+        if in_halves { cluster.split_at(count.div_ceil(2)) } else { cluster.split_by_cost() };
+    let share = (slots * first.len() + count / 2) / count;
+    let share = if in_halves { slots / 2 } else { share.clamp(1, slots - 1) };
+    if count < PARALLEL {
+        cut(first, share, in_halves, parts);
+        cut(second, slots - share, in_halves, parts);
+        return;
+    }
+    let parts_of = |cluster, slots| {
+        let mut parts = Vec::with_capacity(8);
+        cut(cluster, slots, in_halves, &mut parts);
+        parts
+    };
+    let (first, second) = both(true, || parts_of(first, share), || parts_of(second, slots - share));
+    parts.extend(first);
+    parts.extend(second);
+}
+
+/// Cuts a cluster into leaves, all of them full but one.
+fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
+    if cluster.len() <= WIDE_LEAF {
+        parts.push(cluster);
+        return;
+    }
+    let leaves = cluster.len().div_ceil(WIDE_LEAF);
+    let (first, second) = cluster.split_at(leaves / 2 * WIDE_LEAF);
+    cut_into_leaves(first, parts);
+    cut_into_leaves(second, parts);
+}
