@@ -9,10 +9,14 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+#[path = "../support/arrays.rs"]
+mod arrays;
+
 mod basis;
 mod camera;
 mod comparator;
 mod invariants;
+mod npy;
 mod perspective;
 mod reference;
 mod scene;
