@@ -8,6 +8,8 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 mod args;
+mod camera;
+mod data;
 mod demo;
 mod failure;
 mod info;
@@ -16,6 +18,7 @@ mod memory;
 mod output;
 mod render;
 mod speak;
+mod threads;
 
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
