@@ -47,6 +47,7 @@ pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
+pub mod generate;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::camera::CameraArgs;
 use super::data::DataFormat;
+use super::generate::kinds;
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]
@@ -22,6 +23,8 @@ pub(super) enum Command {
     Render(Box<RenderArgs>),
     /// Write the scene file of three spheres into this folder and render it
     Demo(DemoArgs),
+    /// Write a file of made-up spheres, for trying things out and measuring
+    Generate(GenerateArgs),
     /// List adapters, drivers, limits and features
     Info(InfoArgs),
 }
@@ -69,6 +72,22 @@ pub(super) struct InputArgs {
 pub(super) struct DemoArgs {
     #[command(flatten)]
     pub(super) device: DeviceArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct GenerateArgs {
+    /// What the spheres look like
+    #[arg(value_name = "KIND", value_parser = kinds())]
+    pub(super) kind: String,
+    /// How many spheres
+    #[arg(short = 'n', value_name = "N")]
+    pub(super) count: u64,
+    /// The file: a NumPy array (.npy), or raw f32 (.bin), x, y, z, radius
+    #[arg(short, long, value_name = "OUT.npy")]
+    pub(super) output: PathBuf,
+    /// The same kind, number and seed give the same file on every machine
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(super) seed: u64,
 }
 
 #[derive(Debug, Args)]

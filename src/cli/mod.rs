@@ -12,6 +12,7 @@ mod camera;
 mod data;
 mod demo;
 mod failure;
+mod generate;
 mod info;
 mod input;
 mod memory;
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Render(args) => render::run(&args),
         Command::Demo(args) => demo::run(&args),
+        Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {

@@ -15,6 +15,7 @@ mod arrays;
 mod basis;
 mod camera;
 mod comparator;
+mod generate;
 mod invariants;
 mod npy;
 mod perspective;

@@ -9,5 +9,6 @@ mod npy_files;
 
 mod arrays;
 mod bad_input;
+mod generate;
 mod good_input;
 mod support;
