@@ -8,32 +8,34 @@ use super::failure::Failure;
 use crate::bounds::Bounds;
 use crate::camera::{CameraError, CameraKind, CameraParameters};
 
+/// Of each flag, because clap puts whatever follows below a heading that is set once.
+const HEADING: &str = "Camera (any of these takes the place of the scene's camera)";
+
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera (any of these takes the place of the scene's camera)")]
 pub(super) struct CameraArgs {
     /// Which camera [default: pinhole]
-    #[arg(long, value_name = "KIND", value_parser = kinds())]
+    #[arg(long, help_heading = HEADING, value_name = "KIND", value_parser = kinds())]
     camera: Option<String>,
     /// Where the camera is; without it, the camera frames the scene
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     eye: Option<[f64; 3]>,
     /// The point it looks at
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     look_at: Option<[f64; 3]>,
     /// The direction it looks in, instead of --look-at [default: 0,0,-1]
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
     /// Which way is up [default: 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
     /// Vertical field of view in degrees (pinhole) [default: 30]
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "DEGREES", allow_hyphen_values = true)]
     fov: Option<f64>,
     /// How far the view plane is from the eye (pinhole), with --half-extent [default: 1]
-    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "D", allow_hyphen_values = true)]
     distance: Option<f64>,
     /// Half width and half height of the view plane, instead of --fov
-    #[arg(long, value_name = "HX,HY", value_parser = numbers::<2>, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "HX,HY", value_parser = numbers::<2>, allow_hyphen_values = true)]
     half_extent: Option<[f64; 2]>,
 }
 

@@ -23,7 +23,8 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let path: &Path = &args.output;
     let format = SpheresFormat::of(path)?;
     let bytes = count * BYTES_PER_SPHERE;
-    memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")?;
+    memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")
+        .map_err(Failure::usage)?;
     tell(format_args!("{}: {count} spheres, {bytes} bytes", path.display()));
     threads::start()?;
     let spheres = kind.spheres(count, args.seed).map_err(|error| Failure::Job(error.into()))?;

@@ -22,18 +22,18 @@ pub(super) fn check(film: &Film, size_from: &str, layers: LayerSet) -> Result<()
     let needed = pixels.saturating_mul(per_pixel).saturating_add(tile);
     let (width, height) = (film.width(), film.height());
     let what = format!("{size_from}: a picture of {width}x{height} needs");
-    check_bytes(&what, needed, "a smaller size")
+    check_bytes(&what, needed, "a smaller size").map_err(Failure::usage)
 }
 
 /// Refuses what needs more memory than there is; `what` is a sentence up to the number of bytes.
-pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), Failure> {
+pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), String> {
     let available = available();
     if needed > available {
-        return Err(Failure::usage(format!(
+        return Err(format!(
             "{what} {} of memory, and {} are free; choose {instead}",
             readable(needed),
             readable(available)
-        )));
+        ));
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ mod uniform;
 pub use standard::Standard;
 
 use crate::chunks;
-use sphereflake::sphereflake;
+use sphereflake::Sphereflake;
 use uniform::{Uniform, power_of_two};
 
 /// What the spheres look like. All lie in the unit cube [0, 1]³, up to their radii and, of clusters,
@@ -93,9 +93,14 @@ impl Kind {
             }
             Self::Clusters => {
                 let clusters = (count / 1000).max(1);
-                filled(count, |i| in_cluster(&uniform, i, i % clusters))
+                // Made once, and not for each of their thousand spheres.
+                let clusters: Vec<_> = (0..clusters).map(|c| cluster(&uniform, c)).collect();
+                filled(count, |i| in_cluster(&uniform, i, clusters[i as usize % clusters.len()]))
             }
-            Self::Sphereflake => filled(count, sphereflake),
+            Self::Sphereflake => {
+                let flake = Sphereflake::new();
+                filled(count, |i| flake.sphere(i))
+            }
         }
     }
 }
@@ -126,16 +131,19 @@ fn lattice(i: u64, cells: u64) -> [f64; 4] {
     [x, y, z, edge * std::f64::consts::SQRT_2 / 4.0]
 }
 
-fn in_cluster(uniform: &Uniform, i: u64, cluster: u64) -> [f64; 4] {
-    // Clusters and spheres have numbers of their own.
-    let of_cluster = |k| uniform.number(cluster, 16 + k);
+/// Centre and standard deviation.
+fn cluster(uniform: &Uniform, cluster: u64) -> [f64; 4] {
+    // Places of its own, beside those of the sphere with its number.
+    let [x, y, z, size] = [16, 17, 18, 19].map(|place| uniform.number(cluster, place));
     // 0.08 is 2⁴ times 0.005.
-    let deviation = 0.005 * power_of_two(4.0 * of_cluster(3));
-    let [x, y, z] =
-        [0, 1, 2].map(|axis| of_cluster(axis) + deviation * uniform.nearly_normal(i, 3 * axis));
+    [x, y, z, 0.005 * power_of_two(4.0 * size)]
+}
+
+fn in_cluster(uniform: &Uniform, i: u64, [x, y, z, deviation]: [f64; 4]) -> [f64; 4] {
+    let offset = |axis: u64| deviation * uniform.nearly_normal(i, 3 * axis);
     // 10⁻² is 10⁴ times 10⁻⁶.
     let radius = 1e-6 * power_of_two(4.0 * std::f64::consts::LOG2_10 * uniform.number(i, 9));
-    [x, y, z, radius]
+    [x + offset(0), y + offset(1), z + offset(2), radius]
 }
 
 /// The smallest m for which 4·m³ ≥ n, and 1 for none.

@@ -13,24 +13,36 @@ const CHILDREN: u64 = 9;
 /// The radius of a child, in its parent's.
 const SCALE: f64 = 1.0 / 3.0;
 
-/// Centre and radius of the i-th sphere of a flake that never ends.
-pub(super) fn sphereflake(i: u64) -> [f64; 4] {
-    // Which child to take, from the first sphere down; fewer than 2⁶⁴ spheres are 21 levels.
-    let mut path = [0_usize; 24];
-    let mut depth = 0;
-    let mut sphere = i;
-    while sphere > 0 {
-        path[depth] = ((sphere - 1) % CHILDREN) as usize;
-        sphere = (sphere - 1) / CHILDREN;
-        depth += 1;
+/// A flake that never ends.
+pub(super) struct Sphereflake {
+    /// Where the children sit on a parent whose axis is z.
+    directions: [DVec3; CHILDREN as usize],
+}
+
+impl Sphereflake {
+    pub(super) fn new() -> Self {
+        Self { directions: std::array::from_fn(direction) }
     }
-    let (mut center, mut radius, mut axis) = (DVec3::splat(0.5), 0.25, DVec3::Z);
-    for &child in path[..depth].iter().rev() {
-        axis = turned(direction(child), axis);
-        center += axis * (radius * (1.0 + SCALE));
-        radius *= SCALE;
+
+    /// Centre and radius of the i-th sphere.
+    pub(super) fn sphere(&self, i: u64) -> [f64; 4] {
+        // Which child to take, from the last to the first; fewer than 2⁶⁴ spheres are 21 levels.
+        let mut path = [0_usize; 24];
+        let mut depth = 0;
+        let mut sphere = i;
+        while sphere > 0 {
+            path[depth] = ((sphere - 1) % CHILDREN) as usize;
+            sphere = (sphere - 1) / CHILDREN;
+            depth += 1;
+        }
+        let (mut center, mut radius, mut axis) = (DVec3::splat(0.5), 0.25, DVec3::Z);
+        for &child in path[..depth].iter().rev() {
+            axis = turned(self.directions[child], axis);
+            center += axis * (radius * (1.0 + SCALE));
+            radius *= SCALE;
+        }
+        [center.x, center.y, center.z, radius]
     }
-    [center.x, center.y, center.z, radius]
 }
 
 /// Where a child sits on a parent whose axis is z: three trios, a third of a turn apart.
@@ -66,8 +78,9 @@ mod tests {
 
     #[test]
     fn children_touch_their_parent_and_lie_outside_it() {
+        let flake = Sphereflake::new();
         for i in 1..9_u64.pow(5) {
-            let [child, parent] = [i, (i - 1) / CHILDREN].map(sphereflake);
+            let [child, parent] = [i, (i - 1) / CHILDREN].map(|i| flake.sphere(i));
             let center = |s: [f64; 4]| DVec3::new(s[0], s[1], s[2]);
             let gap = (center(child) - center(parent)).length() - child[3] - parent[3];
             assert!(gap.abs() < 1e-9, "{i}: {gap}");

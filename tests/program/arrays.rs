@@ -42,6 +42,23 @@ fn refused(folder: &Folder, arguments: &str, code: i32, line: &str) {
     assert_eq!(folder.files(), before, "{arguments}");
 }
 
+/// A file that is nothing but a hole takes no room on the disk, and all of the memory.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_file_that_does_not_fit_into_memory() {
+    let folder = Folder::new();
+    let file = std::fs::File::create(folder.path("large.npy")).unwrap();
+    if file.set_len(1 << 43).is_err() {
+        return;
+    }
+    let run = folder.run("render large.npy -o out.png --backend cpu");
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let expected =
+        "error: large.npy: to read 8796093022208 bytes takes 16384.0 GiB of memory, and ";
+    assert!(run.stderr.starts_with(expected), "{}", run.stderr);
+    assert_eq!(folder.files(), ["large.npy"]);
+}
+
 /// The picture of some arguments.
 #[track_caller]
 fn picture(folder: &Folder, arguments: &str) -> Vec<u8> {
