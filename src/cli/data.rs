@@ -124,9 +124,7 @@ impl Data {
     pub(super) fn scale_radii(&mut self, factor: f64) {
         match self {
             Self::Spheres(spheres) => spheres.iter_mut().for_each(|s| s.radius *= factor),
-            // What is not scaled keeps its bits.
-            Self::Points(points) if factor != 1.0 => points.scale_radii(factor),
-            Self::Points(_) => {}
+            Self::Points(points) => points.scale_radii(factor),
         }
     }
 
