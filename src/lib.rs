@@ -38,6 +38,7 @@ pub mod accel;
 pub mod basis;
 pub mod bounds;
 pub mod camera;
+mod chunks;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
@@ -46,11 +47,13 @@ pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
+pub mod generate;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
 pub mod io;
 pub mod math;
+pub mod points;
 pub mod ray;
 pub mod scene;
 #[cfg(feature = "scene-file")]
@@ -62,6 +65,7 @@ mod text;
 pub use color::LinearRgb;
 pub use film::Film;
 pub use image::{Image, LayerSet};
+pub use points::Points;
 pub use scene::Scene;
 pub use settings::{Settings, Shading};
 pub use sphere::Sphere;

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::bounds::Bounds;
+use crate::chunks;
 use crate::color::LinearRgb;
-use crate::sphere::{Sphere, SphereError};
+use crate::sphere::{self, Sphere, SphereError};
 
 /// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it.
 ///
@@ -35,6 +36,12 @@ pub enum SceneError {
         /// What is wrong with it.
         error: SphereError,
     },
+    /// There is no memory for so many.
+    #[error("there is no memory for {count} spheres; they need {} bytes", count * 16)]
+    Memory {
+        /// How many were given.
+        count: usize,
+    },
     /// More spheres than ids.
     #[error("{count} spheres are too many; ids are u32 and {} means a miss", u32::MAX)]
     TooMany {
@@ -49,31 +56,36 @@ impl Scene {
     /// # Errors
     /// The first sphere, in input order, with a centre or radius that is out of range.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
-        if spheres.len() >= u32::MAX as usize {
-            return Err(SceneError::TooMany { count: spheres.len() });
-        }
-        for (index, sphere) in spheres.iter().enumerate() {
-            sphere.check().map_err(|error| SceneError::Sphere { index, error })?;
-        }
-        let bounds = spheres
-            .iter()
-            .map(|s| Bounds::of_sphere(DVec3::from(s.center), s.radius))
-            .reduce(Bounds::union);
+        let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        let narrow = narrowed(spheres, f64_parts, origin)?;
         let (palette, color_indices) = palette(spheres.iter().map(|s| s.color));
-        Ok(Self {
-            origin,
-            spheres: spheres
-                .iter()
-                .map(|s| {
-                    let offset = (DVec3::from(s.center) - origin).as_vec3();
-                    [offset.x, offset.y, offset.z, s.radius as f32]
-                })
-                .collect(),
-            palette,
-            color_indices,
-            bounds,
-        })
+        Ok(Self { origin, spheres: narrow, palette, color_indices, bounds })
+    }
+
+    /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
+    /// not copied; only those far from the world's origin are moved, in place.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn from_f32(mut spheres: Vec<[f32; 4]>, color: LinearRgb) -> Result<Self, SceneError> {
+        let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
+        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        if origin != DVec3::ZERO {
+            chunks::each(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
+        }
+        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+    }
+
+    /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
+        let bounds = bounds_of_checked(spheres, |s| *s)?;
+        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        let spheres = narrowed(spheres, |s| *s, origin)?;
+        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
     }
 
     /// Where the scene's frame lies in the world.
@@ -137,6 +149,51 @@ impl Scene {
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }
+}
+
+fn f64_parts(sphere: &Sphere) -> [f64; 4] {
+    let [x, y, z] = sphere.center;
+    [x, y, z, sphere.radius]
+}
+
+/// Checks how many there are and every one of them, and finds the box of all.
+fn bounds_of_checked<T: Sync>(
+    spheres: &[T],
+    parts: impl Fn(&T) -> [f64; 4] + Sync,
+) -> Result<Option<Bounds>, SceneError> {
+    if spheres.len() >= u32::MAX as usize {
+        return Err(SceneError::TooMany { count: spheres.len() });
+    }
+    let of_chunk = |first: usize, chunk: &[T]| {
+        let mut bounds: Option<Bounds> = None;
+        for (place, item) in chunk.iter().enumerate() {
+            let sphere @ [x, y, z, radius] = parts(item);
+            sphere::check(sphere)
+                .map_err(|error| SceneError::Sphere { index: first + place, error })?;
+            let of_sphere = Bounds::of_sphere(DVec3::new(x, y, z), radius);
+            bounds = Some(bounds.map_or(of_sphere, |bounds| bounds.union(of_sphere)));
+        }
+        Ok(bounds)
+    };
+    // The chunks' answers come in input order, so that the first bad sphere is the one that is named.
+    let chunks: Result<Vec<_>, _> = chunks::map(spheres, of_chunk).into_iter().collect();
+    Ok(chunks?.into_iter().flatten().reduce(Bounds::union))
+}
+
+/// The spheres in a frame, in f32.
+fn narrowed<T: Sync>(
+    spheres: &[T],
+    parts: impl Fn(&T) -> [f64; 4] + Sync,
+    origin: DVec3,
+) -> Result<Vec<[f32; 4]>, SceneError> {
+    chunks::collect(spheres.len(), |i| moved(parts(&spheres[i]), origin))
+        .map_err(|_| SceneError::Memory { count: spheres.len() })
+}
+
+/// One sphere in a frame, in f32.
+fn moved([x, y, z, radius]: [f64; 4], origin: DVec3) -> [f32; 4] {
+    let offset = (DVec3::new(x, y, z) - origin).as_vec3();
+    [offset.x, offset.y, offset.z, radius as f32]
 }
 
 /// Where the scene's frame lies: zero along an axis while the world's origin is about as near as the data

@@ -8,11 +8,11 @@ use serde::Deserialize;
 use serde::de::{self, SeqAccess, Visitor};
 use toml::Spanned;
 
-use crate::bounds::Bounds;
-use crate::camera::{self, Camera, CameraError, CameraKind, camera_table};
+use crate::camera::{Camera, CameraKind, CameraParameters};
 use crate::color::LinearRgb;
 use crate::exact::{self, Table};
 use crate::film::{Film, YAxis};
+use crate::points::Points;
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Settings, Shading};
 use crate::sphere::Sphere;
@@ -36,9 +36,13 @@ pub struct Data {
     /// The path, relative to the scene file.
     pub file: String,
     /// Which frame of a trajectory, from 0.
-    pub frame: usize,
+    pub frame: Option<usize>,
+    /// The radius of all, for data that has none.
+    pub radius: Option<f64>,
     /// What every radius is multiplied by.
     pub radius_scale: f64,
+    /// The colour of all, for data that has none.
+    pub color: Option<LinearRgb>,
 }
 
 /// What is wrong with a scene file, and where.
@@ -95,7 +99,14 @@ impl SceneFile {
             settings: defaults
                 .with_shading(document.shading.unwrap_or(defaults.shading()))
                 .with_background(document.background.map_or(defaults.background(), |c| c.0)),
-            data: data(&lines, document.data, document.frame, document.radius_scale)?,
+            data: DataKeys {
+                file: document.data,
+                frame: document.frame,
+                radius: document.radius,
+                radius_scale: document.radius_scale,
+                color: document.color,
+            }
+            .read(&lines)?,
             camera: Placed {
                 place: lines.place(document.camera.span().start),
                 value: document.camera.into_inner(),
@@ -119,6 +130,23 @@ impl SceneFile {
         let own = self.spheres.iter().map(|sphere| sphere.value);
         let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
         Scene::new(&spheres).map_err(|error| self.placed(&error))
+    }
+
+    /// As [`SceneFile::scene`], with data that has no colours; where the file has no spheres of its own,
+    /// without a copy.
+    ///
+    /// # Errors
+    /// As [`SceneFile::scene`].
+    pub fn scene_with_points(
+        &self,
+        data: Points,
+        color: LinearRgb,
+    ) -> Result<Scene, SceneFileError> {
+        if self.spheres.is_empty() {
+            return data.scene(color).map_err(|error| self.placed(&error));
+        }
+        let data: Vec<Sphere> = data.spheres(color).collect();
+        self.scene(&data)
     }
 
     fn placed(&self, error: &SceneError) -> SceneFileError {
@@ -153,38 +181,52 @@ impl SceneFile {
     }
 }
 
-fn data(
-    lines: &Lines<'_>,
+/// The keys that name a file with spheres and say how to read it.
+struct DataKeys {
     file: Option<Spanned<String>>,
     frame: Option<Spanned<usize>>,
+    radius: Option<Spanned<f64>>,
     radius_scale: Option<Spanned<f64>>,
-) -> Result<Option<Placed<Data>>, SceneFileError> {
-    let Some(file) = file else {
-        let orphan = |key, start| {
-            lines.place(start).error(format!("`{key}` concerns `data`, which is not given"))
+    color: Option<Spanned<ColorValue>>,
+}
+
+impl DataKeys {
+    fn read(self, lines: &Lines<'_>) -> Result<Option<Placed<Data>>, SceneFileError> {
+        let Some(file) = self.file else {
+            let orphans = [
+                ("frame", self.frame.map(|value| value.span())),
+                ("radius", self.radius.map(|value| value.span())),
+                ("radius_scale", self.radius_scale.map(|value| value.span())),
+                ("color", self.color.map(|value| value.span())),
+            ];
+            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            return match orphan {
+                Some((key, start)) => Err(lines
+                    .place(start)
+                    .error(format!("`{key}` concerns `data`, which is not given"))),
+                None => Ok(None),
+            };
         };
-        return match (frame, radius_scale) {
-            (Some(frame), _) => Err(orphan("frame", frame.span().start)),
-            (_, Some(scale)) => Err(orphan("radius_scale", scale.span().start)),
-            (None, None) => Ok(None),
+        let positive = |key, value: Option<Spanned<f64>>| match value {
+            Some(value) if !(value.get_ref().is_finite() && *value.get_ref() > 0.0) => {
+                Err(lines.place(value.span().start).error(format!(
+                    "`{key}` is {:?}; it must be finite and greater than 0",
+                    value.get_ref()
+                )))
+            }
+            value => Ok(value.map(Spanned::into_inner)),
         };
-    };
-    if let Some(scale) = &radius_scale {
-        let value = *scale.get_ref();
-        if !(value.is_finite() && value > 0.0) {
-            return Err(lines.place(scale.span().start).error(format!(
-                "`radius_scale` is {value:?}; it must be finite and greater than 0"
-            )));
-        }
+        Ok(Some(Placed {
+            place: lines.place(file.span().start),
+            value: Data {
+                file: file.into_inner(),
+                frame: self.frame.map(Spanned::into_inner),
+                radius: positive("radius", self.radius)?,
+                radius_scale: positive("radius_scale", self.radius_scale)?.unwrap_or(1.0),
+                color: self.color.map(|color| color.into_inner().0),
+            },
+        }))
     }
-    Ok(Some(Placed {
-        place: lines.place(file.span().start),
-        value: Data {
-            file: file.into_inner(),
-            frame: frame.map_or(0, Spanned::into_inner),
-            radius_scale: radius_scale.map_or(1.0, Spanned::into_inner),
-        },
-    }))
 }
 
 /// Where the lines of a text start.
@@ -273,7 +315,9 @@ struct Document {
     spheres: Vec<Spanned<Table<SphereTable>>>,
     data: Option<Spanned<String>>,
     frame: Option<Spanned<usize>>,
+    radius: Option<Spanned<f64>>,
     radius_scale: Option<Spanned<f64>>,
+    color: Option<Spanned<ColorValue>>,
 }
 
 fn default_film() -> Spanned<Table<FilmTable>> {
@@ -299,37 +343,6 @@ impl Default for FilmTable {
     }
 }
 
-macro_rules! define_camera_parameters {
-    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
-        /// The table `[camera.NAME]`.
-        #[derive(Clone, Copy, Debug, Deserialize)]
-        enum CameraParameters {
-            $(#[serde(rename = $name)] $variant(Table<camera::$parameters>),)+
-        }
-
-        impl CameraParameters {
-            fn camera(
-                &self,
-                aspect: f64,
-                bounds: &Bounds,
-            ) -> Result<Box<dyn Camera>, CameraError> {
-                match self {
-                    $(Self::$variant(parameters) => {
-                        Ok(Box::new(parameters.0.camera(aspect, bounds)?))
-                    })+
-                }
-            }
-        }
-    };
-}
-camera_table!(define_camera_parameters);
-
-impl Default for CameraParameters {
-    fn default() -> Self {
-        Self::Pinhole(Table::default())
-    }
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SphereTable {
@@ -349,9 +362,12 @@ impl SphereTable {
 /// A CSS colour, or a linear triple.
 struct ColorValue(LinearRgb);
 
+/// The colour of spheres that are given none, as 8-bit sRGB: a light grey.
+pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
+
 impl Default for ColorValue {
     fn default() -> Self {
-        Self(LinearRgb::from_srgb8([0xcc; 3]))
+        Self(LinearRgb::from_srgb8(DEFAULT_COLOR))
     }
 }
 

@@ -49,14 +49,21 @@ impl Sphere {
     /// # Errors
     /// If the centre or the radius is out of range.
     pub fn check(&self) -> Result<(), SphereError> {
-        // `contains` is false for NaN.
-        let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);
-        if !self.center.iter().all(in_range) {
-            return Err(SphereError::Center { center: self.center });
-        }
-        if !(MIN_LENGTH..=MAX_LENGTH).contains(&self.radius) {
-            return Err(SphereError::Radius { radius: self.radius });
-        }
-        Ok(())
+        let [x, y, z] = self.center;
+        check([x, y, z, self.radius])
     }
+}
+
+/// Whether a centre (x, y, z) and a radius may be part of a scene.
+pub(crate) fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
+    let center = [x, y, z];
+    // `contains` is false for NaN.
+    let in_range = |x: &f64| (-MAX_LENGTH..=MAX_LENGTH).contains(x);
+    if !center.iter().all(in_range) {
+        return Err(SphereError::Center { center });
+    }
+    if !(MIN_LENGTH..=MAX_LENGTH).contains(&radius) {
+        return Err(SphereError::Radius { radius });
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Fitting foreign text into a one-line message.
 
 /// The text on one line, whatever white space it has; control characters are escaped.
-#[cfg(any(feature = "scene-file", feature = "cli"))]
+#[cfg(any(feature = "scene-file", feature = "npy", feature = "cli"))]
 pub(crate) fn one_line(text: &str) -> String {
     let mut line = String::new();
     for c in text.split_whitespace().collect::<Vec<_>>().join(" ").chars() {
@@ -15,7 +15,7 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// The text, cut off where it becomes too long for a message.
-#[cfg(any(feature = "scene-file", feature = "xyz"))]
+#[cfg(any(feature = "scene-file", feature = "xyz", feature = "npy"))]
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {

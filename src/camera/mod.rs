@@ -10,12 +10,16 @@ use crate::ray::Ray;
 
 mod framing;
 mod orthographic;
+#[cfg(feature = "scene-file")]
+mod parameters;
 mod pinhole;
 mod pose;
 
 pub use orthographic::OrthographicCamera;
 #[cfg(feature = "scene-file")]
 pub use orthographic::OrthographicParameters;
+#[cfg(feature = "scene-file")]
+pub(crate) use parameters::CameraParameters;
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
 pub use pinhole::PinholeParameters;

@@ -7,10 +7,11 @@ use anyhow::{Context, anyhow};
 
 use super::args::DemoArgs;
 use super::failure::Failure;
-use super::input;
+use super::input::Source;
 use super::output::Outputs;
 use super::render::{Device, render};
 use super::speak::tell;
+use super::threads;
 use crate::image::LayerSet;
 
 const SCENE: &str = include_str!("../../examples/three-spheres.toml");
@@ -22,7 +23,8 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
     let scene_file = PathBuf::from(SCENE_FILE);
     let is_there = is_there(&scene_file)?;
-    let input = input::scene_from_text(SCENE, &scene_file, None, None)?;
+    threads::start()?;
+    let input = Source::of_scene(&scene_file).scene_from_text(SCENE)?;
     let image = render(&input, LayerSet::COLOR, &device)?;
     outputs.write(&image, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(

@@ -1,17 +1,20 @@
 //! From a path to a scene and a view of it.
 
-use std::path::Path;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow, bail};
 
+use super::args::InputArgs;
+use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
-use crate::camera::{Camera, PinholeCamera};
+use super::memory;
+use crate::camera::{Camera, CameraParameters};
+use crate::color::LinearRgb;
 use crate::film::Film;
-use crate::io::xyz;
 use crate::scene::Scene;
-use crate::scene_file::SceneFile;
+use crate::scene_file::{DEFAULT_COLOR, SceneFile};
 use crate::settings::Settings;
-use crate::sphere::Sphere;
 
 /// Everything that a render needs.
 pub(super) struct Input {
@@ -25,28 +28,27 @@ pub(super) struct Input {
     pub(super) notes: Vec<String>,
 }
 
-/// What a file is, by its extension.
+/// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+enum Format {
     Scene,
     Data(DataFormat),
 }
 
-/// The formats of data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum DataFormat {
-    Xyz,
-}
-
 impl Format {
     /// The format that an extension stands for.
-    pub(super) fn of(path: &Path) -> Result<Self> {
-        match extension(path).as_deref() {
-            Some("toml") => Ok(Self::Scene),
-            Some("xyz" | "extxyz") => Ok(Self::Data(DataFormat::Xyz)),
+    fn of(path: &Path) -> Result<Self> {
+        match (DataFormat::of(path), extension(path).as_deref()) {
+            (Some(format), _) => Ok(Self::Data(format)),
+            (None, Some("toml")) => Ok(Self::Scene),
+            (None, Some("bin")) => bail!(
+                "{}: .bin does not say what is in the file; if it is x, y, z, radius in \
+                 little-endian f32, add --format raw-f32x4",
+                path.display()
+            ),
             _ => bail!(
-                "{}: the extension names no format that can be read; \
-                 there are .toml (scene) and .xyz, .extxyz (data)",
+                "{}: the extension names no format that can be read; there are .toml (scene) and \
+                 .xyz, .extxyz, .npy, .npz (data), and .bin with --format raw-f32x4",
                 path.display()
             ),
         }
@@ -58,110 +60,178 @@ pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
-/// Reads a scene or data file. `size` and `frame` take the place of what the file says.
-pub(super) fn load(
-    path: &Path,
+/// A file and what flags say of it, checked as far as they can be before it is read.
+pub(super) struct Source {
+    path: PathBuf,
     format: Format,
     size: Option<(u32, u32)>,
-    frame: Option<usize>,
-) -> Result<Input, Failure> {
-    let Format::Data(format) = format else {
-        let text = String::from_utf8(read(path)?).map_err(|_| {
-            anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
-        })?;
-        return scene_from_text(&text, path, size, frame);
-    };
-    let (spheres, notes) = load_data(path, format, frame.unwrap_or(0), 1.0)?;
-    let place = || path.display().to_string();
-    let (film, size_from) = film(Film::default(), size, path)?;
-    let scene = Scene::new(&spheres).with_context(place)?;
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())
-        .with_context(place)?;
-    let (camera, settings) = (Box::new(camera), Settings::default());
-    Ok(Input { scene, camera, film, settings, size_from, notes })
+    options: DataOptions,
+    camera: Option<CameraParameters>,
 }
 
-/// Reads the text of a scene file that stands, or will stand, at `path`, and its data.
-pub(super) fn scene_from_text(
-    text: &str,
-    path: &Path,
-    size: Option<(u32, u32)>,
-    frame: Option<usize>,
-) -> Result<Input, Failure> {
-    let place = || path.display().to_string();
-    let file = SceneFile::parse(text).with_context(place)?;
-    let (spheres, notes) = match file.data() {
-        Some(data) => {
-            let data_path = path.parent().unwrap_or(Path::new("")).join(&data.file);
-            let in_scene = || format!("{}: `data`", path.display());
-            let Format::Data(format) = Format::of(&data_path).with_context(in_scene)? else {
-                return Err(anyhow!("it names another scene file").context(in_scene()).into());
-            };
-            load_data(&data_path, format, frame.unwrap_or(data.frame), data.radius_scale)
-                .with_context(in_scene)?
-        }
-        None if frame.is_some() => {
+impl Source {
+    pub(super) fn new(args: &InputArgs) -> Result<Self, Failure> {
+        let format = match args.format {
+            Some(format) => Format::Data(format),
+            None => Format::of(&args.input).map_err(Failure::Usage)?,
+        };
+        if let Some(radius) = args.radius
+            && !(radius.is_finite() && radius > 0.0)
+        {
             return Err(Failure::usage(format!(
-                "{}: --frame needs a scene with `data`, and this scene has none",
-                path.display()
+                "--radius {radius}: a radius must be finite and greater than 0"
             )));
         }
-        None => (Vec::new(), Vec::new()),
-    };
-    let (film, size_from) = film(file.film, size, path)?;
-    let scene = file.scene(&spheres).with_context(place)?;
-    let camera = file.camera(&film, &scene).with_context(place)?;
-    Ok(Input { scene, camera, film, settings: file.settings, size_from, notes })
-}
-
-/// The film, and what its size comes from.
-fn film(from_file: Film, size: Option<(u32, u32)>, path: &Path) -> Result<(Film, String), Failure> {
-    let Some((width, height)) = size else { return Ok((from_file, path.display().to_string())) };
-    let film = Film::new(width, height)
-        .map_err(|error| Failure::usage(format!("--size: {error}")))?
-        .with_y_axis(from_file.y_axis());
-    Ok((film, "--size".to_owned()))
-}
-
-fn load_data(
-    path: &Path,
-    format: DataFormat,
-    frame: usize,
-    radius_scale: f64,
-) -> Result<(Vec<Sphere>, Vec<String>)> {
-    let bytes = read(path)?;
-    match format {
-        DataFormat::Xyz => {
-            let mut atoms = xyz::read(&bytes, frame).with_context(|| path.display().to_string())?;
-            for sphere in &mut atoms.spheres {
-                sphere.radius *= radius_scale;
-            }
-            let notes = unknown_species(&atoms.unknown_species, path).into_iter().collect();
-            Ok((atoms.spheres, notes))
+        let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
+        let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
+        let options = DataOptions { frame: args.frame, radius: args.radius, color };
+        if let Format::Data(format) = format {
+            options.check(format, "--").map_err(Failure::usage)?;
         }
+        Ok(Self {
+            path: args.input.clone(),
+            format,
+            size: args.size.as_deref().map(parse_size).transpose()?,
+            options,
+            camera: args.camera.parameters()?,
+        })
+    }
+
+    /// A scene file without flags.
+    pub(super) fn of_scene(path: &Path) -> Self {
+        let options = DataOptions::default();
+        Self { path: path.to_path_buf(), format: Format::Scene, size: None, options, camera: None }
+    }
+
+    /// Reads the file, and the data that it names.
+    pub(super) fn load(&self) -> Result<Input, Failure> {
+        let path = &self.path;
+        let Format::Data(format) = self.format else {
+            let text = String::from_utf8(read(path)?).map_err(|_| {
+                anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
+            })?;
+            return self.scene_from_text(&text);
+        };
+        let bytes = read(path)?;
+        let (data, notes) = Data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        drop(bytes);
+        let place = || path.display().to_string();
+        let (film, size_from) = self.film(Film::default())?;
+        let scene = data.scene(self.options.color.unwrap_or_else(default_color));
+        let scene = scene.with_context(place)?;
+        let parameters = self.camera.unwrap_or_default();
+        let camera =
+            parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?;
+        Ok(Input { scene, camera, film, settings: Settings::default(), size_from, notes })
+    }
+
+    /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
+    pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
+        let place = || self.path.display().to_string();
+        let file = SceneFile::parse(text).with_context(place)?;
+        let (data, color, notes) = self.data_of(&file)?;
+        let (film, size_from) = self.film(file.film)?;
+        let scene = match data {
+            Data::Spheres(spheres) => file.scene(&spheres),
+            Data::Points(points) => file.scene_with_points(points, color),
+        };
+        let scene = scene.with_context(place)?;
+        let camera = match &self.camera {
+            Some(parameters) => {
+                parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?
+            }
+            None => file.camera(&film, &scene).with_context(place)?,
+        };
+        Ok(Input { scene, camera, film, settings: file.settings, size_from, notes })
+    }
+
+    /// The data of a scene file, its colour if it has none, and notes.
+    fn data_of(&self, file: &SceneFile) -> Result<(Data, LinearRgb, Vec<String>), Failure> {
+        let flags = self.options;
+        let Some(data) = file.data() else {
+            let given = [
+                ("--frame", flags.frame.is_some()),
+                ("--radius", flags.radius.is_some()),
+                ("--color", flags.color.is_some()),
+            ];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((flag, _)) => Err(Failure::usage(format!(
+                    "{}: {flag} needs a scene with `data`, and this scene has none",
+                    self.path.display()
+                ))),
+                None => Ok((Data::Spheres(Vec::new()), default_color(), Vec::new())),
+            };
+        };
+        let path = self.path.parent().unwrap_or(Path::new("")).join(&data.file);
+        let in_scene = || format!("{}: `data`", self.path.display());
+        let Some(format) = DataFormat::of(&path) else {
+            let problem = if extension(&path).as_deref() == Some("toml") {
+                anyhow!("it names another scene file")
+            } else {
+                anyhow!(
+                    "{}: the extension names no format that a scene can use; \
+                     there are .xyz, .extxyz, .npy, .npz",
+                    path.display()
+                )
+            };
+            return Err(problem.context(in_scene()).into());
+        };
+        let keys = DataOptions { frame: data.frame, radius: data.radius, color: data.color };
+        flags.check(format, "--").map_err(Failure::usage)?;
+        keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
+        let options = flags.or(keys);
+        let bytes = read(&path).with_context(in_scene)?;
+        let (mut spheres, notes) =
+            Data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        spheres.scale_radii(data.radius_scale);
+        Ok((spheres, options.color.unwrap_or_else(default_color), notes))
+    }
+
+    /// The film, and what its size comes from.
+    fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
+        let Some((width, height)) = self.size else {
+            return Ok((from_file, self.path.display().to_string()));
+        };
+        let film = Film::new(width, height)
+            .map_err(|error| Failure::usage(format!("--size: {error}")))?
+            .with_y_axis(from_file.y_axis());
+        Ok((film, "--size".to_owned()))
     }
 }
 
-/// A note that fits on a line, however many species there are.
-fn unknown_species(names: &[String], path: &Path) -> Option<String> {
-    const NAMED: usize = 5;
-    let more = match names.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    let named = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: no chemical elements: {named}{more}; drawn in pink, with radius 2 if the file \
-             gives none",
-            path.display()
-        )
-    })
+fn default_color() -> LinearRgb {
+    LinearRgb::from_srgb8(DEFAULT_COLOR)
 }
 
+/// `WxH`
+fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+    let sides = text.split_once(['x', 'X']);
+    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
+        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
+    )
+}
+
+/// Files up to this many bytes are read without asking for the machine's memory, which takes time.
+const SMALL: u64 = 1 << 24;
+
+/// All of a file, in one piece of memory of its size.
 fn read(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
         bail!("{}: this is a folder; name a file", path.display());
     }
-    std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))
+    let cannot_read = || format!("{}: cannot be read", path.display());
+    let mut file = std::fs::File::open(path).with_context(cannot_read)?;
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    if size > SMALL {
+        // The file, and the spheres that are made of it while it is still there.
+        let what = format!("{}: to read {size} bytes takes", path.display());
+        memory::check_bytes(&what, size.saturating_mul(2), "a smaller file").map_err(Error::msg)?;
+    }
+    let mut bytes = Vec::new();
+    usize::try_from(size)
+        .ok()
+        .and_then(|size| bytes.try_reserve_exact(size).ok())
+        .with_context(|| format!("{}: there is no memory for {size} bytes", path.display()))?;
+    file.read_to_end(&mut bytes).with_context(cannot_read)?;
+    Ok(bytes)
 }

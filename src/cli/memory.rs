@@ -1,4 +1,4 @@
-//! Whether a picture fits into the machine, asked before it is begun.
+//! Whether a picture or a scene fits into the machine, asked before it is begun.
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
@@ -20,15 +20,20 @@ pub(super) fn check(film: &Film, size_from: &str, layers: LayerSet) -> Result<()
     let pixels = film.pixel_count();
     let tile = pixels.min(MAX_TILE_PIXELS) * TILE_BYTES_PER_PIXEL;
     let needed = pixels.saturating_mul(per_pixel).saturating_add(tile);
+    let (width, height) = (film.width(), film.height());
+    let what = format!("{size_from}: a picture of {width}x{height} needs");
+    check_bytes(&what, needed, "a smaller size").map_err(Failure::usage)
+}
+
+/// Refuses what needs more memory than there is; `what` is a sentence up to the number of bytes.
+pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), String> {
     let available = available();
     if needed > available {
-        return Err(Failure::usage(format!(
-            "{size_from}: a picture of {}x{} needs {} of memory, and {} are free; choose a smaller size",
-            film.width(),
-            film.height(),
+        return Err(format!(
+            "{what} {} of memory, and {} are free; choose {instead}",
             readable(needed),
             readable(available)
-        )));
+        ));
     }
     Ok(())
 }

@@ -8,14 +8,18 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 mod args;
+mod camera;
+mod data;
 mod demo;
 mod failure;
+mod generate;
 mod info;
 mod input;
 mod memory;
 mod output;
 mod render;
 mod speak;
+mod threads;
 
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
@@ -30,6 +34,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Render(args) => render::run(&args),
         Command::Demo(args) => demo::run(&args),
+        Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::fs::Permissions;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::input::extension;
 use super::speak::answer;
 use crate::image::{Image, Layer};
-use crate::io::{npy, png};
+use crate::io::{npy, png, raw};
 
 /// Where the results go, checked before any work is done.
 #[derive(Debug)]
@@ -71,6 +71,44 @@ impl Outputs {
     }
 }
 
+/// As what spheres are written.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum SpheresFormat {
+    Npy,
+    RawF32x4,
+}
+
+impl SpheresFormat {
+    /// The format that an extension stands for, if the file can be written.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        let format = match extension(path).as_deref() {
+            Some("npy") => Self::Npy,
+            Some("bin") => Self::RawF32x4,
+            _ => {
+                return Err(Failure::usage(format!(
+                    "{}: spheres are written as .npy or .bin; change its extension",
+                    path.display()
+                )));
+            }
+        };
+        check_place(path)?;
+        Ok(format)
+    }
+}
+
+/// Writes spheres to a file.
+pub(super) fn write_spheres(
+    path: &Path,
+    format: SpheresFormat,
+    spheres: &[[f32; 4]],
+) -> Result<()> {
+    let file = unnamed_with(path, |file| match format {
+        SpheresFormat::Npy => npy::write_spheres(spheres, file),
+        SpheresFormat::RawF32x4 => raw::write_spheres(spheres, file),
+    })?;
+    name_all(vec![(&path.to_path_buf(), file)])
+}
+
 /// A file beside the one that it will become.
 fn temporary(path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
@@ -89,9 +127,16 @@ fn temporary(path: &Path) -> Result<NamedTempFile> {
 }
 
 fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
+    unnamed_with(path, |file| file.write_all(contents))
+}
+
+fn unnamed_with(
+    path: &Path,
+    write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
+) -> Result<NamedTempFile> {
     let cannot_write = || format!("{}: cannot be written", path.display());
     let mut file = temporary(path)?;
-    file.write_all(contents).with_context(cannot_write)?;
+    write(&mut file).with_context(cannot_write)?;
     file.as_file().sync_all().with_context(cannot_write)?;
     if let Ok(old) = path.metadata() {
         file.as_file().set_permissions(old.permissions()).with_context(cannot_write)?;
@@ -148,6 +193,11 @@ fn check_file(path: &Path, wanted: &str) -> Result<(), Failure> {
             path.display()
         )));
     }
+    check_place(path)
+}
+
+/// Refuses folders, and files in folders that are not there or cannot be written.
+fn check_place(path: &Path) -> Result<(), Failure> {
     let ends_with_separator = path
         .as_os_str()
         .as_encoded_bytes()

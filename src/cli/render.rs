@@ -1,15 +1,14 @@
 //! `pinhole render`.
 
-use std::path::PathBuf;
-
 use anyhow::Context;
 
 use super::args::{Backend, DeviceArgs, RenderArgs};
 use super::failure::Failure;
-use super::input::{self, Format, Input};
+use super::input::{Input, Source};
 use super::memory;
 use super::output::Outputs;
 use super::speak::tell;
+use super::threads;
 use crate::cpu;
 #[cfg(feature = "gpu")]
 use crate::gpu::{GpuError, Headless, HeadlessOptions};
@@ -17,11 +16,8 @@ use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
 struct Job {
-    input: PathBuf,
-    format: Format,
+    source: Source,
     outputs: Outputs,
-    size: Option<(u32, u32)>,
-    frame: Option<usize>,
     device: Device,
 }
 
@@ -52,11 +48,8 @@ impl Device {
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         Ok(Self {
-            input: args.input.clone(),
-            format: Format::of(&args.input).map_err(Failure::Usage)?,
+            source: Source::new(&args.input)?,
             outputs: Outputs::new(&args.output, &args.layers)?,
-            size: args.size.as_deref().map(parse_size).transpose()?,
-            frame: args.frame,
             device: Device::new(&args.device)?,
         })
     }
@@ -64,7 +57,8 @@ impl Job {
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let job = Job::new(args)?;
-    let input = input::load(&job.input, job.format, job.size, job.frame)?;
+    threads::start()?;
+    let input = job.source.load()?;
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
@@ -77,7 +71,6 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Renders on the device, and says so if that is not what the user would expect.
 pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
     memory::check(&input.film, &input.size_from, layers)?;
-    start_threads()?;
     match device {
         Device::Cpu => on_cpu(input, layers),
         #[cfg(feature = "gpu")]
@@ -105,19 +98,6 @@ pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result
     }
 }
 
-/// Starts the threads of rows and pixels. Left to itself, rayon panics where they cannot be had.
-#[cfg(feature = "parallel")]
-fn start_threads() -> Result<(), Failure> {
-    let threads = rayon::ThreadPoolBuilder::new().build_global();
-    Ok(threads.context("threads cannot be started; set RAYON_NUM_THREADS to fewer")?)
-}
-
-#[cfg(not(feature = "parallel"))]
-#[expect(clippy::unnecessary_wraps, reason = "as with threads")]
-fn start_threads() -> Result<(), Failure> {
-    Ok(())
-}
-
 fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {
     let Input { scene, camera, film, settings, .. } = input;
     let image = cpu::render(scene, camera.as_ref(), film, settings, layers);
@@ -136,12 +116,4 @@ fn on_gpu(headless: &Headless, input: &Input, layers: LayerSet) -> Result<Image,
         };
         Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}"))
     })
-}
-
-/// `WxH`
-fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
-    let sides = text.split_once(['x', 'X']);
-    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
-        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
-    )
 }

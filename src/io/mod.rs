@@ -1,10 +1,14 @@
-//! Formats: bytes in, spheres out; images in, bytes out. No file system.
+//! Formats: bytes in, spheres out; images and spheres in, bytes out. No file system.
 
 #[cfg(feature = "xyz")]
 mod elements;
 #[cfg(feature = "npy")]
 pub mod npy;
+#[cfg(feature = "npy")]
+pub mod npz;
+mod numbers;
 #[cfg(feature = "png")]
 pub mod png;
+pub mod raw;
 #[cfg(feature = "xyz")]
 pub mod xyz;

@@ -10,10 +10,15 @@
 mod support;
 
 mod accel_trees;
+#[path = "../support/arrays.rs"]
+mod arrays;
+
 mod basis;
 mod camera;
 mod comparator;
+mod generate;
 mod invariants;
+mod npy;
 mod perspective;
 mod reference;
 mod scene;

@@ -80,3 +80,84 @@ fn bounds_hold_every_sphere() {
     assert_eq!(bounds.max(), DVec3::new(1.5, 5.5, 2.0));
     assert!(Scene::new(&[]).unwrap().bounds().is_none());
 }
+
+/// A list that is long enough for several threads.
+fn many(random: &mut fastrand::Rng, at: f64) -> Vec<[f64; 4]> {
+    let coordinate = |random: &mut fastrand::Rng| at + random.f64() * 10.0 - 5.0;
+    (0..200_000)
+        .map(|_| [0; 3].map(|_| coordinate(random)))
+        .map(|[x, y, z]| [x, y, z, 0.1])
+        .collect()
+}
+
+#[test]
+fn arrays_make_the_scene_that_spheres_make() {
+    let mut random = fastrand::Rng::with_seed(15);
+    for at in [0.0, 1000.0, 1e7] {
+        let wide = many(&mut random, at);
+        let narrow: Vec<[f32; 4]> = wide.iter().map(|s| s.map(|x| x as f32)).collect();
+        let same = |scene: Scene, spheres: Vec<Sphere>| {
+            let expected = Scene::new(&spheres).unwrap();
+            assert_eq!(scene.origin(), expected.origin());
+            assert_eq!(scene.bounds(), expected.bounds());
+            assert_eq!(scene.spheres(), expected.spheres());
+            assert_eq!(scene.palette(), expected.palette());
+            assert_eq!((scene.color_indices(), expected.color_indices()), (None, None));
+            assert_eq!(scene.color(17), LinearRgb::WHITE);
+        };
+        let spheres = wide.iter().map(|&[x, y, z, r]| sphere([x, y, z], r)).collect();
+        same(Scene::from_f64(&wide, LinearRgb::WHITE).unwrap(), spheres);
+        let spheres = narrow.iter().map(|s| s.map(f64::from));
+        let spheres = spheres.map(|[x, y, z, r]| sphere([x, y, z], r)).collect();
+        same(Scene::from_f32(narrow, LinearRgb::WHITE).unwrap(), spheres);
+    }
+}
+
+#[test]
+fn arrays_near_the_origin_are_not_copied() {
+    let spheres = vec![[0.5, 0.25, 0.0, 0.5]; 1000];
+    let place = spheres.as_ptr();
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    assert_eq!(scene.spheres().as_ptr(), place);
+    assert!(Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap().bounds().is_none());
+}
+
+/// f64 data ten million units away has the shape that it has at the origin, to the last bit of what f64
+/// keeps there.
+#[test]
+fn arrays_far_from_the_origin_keep_their_shape() {
+    let mut random = fastrand::Rng::with_seed(16);
+    // Multiples of 2⁻²⁰, which f64 adds to 10⁷ exactly.
+    let step = f64::from(1 << 20).recip();
+    let mut coordinate = || (f64::from(random.i32(-5_000_000..5_000_000))) * step;
+    let near: Vec<[f64; 4]> =
+        (0..1000).map(|_| [coordinate(), coordinate(), coordinate(), 0.1]).collect();
+    let far: Vec<_> = near.iter().map(|[x, y, z, r]| [x + 1e7, y - 1e7, z + 1e7, *r]).collect();
+    let near_scene = Scene::from_f64(&near, LinearRgb::WHITE).unwrap();
+    let far_scene = Scene::from_f64(&far, LinearRgb::WHITE).unwrap();
+    assert_eq!(near_scene.origin(), DVec3::ZERO);
+    for (near, far) in near_scene.spheres().iter().zip(far_scene.spheres()) {
+        for axis in 0..3 {
+            let at = [1e7, -1e7, 1e7][axis] - far_scene.origin()[axis];
+            let back = f64::from(far[axis]) - at;
+            assert!((back - f64::from(near[axis])).abs() < 1e-6, "{near:?} {far:?}");
+        }
+    }
+}
+
+#[test]
+fn the_first_bad_sphere_of_an_array_is_named_however_many_threads_look() {
+    let mut random = fastrand::Rng::with_seed(17);
+    let mut spheres = many(&mut random, 0.0);
+    for bad in [199_999, 150_000, 70_001, 3] {
+        spheres[bad][3] = -1.0;
+        let expected = format!("sphere {bad}: its radius is -1.0; ");
+        let narrow: Vec<[f32; 4]> = spheres.iter().map(|s| s.map(|x| x as f32)).collect();
+        for error in [
+            Scene::from_f64(&spheres, LinearRgb::WHITE).unwrap_err(),
+            Scene::from_f32(narrow, LinearRgb::WHITE).unwrap_err(),
+        ] {
+            assert!(error.to_string().starts_with(&expected), "{error}");
+        }
+    }
+}

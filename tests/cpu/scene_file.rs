@@ -66,7 +66,7 @@ fn data_comes_behind_the_files_own_spheres() {
         "data = 'a.xyz'\nframe = 3\nradius_scale = 0.5\n[[spheres]]\ncenter=[0,0,0]\nradius=1\n",
     );
     let data = file.data().unwrap();
-    assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", 3, 0.5));
+    assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", Some(3), 0.5));
     let more = pinhole::Sphere::new([5.0, 0.0, 0.0], 2.0, LinearRgb::BLACK);
     assert_eq!(file.scene(&[more]).unwrap().spheres()[1], [5.0, 0.0, 0.0, 2.0]);
 
@@ -120,6 +120,11 @@ fn errors_name_place_and_remedy() {
             "line 1, column 14: `gren` is no color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
         ),
         ("frame = 3\n", "line 1, column 9: `frame` concerns `data`, which is not given"),
+        ("color = 'red'\n", "line 1, column 9: `color` concerns `data`, which is not given"),
+        (
+            "data = 'a.npy'\nradius = inf\n",
+            "line 2, column 10: `radius` is inf; it must be finite and greater than 0",
+        ),
         (
             "data = 'a.xyz'\nradius_scale = -1.0\n",
             "line 2, column 16: `radius_scale` is -1.0; it must be finite and greater than 0",

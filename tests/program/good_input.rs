@@ -206,7 +206,9 @@ fn info_is_json_on_request() {
 #[test]
 fn help_and_version_go_to_standard_output() {
     let folder = Folder::new();
-    for arguments in ["--help", "render --help", "demo --help", "info --help", "--version"] {
+    for arguments in
+        ["--help", "render --help", "demo --help", "generate --help", "info --help", "--version"]
+    {
         let run = folder.run(arguments).succeeded();
         assert!(!run.stdout.is_empty() && run.stderr.is_empty(), "{arguments}");
     }

@@ -4,6 +4,11 @@
 //! no adapter is needed.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+#[path = "../support/arrays.rs"]
+mod npy_files;
+
+mod arrays;
 mod bad_input;
+mod generate;
 mod good_input;
 mod support;

@@ -1,4 +1,4 @@
-//! Writes layers as NumPy arrays.
+//! Layers as NumPy arrays.
 
 use std::io;
 

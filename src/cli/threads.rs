@@ -1,0 +1,19 @@
+//! Threads, started before anything needs them.
+
+#[cfg(feature = "parallel")]
+use anyhow::Context;
+
+use super::failure::Failure;
+
+/// Starts the threads of spheres, rows and pixels. Left to itself, rayon panics where they cannot be had.
+#[cfg(feature = "parallel")]
+pub(super) fn start() -> Result<(), Failure> {
+    let threads = rayon::ThreadPoolBuilder::new().build_global();
+    Ok(threads.context("threads cannot be started; set RAYON_NUM_THREADS to fewer")?)
+}
+
+#[cfg(not(feature = "parallel"))]
+#[expect(clippy::unnecessary_wraps, reason = "as with threads")]
+pub(super) fn start() -> Result<(), Failure> {
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! Random numbers that are found by their place, so that any thread can make any sphere.
+
+/// The step of `SplitMix64`: 2⁶⁴ divided by the golden ratio.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// How many places each index has.
+const PLACES: u64 = 32;
+
+/// The numbers of `SplitMix64`, not one after the other but by place: its n-th state is the seed plus n
+/// steps.
+///
+/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the
+/// constants are those of S. Vigna's splitmix64.c. The seed is mixed once before, so that seeds that are
+/// neighbours have nothing in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Uniform {
+    seed: u64,
+}
+
+impl Uniform {
+    pub(super) fn new(seed: u64) -> Self {
+        Self { seed: mix(seed.wrapping_add(STEP)) }
+    }
+
+    /// 64 random bits; `place` is less than [`PLACES`].
+    fn bits(&self, index: u64, place: u64) -> u64 {
+        let n = index.wrapping_mul(PLACES).wrapping_add(place).wrapping_add(1);
+        mix(self.seed.wrapping_add(n.wrapping_mul(STEP)))
+    }
+
+    /// A multiple of 2⁻⁵³ in [0, 1).
+    pub(super) fn number(&self, index: u64, place: u64) -> f64 {
+        (self.bits(index, place) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// The sum of twelve uniform numbers of 16 bits less its mean: mean 0, standard deviation 1 (but for
+    /// 2⁻³²), never beyond 6 (Irwin–Hall). Takes three places.
+    pub(super) fn nearly_normal(&self, index: u64, place: u64) -> f64 {
+        let quarters = |bits: u64| (0..4).map(move |k| (bits >> (16 * k)) & 0xffff);
+        let sum: u64 = (0..3).flat_map(|k| quarters(self.bits(index, place + k))).sum();
+        // Twelve times half a step puts the mean at zero.
+        (sum as f64 + 6.0) / f64::from(1 << 16) - 6.0
+    }
+}
+
+/// The output function of `SplitMix64`.
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// 2ˣ for 0 ≤ x < 60, by the exponential series of the fraction: 20 terms leave less than f64 resolves.
+/// `f64::exp2` differs between platforms.
+pub(super) fn power_of_two(x: f64) -> f64 {
+    let whole = x.floor();
+    let y = (x - whole) * std::f64::consts::LN_2;
+    let series = (1..=20).rev().fold(1.0, |sum, n| 1.0 + sum * y / f64::from(n));
+    series * (1_u64 << whole as u64) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The published generator, started at zero, begins with these.
+    #[test]
+    fn the_stream_is_that_of_splitmix64() {
+        let uniform = Uniform { seed: 0 };
+        assert_eq!(
+            [0, 1, 2].map(|place| uniform.bits(0, place)),
+            [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4, 0x06c4_5d18_8009_454f]
+        );
+    }
+
+    #[test]
+    fn powers_of_two() {
+        for i in 0..=1300 {
+            let x = f64::from(i) / 100.0;
+            assert!((power_of_two(x) / x.exp2() - 1.0).abs() < 1e-15, "{x}");
+        }
+    }
+
+    #[test]
+    fn moments() {
+        let uniform = Uniform::new(7);
+        let numbers = |f: fn(&Uniform, u64) -> f64| (0..100_000).map(move |i| f(&uniform, i));
+        let mean = |numbers: &mut dyn Iterator<Item = f64>| numbers.sum::<f64>() / 1e5;
+        assert!((mean(&mut numbers(|u, i| u.number(i, 0))) - 0.5).abs() < 0.01);
+        assert!(mean(&mut numbers(|u, i| u.nearly_normal(i, 0))).abs() < 0.02);
+        assert!((mean(&mut numbers(|u, i| u.nearly_normal(i, 0).powi(2))) - 1.0).abs() < 0.02);
+    }
+}
