@@ -1,5 +1,5 @@
-// A camera's ray from where it enters the scene's box. What is then computed about spheres is as exact as
-// the scene is large, however far away the camera is.
+// A camera's ray from where it enters the scene's box: no vector from there to a sphere is longer than the
+// box's diagonal, which bounds all rounding.
 
 struct Entry {
     // Starts in the box or on its wall.
@@ -18,7 +18,8 @@ fn inverse_direction(direction: vec3f) -> vec3f {
     return 1.0 / select(-size, size, direction >= vec3f(0.0));
 }
 
-fn enter_scene(ray: Ray) -> Entry {
+fn enter_scene(camera_ray: CameraRay) -> Entry {
+    let ray = camera_ray.ray;
     let inverse = inverse_direction(ray.direction);
     let a = (frame.scene_min - ray.origin) * inverse;
     let b = (frame.scene_max - ray.origin) * inverse;
@@ -27,5 +28,5 @@ fn enter_scene(ray: Ray) -> Entry {
     let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
     let t_far = min(far.x, min(far.y, far.z));
     let entered = Ray(ray.origin + t_near * ray.direction, ray.direction);
-    return Entry(entered, t_near, t_near <= t_far);
+    return Entry(entered, camera_ray.distance + t_near, t_near <= t_far);
 }

@@ -2,8 +2,11 @@
 // a test compares names, offsets and sizes.
 
 struct Camera {
-    // In the scene's frame. What the three vectors mean is up to the camera_*.wgsl part in use.
+    // In the scene's frame: the camera, moved by `advance` times `forward`, up to the scene's box. All that
+    // kernels compute is then as exact as the scene is large, however far away the camera is.
     origin: vec3f,
+    advance: f32,
+    // What the three vectors mean is up to the camera_*.wgsl part in use.
     right: vec3f,
     up: vec3f,
     forward: vec3f,

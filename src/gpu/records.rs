@@ -12,7 +12,7 @@ use crate::settings::{Settings, Shading};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Camera {
     origin: [f32; 3],
-    _pad0: u32,
+    advance: f32,
     right: [f32; 3],
     _pad1: u32,
     up: [f32; 3],
@@ -74,14 +74,26 @@ pub(super) type Color = [f32; 4];
 pub(super) const NO_HIT: f32 = 1e30;
 
 impl Camera {
-    /// Moves the camera into the scene's frame in f64, then narrows.
-    fn new(vectors: &CameraVectors, scene_origin: DVec3) -> Self {
+    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box,
+    /// then narrows.
+    fn new(vectors: &CameraVectors, scene: &SceneSpace) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
+        let origin = vectors.origin - scene.origin;
+        let forward = vectors.forward;
+        let ends = [scene.min.as_dvec3(), scene.max.as_dvec3()];
+        let corners =
+            (0..8).map(|i| DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z));
+        // How many times `forward` it is to the plane of the box's nearest corner.
+        let nearest = corners
+            .map(|corner| (corner - origin).dot(forward) / forward.length_squared())
+            .fold(f64::INFINITY, f64::min);
+        let advance = f64::from(nearest.max(0.0) as f32);
         Self {
-            origin: narrow(vectors.origin - scene_origin),
+            origin: narrow(origin + advance * forward),
+            advance: advance as f32,
             right: narrow(vectors.right),
             up: narrow(vectors.up),
-            forward: narrow(vectors.forward),
+            forward: narrow(forward),
             ..Self::zeroed()
         }
     }
@@ -98,7 +110,7 @@ impl Frame {
     ) -> Self {
         let row_count = tile.size[1].div_ceil(WORKGROUP_SIDE);
         Self {
-            camera: Camera::new(vectors, scene.origin),
+            camera: Camera::new(vectors, scene),
             scene_min: scene.min.to_array(),
             scene_max: scene.max.to_array(),
             iteration_limit,
@@ -179,7 +191,7 @@ mod tests {
     #[test]
     fn records_are_the_same_in_rust_and_wgsl() {
         let records = [
-            layout!(Camera { origin, right, up, forward }),
+            layout!(Camera { origin, advance, right, up, forward }),
             layout!(Frame {
                 camera,
                 background,
