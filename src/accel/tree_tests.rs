@@ -1,7 +1,5 @@
 //! Damage that `validate` must find, and the WGSL twins: their constants, and that they compose.
 
-use std::path::Path;
-
 use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
 use super::slab::SMALLEST_COMPONENT;
 use super::tree_check::TreeError;
@@ -168,9 +166,19 @@ fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert!((u32::MAX as usize).div_ceil(1 << BINARY_LEVELS) <= 4);
 }
 
-fn wgsl(file: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
-    std::fs::read_to_string(path).unwrap()
+fn wgsl(file: &str) -> &'static str {
+    match file {
+        "ray.wgsl" => include_str!("../../shaders/ray.wgsl"),
+        "sphere.wgsl" => include_str!("../../shaders/sphere.wgsl"),
+        "slab.wgsl" => include_str!("../../shaders/slab.wgsl"),
+        "leaf.wgsl" => include_str!("../../shaders/leaf.wgsl"),
+        "wide_node.wgsl" => include_str!("../../shaders/wide_node.wgsl"),
+        "wide_group.wgsl" => include_str!("../../shaders/wide_group.wgsl"),
+        "wide_tree.wgsl" => include_str!("../../shaders/wide_tree.wgsl"),
+        "binary_node.wgsl" => include_str!("../../shaders/binary_node.wgsl"),
+        "binary_tree.wgsl" => include_str!("../../shaders/binary_tree.wgsl"),
+        other => panic!("{other} is no part of a walk"),
+    }
 }
 
 #[test]
@@ -178,7 +186,7 @@ fn constants_are_those_of_the_kernels() {
     let declares = |file: &str, line: &str| assert!(wgsl(file).contains(line), "{file}: {line}");
     declares("wide_tree.wgsl", &format!("const WIDE_LEVELS: u32 = {WIDE_LEVELS}u;"));
     declares("binary_tree.wgsl", &format!("const BINARY_LEVELS: u32 = {BINARY_LEVELS}u;"));
-    declares("binary_tree.wgsl", &format!("const BINARY_INNER: u32 = {BINARY_INNER:#x}u;"));
+    declares("binary_node.wgsl", &format!("const BINARY_INNER: u32 = {BINARY_INNER:#x}u;"));
     let exponent = SMALLEST_COMPONENT.log2();
     declares("slab.wgsl", &format!("const SMALLEST_COMPONENT: f32 = 0x1p{exponent};"));
 }
@@ -213,9 +221,10 @@ fn both_walks_compose_and_validate() {
         }";
     let shared = ["ray.wgsl", "sphere.wgsl", "slab.wgsl", "leaf.wgsl"];
     let wide = ["wide_node.wgsl", "wide_group.wgsl", "wide_tree.wgsl"];
-    for walk in [&wide[..], &["binary_tree.wgsl"]] {
+    let binary = ["binary_node.wgsl", "binary_tree.wgsl"];
+    for walk in [&wide[..], &binary[..]] {
         let parts = shared.iter().chain(walk).map(|file| wgsl(file));
-        let source: String = parts.chain([others.to_owned()]).collect();
+        let source: String = parts.chain([others]).collect();
         let module = naga::front::wgsl::parse_str(&source)
             .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
         naga::valid::Validator::new(
@@ -226,7 +235,7 @@ fn both_walks_compose_and_validate() {
         .validate(&module)
         .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
     }
-    for file in shared.iter().chain(&wide).chain(&["binary_tree.wgsl"]) {
+    for file in shared.iter().chain(&wide).chain(&binary) {
         assert!(wgsl(file).lines().count() <= 100, "{file}");
     }
 }
