@@ -9,7 +9,7 @@ fn occluded(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     }
     let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
     let index = hit_index(pixel);
-    let is_known = brick.is_first == 0u && load_hit(index).t < NO_HIT;
+    let is_known = hit_before(index).t < NO_HIT;
     var t = select(NO_HIT, 0.0, is_known);
     if (entry.is_inside && !is_known && find_any(entry.ray, NO_HIT)) {
         t = 0.0;

@@ -1,5 +1,5 @@
 // The nearest sphere of every pixel's ray. One dispatch per brick; each keeps what is nearer than what
-// the bricks before it found. Twin: src/accel/mod.rs.
+// the bricks before it found. Twin: src/accel/brick.rs.
 
 @compute @workgroup_size(64)
 fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -10,17 +10,14 @@ fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
     let index = hit_index(pixel);
 
-    var before = Hit(NO_HIT, NO_ID, 0u);
-    if (brick.is_first == 0u) {
-        before = load_hit(index);
-    }
-    var nearest = Nearest(before.t, before.id, 0u);
+    var hit = hit_before(index);
+    var nearest = Nearest(hit.t, hit.id, 0u);
     if (entry.is_inside) {
         find_nearest(entry.ray, &nearest);
     }
-    if (nearest.id != before.id) {
-        before = Hit(nearest.t, nearest.id, brick.first_place + nearest.place);
+    if (nearest.id != hit.id) {
+        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place);
     }
-    store_hit(index, before);
+    store_hit(index, hit);
     report_spent();
 }

@@ -59,9 +59,9 @@ pub enum GpuError {
         /// What is needed.
         expected: String,
     },
-    /// The renderer was built without this camera or structure.
+    /// The renderer was built without this camera or structure, or for one brick only.
     #[error(
-        "this renderer has no pipeline for the {} camera and the structure {}; name both in RendererOptions",
+        "this renderer has no pipeline for the {} camera and the structure {}, perhaps in several bricks; name them in RendererOptions",
         camera.name(), structure.name()
     )]
     NoPipeline {

@@ -39,6 +39,7 @@ pub struct Frame {
     data_layers: bool,
     /// One record per band, each at a multiple of `stride`.
     records: Buffer,
+    hits: Buffer,
     stride: usize,
     rows_per_band: u32,
     /// Group 0 of every kernel, one per band. All bands share one buffer of hits.
@@ -101,7 +102,7 @@ impl Frame {
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
         let bands = size[1].div_ceil(rows_per_band) as usize;
-        let (records, status, band_groups, target_group) = scoped(device, || {
+        let (records, hits, status, band_groups, target_group) = scoped(device, || {
             let status = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole status"),
                 size: size_of::<u32>() as u64,
@@ -117,7 +118,7 @@ impl Frame {
             let hits = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole hits"),
                 size: hit_bytes,
-                usage: wgpu::BufferUsages::STORAGE,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
             let band_group = |band| {
@@ -147,13 +148,14 @@ impl Frame {
                 layout: &renderer.layouts.targets,
                 entries: &entries,
             });
-            (records, status, band_groups, target_group)
+            (records, hits, status, band_groups, target_group)
         })?;
         let Renderer { color, data_layers, .. } = *renderer;
         Ok(Self {
             color,
             data_layers,
             records,
+            hits,
             stride,
             rows_per_band,
             band_groups,
@@ -248,6 +250,11 @@ impl Frame {
             is_last: brick + 1 == brick_count && band + 1 == band_count,
         })
         .collect()
+    }
+
+    /// Records the clearing of the hits.
+    pub(super) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.hits, 0, None);
     }
 
     /// What kernels report: not 0 once one ran into its limit of iterations.

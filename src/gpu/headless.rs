@@ -84,8 +84,8 @@ pub struct Headless {
 /// What has been built so far.
 type Renderers = HashMap<RendererKey, Renderer>;
 
-/// Camera, structure, whether there are data layers, and whether there are kernels for occlusion.
-type RendererKey = (CameraKind, Structure, bool, bool);
+/// Camera, structure, what rays are asked, whether there are data layers, and several bricks.
+type RendererKey = (CameraKind, Structure, Query, bool, bool);
 
 /// What wgpu reported outside any call.
 #[derive(Debug, Default)]
@@ -249,7 +249,8 @@ impl Headless {
         let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
         self.faults.forget();
         let data_layers = layers != LayerSet::COLOR;
-        let key = (camera.kind(), scene.structure(), data_layers, false);
+        let several = scene.bricks().len() > 1;
+        let key = (camera.kind(), scene.structure(), Query::Nearest, data_layers, several);
         self.renderer(&mut renderers, key)
             .and_then(|renderer| {
                 let mut image = Image::new(film.width(), film.height(), layers)?;
@@ -285,7 +286,7 @@ impl Headless {
                     frame.set_first_group(&self.queue, part.band, groups.first);
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
                     let place = (part.band, part.brick, groups);
-                    renderer.record_trace(&mut pass, scene, &frame, Query::Nearest, place)?;
+                    renderer.record_trace(&mut pass, scene, &frame, place)?;
                     drop(pass);
                     if left.is_empty() && part.is_last {
                         // Shaded and copied in the same submission.
@@ -335,9 +336,10 @@ impl Headless {
     ) -> Result<TraceTime, GpuError> {
         let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
         self.faults.forget();
-        let key = (camera.kind(), scene.structure(), false, query == Query::Any);
+        let several = scene.bricks().len() > 1;
+        let key = (camera.kind(), scene.structure(), query, false, several);
         self.renderer(&mut renderers, key)
-            .and_then(|renderer| self.measure_with(renderer, scene, camera, film, query))
+            .and_then(|renderer| self.measure_with(renderer, scene, camera, film))
             .map_err(|error| self.explained(error))
     }
 
@@ -347,13 +349,17 @@ impl Headless {
         scene: &SceneBuffers,
         camera: &dyn Camera,
         film: &Film,
-        query: Query,
     ) -> Result<TraceTime, GpuError> {
         let size = [film.width(), film.height()];
         let textures = scoped(&self.device, || TileTextures::new(&self.device, size, false))?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
         frame.set_view(&self.queue, scene, camera, film, &Settings::default())?;
         let timer = scoped(&self.device, || PassTimer::new(&self.device, &self.queue))?;
+        // wgpu clears a buffer when it is first used, which is none of the tracing.
+        let mut encoder = self.encoder();
+        frame.record_clear(&mut encoder);
+        let submission = self.queue.submit([encoder.finish()]);
+        self.wait(&[], submission)?;
         let mut pace = Pace::new(scene.tests_per_ray());
         let mut time = TraceTime::default();
         for part in frame.parts(scene) {
@@ -366,7 +372,7 @@ impl Headless {
                     timestamp_writes: timer.as_ref().map(PassTimer::writes),
                 });
                 let place = (part.band, part.brick, groups);
-                renderer.record_trace(&mut pass, scene, &frame, query, place)?;
+                renderer.record_trace(&mut pass, scene, &frame, place)?;
                 drop(pass);
                 let started = Instant::now();
                 if let Some(timer) = &timer {
@@ -401,7 +407,7 @@ impl Headless {
         renderers: &'a mut Renderers,
         key: RendererKey,
     ) -> Result<&'a Renderer, GpuError> {
-        let (camera, structure, data_layers, occlusion) = key;
+        let (camera, structure, query, data_layers, several_bricks) = key;
         match renderers.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
             Entry::Vacant(place) => {
@@ -410,7 +416,8 @@ impl Headless {
                     data_layers,
                     cameras: vec![camera],
                     structures: vec![structure],
-                    occlusion,
+                    several_bricks,
+                    query,
                 };
                 Ok(place.insert(Renderer::new(&self.device, &options)?))
             }

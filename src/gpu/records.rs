@@ -235,6 +235,7 @@ mod tests {
         let trace = shaders::trace_kernel(
             crate::camera::CameraKind::Pinhole,
             crate::accel::Structure::List,
+            shaders::Turn::First,
         )
         .source();
         for (name, _) in &records {

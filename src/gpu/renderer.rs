@@ -6,7 +6,7 @@ use super::error::{GpuError, scoped};
 use super::frame::Frame;
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
-use super::shaders::{self, Kernel};
+use super::shaders::{self, Kernel, Turn};
 use super::tiles::Groups;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
@@ -55,8 +55,10 @@ pub struct RendererOptions {
     pub cameras: Vec<CameraKind>,
     /// The structures that scenes will have.
     pub structures: Vec<Structure>,
-    /// Whether kernels are built that ask only whether a ray hits anything, for measurements.
-    pub occlusion: bool,
+    /// Whether scenes may be too large for one binding, and so consist of several bricks.
+    pub several_bricks: bool,
+    /// What rays are asked. With [`Query::Any`] a renderer is good for measurements only.
+    pub query: Query,
 }
 
 impl Default for RendererOptions {
@@ -67,7 +69,8 @@ impl Default for RendererOptions {
             data_layers: false,
             cameras: CameraKind::ALL.to_vec(),
             structures: Structure::AUTOMATIC.to_vec(),
-            occlusion: false,
+            several_bricks: true,
+            query: Query::Nearest,
         }
     }
 }
@@ -82,16 +85,18 @@ pub struct Renderer {
     trace: Vec<(CameraKind, Structure, TracePipelines)>,
 }
 
+/// For the first brick, and for those behind it.
 #[derive(Debug)]
 struct TracePipelines {
-    nearest: ComputePipeline,
-    any: Option<ComputePipeline>,
+    first: ComputePipeline,
+    later: Option<ComputePipeline>,
 }
 
 /// What a ray is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Query {
     /// Which sphere is the nearest.
+    #[default]
     Nearest,
     /// Whether there is any.
     Any,
@@ -114,15 +119,13 @@ impl Renderer {
             renderer.shade.push((camera, shade));
             for (structure, brick) in &renderer.layouts.brick {
                 let groups = [frame, brick];
-                let nearest = shaders::trace_kernel(camera, *structure);
-                let any = options
-                    .occlusion
-                    .then(|| shaders::occluded_kernel(camera, *structure))
-                    .map(|kernel| pipeline(device, &kernel, &groups));
-                let pipelines = TracePipelines {
-                    nearest: pipeline(device, &nearest, &groups)?,
-                    any: any.transpose()?,
+                let kernel = match options.query {
+                    Query::Nearest => shaders::trace_kernel,
+                    Query::Any => shaders::occluded_kernel,
                 };
+                let build = |turn| pipeline(device, &kernel(camera, *structure, turn), &groups);
+                let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
+                let pipelines = TracePipelines { first: build(Turn::First)?, later };
                 renderer.trace.push((camera, *structure, pipelines));
             }
         }
@@ -151,7 +154,7 @@ impl Renderer {
         for (band, size) in view.bands.iter().enumerate() {
             let all = Groups::of_size(*size);
             for brick in 0..scene.bricks().len() {
-                self.record_trace(&mut pass, scene, frame, Query::Nearest, (band, brick, all))?;
+                self.record_trace(&mut pass, scene, frame, (band, brick, all))?;
             }
             self.record_shade(&mut pass, scene, frame, band)?;
         }
@@ -164,23 +167,19 @@ impl Renderer {
         pass: &mut ComputePass<'_>,
         scene: &SceneBuffers,
         frame: &Frame,
-        query: Query,
         (band, brick, groups): (usize, usize, Groups),
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
         let structure = scene.structure();
-        let pipelines = self
+        let pipeline = self
             .trace
             .iter()
             .find(|(kind, of, _)| *kind == camera && *of == structure)
-            .map(|(_, _, pipelines)| pipelines)
+            .and_then(|(_, _, pipelines)| match brick {
+                0 => Some(&pipelines.first),
+                _ => pipelines.later.as_ref(),
+            })
             .ok_or(GpuError::NoPipeline { camera, structure })?;
-        let pipeline = match query {
-            Query::Nearest => &pipelines.nearest,
-            Query::Any => {
-                pipelines.any.as_ref().ok_or(GpuError::NoPipeline { camera, structure })?
-            }
-        };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &frame.band_groups()[band], &[]);
         pass.set_bind_group(1, &scene.bricks()[brick].trace_group, &[]);
@@ -279,12 +278,12 @@ mod tests {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         assert_eq!(device.limits().max_storage_buffer_binding_size, 128 << 20);
         for &color in ColorTarget::ALL {
-            for data_layers in [false, true] {
+            for (data_layers, query) in [(false, Query::Nearest), (true, Query::Any)] {
                 let options = RendererOptions {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
-                    occlusion: true,
+                    query,
                     ..RendererOptions::default()
                 };
                 let renderer = Renderer::new(&device, &options).unwrap();

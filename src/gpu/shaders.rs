@@ -30,23 +30,34 @@ pub(super) struct Kernel {
     parts: Vec<Part>,
 }
 
+/// Whether a brick is the first that a picture's rays meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Turn {
+    First,
+    Later,
+}
+
 /// Finds the nearest sphere of every ray.
-pub(super) fn trace_kernel(camera: CameraKind, structure: Structure) -> Kernel {
-    let mut parts = walk_parts(camera, structure);
+pub(super) fn trace_kernel(camera: CameraKind, structure: Structure, turn: Turn) -> Kernel {
+    let mut parts = walk_parts(camera, structure, turn);
     parts.push(part!("trace.wgsl"));
     Kernel { entry_point: "trace", parts }
 }
 
 /// Finds whether every ray hits anything.
-pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure) -> Kernel {
-    let mut parts = walk_parts(camera, structure);
+pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Turn) -> Kernel {
+    let mut parts = walk_parts(camera, structure, turn);
     parts.push(part!("occluded.wgsl"));
     Kernel { entry_point: "occluded", parts }
 }
 
-fn walk_parts(camera: CameraKind, structure: Structure) -> Vec<Part> {
+fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part> {
     let mut parts = common_parts(camera).to_vec();
     parts.extend([part!("schedule.wgsl"), part!("brick.wgsl")]);
+    parts.push(match turn {
+        Turn::First => part!("first_brick.wgsl"),
+        Turn::Later => part!("later_brick.wgsl"),
+    });
     match structure {
         Structure::List => parts.push(part!("list.wgsl")),
         Structure::WideTree => parts.extend([
@@ -190,8 +201,10 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for &camera in CameraKind::ALL {
         for &structure in Structure::ALL {
-            kernels.push(trace_kernel(camera, structure));
-            kernels.push(occluded_kernel(camera, structure));
+            for turn in [Turn::First, Turn::Later] {
+                kernels.push(trace_kernel(camera, structure, turn));
+                kernels.push(occluded_kernel(camera, structure, turn));
+            }
         }
         for &color in ColorTarget::ALL {
             for data_layers in [false, true] {
@@ -229,7 +242,7 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (2 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+            CameraKind::ALL.len() * (4 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
         );
         for kernel in kernels {
             let module =
@@ -272,12 +285,24 @@ mod tests {
         }
     }
 
+    /// A part with a twin says where it is.
     #[test]
-    fn every_entry_point_has_a_twin_on_the_cpu() {
-        let twins = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cpu");
+    fn twins_exist() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut twins = 0;
         for kernel in all_kernels() {
-            let twin = twins.join(kernel.entry_point).with_extension("rs");
-            assert!(twin.exists(), "{} is missing", twin.display());
+            for part in &kernel.parts {
+                for (_, after) in part
+                    .source
+                    .match_indices("win: ")
+                    .map(|(at, m)| (at, &part.source[at + m.len()..]))
+                {
+                    let path = after.split([',', ' ', '\n']).next().unwrap().trim_end_matches('.');
+                    assert!(root.join(path).exists(), "{}: {path} is missing", part.file);
+                    twins += 1;
+                }
+            }
         }
+        assert!(twins > 10, "{twins}");
     }
 }
