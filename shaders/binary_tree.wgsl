@@ -14,10 +14,10 @@ fn offer_child(ray: Ray, child: BinaryChild, nearest: ptr<function, Nearest>) {
     }
 }
 
-fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
     var stack: array<vec2u, BINARY_LEVELS>;
     var top = 0u;
-    let slab = slab_ray(ray);
+    let slab = SlabRay(ray.origin, inverse);
     var next = vec2u(0u, 0u);
     var near = BinaryChild();
     var far = BinaryChild();
@@ -51,11 +51,11 @@ fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
     }
 }
 
-fn find_any(ray: Ray, t_max: f32) -> bool {
+fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     var stack: array<u32, BINARY_LEVELS>;
     // The root, which is node 0.
     var top = 1u;
-    let slab = slab_ray(ray);
+    let slab = SlabRay(ray.origin, inverse);
     while (top > 0u && spend(11u)) {
         top--;
         let node = stack[top];

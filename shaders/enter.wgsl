@@ -4,17 +4,19 @@
 struct Entry {
     // Starts in the box or on its wall.
     ray: Ray,
+    // One over its direction, from `inverse_direction`.
+    inverse: vec3f,
     // From the camera to the ray's origin.
     distance: f32,
     // Whether the ray meets the box at all.
     is_inside: bool,
 }
 
-// The smallest size of a direction's component in a division: a quotient of lengths stays finite.
-const SMALLEST: f32 = 0x1p-60;
+// Smaller components of a direction are replaced by this, 2^-40, with their sign: there are no infinities.
+const SMALLEST_COMPONENT: f32 = 0x1p-40;
 
 fn inverse_direction(direction: vec3f) -> vec3f {
-    let size = max(abs(direction), vec3f(SMALLEST));
+    let size = max(abs(direction), vec3f(SMALLEST_COMPONENT));
     return 1.0 / select(-size, size, direction >= vec3f(0.0));
 }
 
@@ -28,5 +30,5 @@ fn enter_scene(camera_ray: CameraRay) -> Entry {
     let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
     let t_far = min(far.x, min(far.y, far.z));
     let entered = Ray(ray.origin + t_near * ray.direction, ray.direction);
-    return Entry(entered, camera_ray.distance + t_near, t_near <= t_far);
+    return Entry(entered, inverse, camera_ray.distance + t_near, t_near <= t_far);
 }

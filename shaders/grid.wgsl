@@ -3,8 +3,8 @@
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
 // planes are computed from the plane's number and never added up, so that their error does not grow.
 
-fn walk(ray: Ray, found: ptr<function, Found>, stop_at_first: bool) {
-    let along = grid_ray(ray);
+fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bool) {
+    let along = grid_ray(ray, inverse);
     if (along.t_enter > along.t_leave || along.t_enter > (*found).t) {
         return;
     }

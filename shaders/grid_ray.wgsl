@@ -36,11 +36,10 @@ fn least(v: vec3f) -> f32 {
     return min(v.x, min(v.y, v.z));
 }
 
-fn grid_ray(ray: Ray) -> GridRay {
+fn grid_ray(ray: Ray, inverse: vec3f) -> GridRay {
     let forward = ray.direction >= vec3f(0.0);
     let ahead = select(vec3f(0.0), vec3f(1.0), forward);
     let step = select(vec3f(-1.0), vec3f(1.0), forward);
-    let inverse = inverse_direction(ray.direction);
     let base = (brick.min - ray.origin) * inverse;
     let delta = brick.cell_size * inverse;
     let counts = vec3f(brick.cell_counts);
@@ -58,16 +57,16 @@ fn first_cell(along: GridRay) -> vec3f {
     return clamp(cell, vec3f(0.0), vec3f(brick.cell_counts) - 1.0);
 }
 
-fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
     var found = Found((*nearest).t, NO_PLACE);
-    walk(ray, &found, false);
+    walk(ray, inverse, &found, false);
     if (found.place != NO_PLACE) {
         offer(nearest, found.t, found.place);
     }
 }
 
-fn find_any(ray: Ray, t_max: f32) -> bool {
+fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     var found = Found(t_max, NO_PLACE);
-    walk(ray, &found, true);
+    walk(ray, inverse, &found, true);
     return found.place != NO_PLACE;
 }

@@ -1,6 +1,6 @@
 // No structure: every sphere of the brick. Twin: src/accel/list.rs.
 
-fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
     // Ids ascend, so that `<` leaves a tie to the smaller id.
     var t = NO_HIT;
     var place = 0u;
@@ -14,7 +14,7 @@ fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
     offer(nearest, t, place);
 }
 
-fn find_any(ray: Ray, t_max: f32) -> bool {
+fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     for (var i = 0u; i < brick.place_count; i++) {
         if (intersect_sphere(ray, spheres[i]).t < t_max) {
             return true;

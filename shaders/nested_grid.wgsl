@@ -4,8 +4,8 @@
 // planes are computed from the plane's number and never added up, so that their error does not grow.
 // An empty cell knows how many around it are empty, and all of them are crossed in one step.
 
-fn walk(ray: Ray, found: ptr<function, Found>, stop_at_first: bool) {
-    let along = grid_ray(ray);
+fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bool) {
+    let along = grid_ray(ray, inverse);
     var t = along.t_enter;
     if (t > along.t_leave || t > (*found).t) {
         return;

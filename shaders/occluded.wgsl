@@ -11,7 +11,7 @@ fn occluded(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     let index = hit_index(pixel);
     let is_known = hit_before(index).t < NO_HIT;
     var t = select(NO_HIT, 0.0, is_known);
-    if (entry.is_inside && !is_known && find_any(entry.ray, NO_HIT)) {
+    if (entry.is_inside && !is_known && find_any(entry.ray, entry.inverse, NO_HIT)) {
         t = 0.0;
     }
     store_hit(index, Hit(t, NO_ID, 0u));

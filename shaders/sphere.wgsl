@@ -14,32 +14,23 @@ struct SphereHit {
     foot_to_center: vec3f,
 }
 
+// Without branches: software devices run both sides of one and pay for the masks.
 fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     let radius = sphere.w;
     let to_center = sphere.xyz - ray.origin;
     let b = dot(to_center, ray.direction);
     let foot_to_center = to_center - b * ray.direction;
     let discriminant = radius * radius - dot(foot_to_center, foot_to_center);
-    var hit = SphereHit(NO_HIT, 0.0, foot_to_center);
-    if (discriminant < 0.0) {
-        return hit;
-    }
     // The product of the distances to both walls: positive outside, zero on the wall.
     let c = dot(to_center, to_center) - radius * radius;
-    let half_chord = sqrt(discriminant);
-    hit.from_foot = select(half_chord, -half_chord, c > 0.0);
+    let half_chord = sqrt(max(discriminant, 0.0));
+    let from_foot = select(half_chord, -half_chord, c > 0.0);
     // b + from_foot; where the two would cancel, from (b + from_foot)(b - from_foot) = c.
-    var t: f32;
-    if (b * hit.from_foot >= 0.0) {
-        t = b + hit.from_foot;
-    } else {
-        t = c / (b - hit.from_foot);
-    }
+    let is_sum = b * from_foot >= 0.0;
+    let t = select(c / select(b - from_foot, 1.0, is_sum), b + from_foot, is_sum);
     // Behind the origin t is negative; on the wall and leaving it is zero.
-    if (t > 0.0) {
-        hit.t = t;
-    }
-    return hit;
+    let is_hit = discriminant >= 0.0 && t > 0.0;
+    return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
 }
 
 // Unit normal, pointing away from the centre. From the right triangle of the intersection, not from

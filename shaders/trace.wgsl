@@ -13,7 +13,7 @@ fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     var hit = hit_before(index);
     var nearest = Nearest(hit.t, hit.id, 0u);
     if (entry.is_inside) {
-        find_nearest(entry.ray, &nearest);
+        find_nearest(entry.ray, entry.inverse, &nearest);
     }
     if (nearest.id != hit.id) {
         hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place);

@@ -14,10 +14,10 @@ fn leaf_byte(node: WideNode, slot: u32) -> u32 {
     return (select(node.leaves.x, node.leaves.y, slot >= 4u) >> (8u * (slot & 3u))) & 0xffu;
 }
 
-fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
+fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
     var stack: array<vec2u, WIDE_LEVELS>;
     var top = 0u;
-    let slab = slab_ray(ray);
+    let slab = SlabRay(ray.origin, inverse);
     let octant = octant_of(slab);
     var group = WIDE_ROOT;
     var leaves = 0u;
@@ -50,10 +50,10 @@ fn find_nearest(ray: Ray, nearest: ptr<function, Nearest>) {
     }
 }
 
-fn find_any(ray: Ray, t_max: f32) -> bool {
+fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     var stack: array<vec2u, WIDE_LEVELS>;
     var top = 0u;
-    let slab = slab_ray(ray);
+    let slab = SlabRay(ray.origin, inverse);
     var group = WIDE_ROOT;
     var leaves = 0u;
     loop {

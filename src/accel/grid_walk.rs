@@ -3,7 +3,8 @@
 use glam::{BVec3, Vec3};
 
 use super::grid::{Grid, word};
-use super::query::{NO_HIT, Nearest, RayF32, inverse_direction};
+use super::query::{NO_HIT, Nearest, RayF32};
+use super::slab::inverse_direction;
 use super::sphere::intersect_sphere;
 
 /// The nearest sphere of this brick.

@@ -39,12 +39,3 @@ impl Nearest {
         }
     }
 }
-
-/// One over each component; a component too small for that is taken to be 2⁻⁶⁰, so that a quotient of
-/// lengths stays finite. Twin of `inverse_direction` in `shaders/enter.wgsl`.
-#[must_use]
-pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
-    const SMALLEST: f32 = 1.0 / (1_u64 << 60) as f32;
-    let size = direction.abs().max(Vec3::splat(SMALLEST));
-    1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size)
-}

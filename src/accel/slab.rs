@@ -42,14 +42,15 @@ pub(super) struct SlabRay {
     pub(super) inverse: Vec3,
 }
 
+/// One over each component of a direction. Twin of the function in `shaders/enter.wgsl`.
+pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
+    let size = direction.abs().max(Vec3::splat(SMALLEST_COMPONENT));
+    1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size)
+}
+
 impl SlabRay {
     pub(super) fn new(ray: &RayF32) -> Self {
-        let clamped = |d: f32| {
-            let size = d.abs().max(SMALLEST_COMPONENT);
-            if d < 0.0 { -size } else { size }
-        };
-        let direction = Vec3::from_array(ray.direction.to_array().map(clamped));
-        Self { origin: ray.origin, inverse: 1.0 / direction }
+        Self { origin: ray.origin, inverse: inverse_direction(ray.direction) }
     }
 
     /// Bit i says whether the direction is negative along axis i.

@@ -13,12 +13,10 @@ pub fn intersect_sphere(ray: &RayF32, [x, y, z, radius]: [f32; 4]) -> f32 {
     let b = to_center.dot(ray.direction);
     let foot_to_center = to_center - b * ray.direction;
     let discriminant = radius * radius - foot_to_center.dot(foot_to_center);
-    if discriminant < 0.0 {
-        return NO_HIT;
-    }
     let c = to_center.dot(to_center) - radius * radius;
-    let half_chord = discriminant.sqrt();
+    let half_chord = discriminant.max(0.0).sqrt();
     let from_foot = if c > 0.0 { -half_chord } else { half_chord };
-    let t = if b * from_foot >= 0.0 { b + from_foot } else { c / (b - from_foot) };
-    if t > 0.0 { t } else { NO_HIT }
+    let is_sum = b * from_foot >= 0.0;
+    let t = if is_sum { b + from_foot } else { c / (b - from_foot) };
+    if discriminant >= 0.0 && t > 0.0 { t } else { NO_HIT }
 }

