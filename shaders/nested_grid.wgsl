@@ -13,14 +13,23 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
     let counts = vec3f(brick.cell_counts);
     let strides = vec3f(1.0, counts.x, counts.x * counts.y);
     var cell = first_cell(along);
+    var word = EMPTY;
+    var t_leave = 0.0;
     loop {
-        let word = cells[u32(dot(cell, strides))];
-        let kind = word & KIND;
-        // An empty cell's word is the number of empty cells around it.
-        let reach = select(0.0, f32(word), kind == EMPTY);
-        let planes = along.base + (cell + along.step * reach + along.ahead) * along.delta;
-        let t_leave = least(planes);
-        if (kind != EMPTY) {
+        // Up to the next cell with spheres, in a loop of its own: rays that run together on a software
+        // device then walk their cells together, and not each while others cross empty space.
+        loop {
+            word = cells[u32(dot(cell, strides))];
+            // An empty cell's word is the number of empty cells around it.
+            let reach = select(0.0, f32(word), (word & KIND) == EMPTY);
+            t_leave = least(leaving(along, cell, reach));
+            if ((word & KIND) != EMPTY || t_leave >= along.t_leave || !spend(1u)) {
+                break;
+            }
+            t = t_leave;
+            cell = next_cell(along, cell, reach, t);
+        }
+        if ((word & KIND) != EMPTY) {
             walk_cell(ray, along, word, cell, t, t_leave, found, stop_at_first);
         }
         let is_done = (*found).t <= t_leave || (stop_at_first && (*found).place != NO_PLACE);
@@ -28,10 +37,22 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
             break;
         }
         t = t_leave;
-        let there = floor(along.start + t * along.speed);
-        let kept = clamp(clamp(there, cell - reach, cell + reach), vec3f(0.0), counts - 1.0);
-        cell = select(kept, cell + along.step * (reach + 1.0), planes <= vec3f(t_leave));
+        cell = next_cell(along, cell, 0.0, t);
     }
+}
+
+// The distances at which the ray leaves the cells around `cell`, up to `reach` cells away.
+fn leaving(along: GridRay, cell: vec3f, reach: f32) -> vec3f {
+    return along.base + (cell + along.step * reach + along.ahead) * along.delta;
+}
+
+// The cell that the ray enters when it leaves them at the distance `t`.
+fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
+    let there = floor(along.start + t * along.speed);
+    let last = vec3f(brick.cell_counts) - 1.0;
+    let kept = clamp(clamp(there, cell - reach, cell + reach), vec3f(0.0), last);
+    let is_left = leaving(along, cell, reach) <= vec3f(t);
+    return select(kept, cell + along.step * (reach + 1.0), is_left);
 }
 
 // A cell with a list counts as a grid of one cell.

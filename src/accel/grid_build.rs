@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
 use super::grid::{Grid, LAST, ListLayout, MAX_CELLS, word};
-use super::grid_crowd::{Crowd, finer_grid};
+use super::grid_crowd::{Crowd, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
 use super::parallel::{chunks, for_each, map, split_mut};
 
@@ -209,25 +209,24 @@ fn assemble(
     lists: &Lists,
 ) -> BuiltGrid {
     let first_level_len = cells.len().next_multiple_of(8);
-    let crowd = Crowd::of(&lists.starts, budget, first_level_len);
+    let crowd = Crowd::of(cells, &sorted, margin, (&lists.places, &lists.starts), budget);
     let parts = map_chunks(cells.len(), |range| {
         let mut part = Part::default();
         for cell in range {
             let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
             let mut list = lists.places[start..end].to_vec();
             prepare(&mut list, &sorted, &sorted_ids);
-            let finer = crowd
-                .allows(cell)
-                .then(|| finer_grid(cells, cell, &list, &sorted, margin, crowd.share(list.len())))
-                .flatten();
-            let word = match finer {
-                Some(finer) => {
+            let inner = crowd.level(cell).and_then(|level| {
+                Some((level, inner_lists(cells, cell, &list, &sorted, margin, level)?))
+            });
+            let word = match inner {
+                Some((level, inner)) => {
                     let start = (part.inner.len() / 8) as u32;
-                    for list in finer.lists {
+                    for list in inner {
                         let word = append(&mut part.lists, &list);
                         part.inner.push(word);
                     }
-                    word::GRID | finer.level << word::LEVEL_SHIFT | start
+                    word::GRID | u32::from(level) << word::LEVEL_SHIFT | start
                 }
                 None => append(&mut part.lists, &list),
             };

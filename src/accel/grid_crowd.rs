@@ -4,81 +4,104 @@ use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
 use super::grid_build::{GridBudget, STEP_COST};
+use super::parallel::{chunks, map};
 
 /// A list this long or longer may be worth a grid.
-const CROWDED: u32 = 24;
+const CROWDED: u32 = 8;
 
 /// The finest grid inside a cell: 2⁵ cells along an axis.
-const MAX_LEVEL: u32 = 5;
+const MAX_LEVEL: u8 = 5;
 
-/// What a cell may become, for what it is crowded: this many times as many inner cells and list
-/// elements, together, as its list has elements.
-const GROWTH: usize = 12;
+/// The most inner cells, and inner list elements, for each element of the list that they replace.
+const MOST_GROWTH: usize = 64;
+
+/// A grid is worth its memory if it costs a ray less than this part of what the list costs.
+const GAIN: f32 = 0.9;
+
+/// A grid that a cell would be better with.
+#[derive(Clone, Copy)]
+struct Wish {
+    cell: u32,
+    /// Elements of the list that it replaces.
+    len: u32,
+    level: u8,
+    /// Expected elements of the lists inside.
+    met: f32,
+}
 
 /// The crowded cells that the budget is enough for.
-pub(super) struct Crowd<'a> {
-    starts: &'a [u32],
-    /// Lists shorter than this stay as they are.
-    shortest: u32,
+pub(super) struct Crowd {
+    /// Of every cell, the level of the grid inside; 0 for none.
+    levels: Vec<u8>,
 }
 
-impl<'a> Crowd<'a> {
-    /// The longest lists come first.
-    pub(super) fn of(starts: &'a [u32], budget: GridBudget, first_level_len: usize) -> Self {
-        let listed = starts.last().map_or(0, |end| *end as usize);
-        let left = budget.listed.saturating_sub(listed);
-        let left = left.min(budget.cells.saturating_sub(first_level_len));
-        let mut crowded: Vec<u32> =
-            starts.windows(2).map(|pair| pair[1] - pair[0]).filter(|len| *len >= CROWDED).collect();
+impl Crowd {
+    /// Of the lists, by the spheres' places; the longest come first.
+    pub(super) fn of(
+        cells: &Cells,
+        spheres: &[[f32; 4]],
+        margin: f32,
+        (places, starts): (&[u32], &[u32]),
+        budget: GridBudget,
+    ) -> Self {
+        let ranges = chunks(cells.len(), 1 << 12);
+        let wishes = map(ranges.len(), |i| {
+            let lists = ranges[i].clone().map(|cell| (cell, starts[cell], starts[cell + 1]));
+            lists
+                .filter(|(_, start, end)| end - start >= CROWDED)
+                .filter_map(|(cell, start, end)| {
+                    let list = &places[start as usize..end as usize];
+                    let (level, met) = best_level(cells.size, list, spheres, margin)?;
+                    Some(Wish { cell: cell as u32, len: end - start, level, met })
+                })
+                .collect::<Vec<_>>()
+        });
+        let mut wishes: Vec<Wish> = wishes.into_iter().flatten().collect();
+        let mut levels = vec![0; cells.len()];
         // A kernel that knows of two levels is slower in all cells, by a tenth.
-        if (crowded.iter().sum::<u32>() as usize) < listed / 20 {
-            return Self { starts, shortest: u32::MAX };
+        let crowded: usize = wishes.iter().map(|wish| wish.len as usize).sum();
+        if crowded < places.len() / 20 {
+            return Self { levels };
         }
-        crowded.sort_unstable_by(|a, b| b.cmp(a));
-        let mut needed = 0;
-        let mut shortest = u32::MAX;
-        for len in crowded {
-            needed += len as usize * GROWTH;
-            if needed > left {
-                // Of equals, all or none.
-                return Self { starts, shortest: shortest.max(len + 1) };
+        wishes.sort_unstable_by_key(|wish| (std::cmp::Reverse(wish.len), wish.cell));
+        let mut cells_left = budget.cells.saturating_sub(cells.len().next_multiple_of(8));
+        let mut listed_left = budget.listed.saturating_sub(places.len());
+        for Wish { cell, len, level, met } in wishes {
+            let needed = (1_usize << (3 * level), most_listed(met).saturating_sub(len as usize));
+            if needed.0 <= cells_left && needed.1 <= listed_left {
+                cells_left -= needed.0;
+                listed_left -= needed.1;
+                levels[cell as usize] = level;
             }
-            shortest = len;
         }
-        Self { starts, shortest }
+        Self { levels }
     }
 
-    pub(super) fn allows(&self, cell: usize) -> bool {
-        self.starts[cell + 1] - self.starts[cell] >= self.shortest
-    }
-
-    /// The most inner cells, and the most inner list elements, of a cell whose list is so long.
-    pub(super) fn share(&self, len: usize) -> usize {
-        len * GROWTH
+    /// The level of the grid inside a cell, if it has one.
+    pub(super) fn level(&self, cell: usize) -> Option<u8> {
+        Some(self.levels[cell]).filter(|level| *level > 0)
     }
 }
 
-/// A grid inside a cell.
-pub(super) struct Finer {
-    /// It has 2 to this power cells along an axis.
-    pub(super) level: u32,
-    /// Its cells' lists: places, by ascending id as in the list that they are made from.
-    pub(super) lists: Vec<Vec<u32>>,
+/// What lists inside may have, where so many elements are expected if spheres lie evenly in the cell.
+fn most_listed(met: f32) -> usize {
+    (met * 2.0) as usize + 64
 }
 
-/// The grid inside a cell that makes rays cheapest, if there is one that is cheaper than the list.
-pub(super) fn finer_grid(
+/// The lists of the grid inside a cell: places, by ascending id as in the list that they are made from.
+/// `None` if they are longer than they were expected to be.
+pub(super) fn inner_lists(
     cells: &Cells,
     cell: usize,
     list: &[u32],
     spheres: &[[f32; 4]],
     margin: f32,
-    share: usize,
-) -> Option<Finer> {
-    let level = best_level(cells.size, list, spheres, margin, share)?;
+    level: u8,
+) -> Option<Vec<Vec<u32>>> {
     let side = 1_u32 << level;
     let inner =
         Cells { min: corner(cells, cell), size: cells.size / side as f32, counts: [side; 3] };
+    let most = most_listed(met(cells.size, inner.size, list, spheres));
     let mut lists = vec![Vec::new(); inner.len()];
     let mut listed = 0;
     for &place in list {
@@ -87,44 +110,41 @@ pub(super) fn finer_grid(
             listed += 1;
         });
     }
-    (listed <= share).then_some(Finer { level, lists })
+    (listed <= most).then_some(lists)
 }
 
-fn best_level(
-    size: f32,
-    list: &[u32],
-    spheres: &[[f32; 4]],
-    margin: f32,
-    share: usize,
-) -> Option<u32> {
-    let radius = |place: &u32| spheres[*place as usize][3];
-    let all = list.len() as f32;
-    let mut best = (STEP_COST + all, None);
+/// The level at which a ray costs least, and the expected elements of its lists; `None` if that is no level.
+fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<(u8, f32)> {
+    let mut least = GAIN * (STEP_COST + list.len() as f32);
+    let mut best = None;
     for level in 1..=MAX_LEVEL {
         let side = (1_u32 << level) as f32;
         let inner = size / side;
-        if inner < 16.0 * margin || side * side * side > share as f32 {
+        let most = (MOST_GROWTH * list.len()) as f32;
+        if inner < 16.0 * margin || side * side * side > most {
             break;
         }
-        // Of the cells that a sphere meets, the part that lies in this one.
-        let met: f32 = list
-            .iter()
-            .map(|place| {
-                let r = radius(place);
-                let in_all = mean_cells_met(inner, r);
-                in_all / mean_cells_met(size, r)
-            })
-            .sum();
-        if met > share as f32 {
+        let met = met(size, inner, list, spheres);
+        if met > most {
             break;
         }
         let cost = side * (STEP_COST + met / (side * side * side));
-        // A level for a small gain is not worth its memory.
-        if cost < 0.9 * best.0 {
-            best = (cost, Some(level));
+        if cost < least {
+            least = cost;
+            best = Some((level, met));
         }
     }
-    best.1
+    best
+}
+
+/// Expected elements of the lists inside a cell of edge `size`: of the inner cells that a sphere meets, the
+/// part that lies in this cell.
+fn met(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) -> f32 {
+    let of = |place: &u32| {
+        let radius = spheres[*place as usize][3];
+        mean_cells_met(inner, radius) / mean_cells_met(size, radius)
+    };
+    list.iter().map(of).sum()
 }
 
 fn corner(cells: &Cells, cell: usize) -> Vec3 {

@@ -236,7 +236,7 @@ fn grid_budget(structure: Structure, count: usize) -> GridBudget {
     // A small scene may have more a sphere: it is little in all.
     match structure {
         Structure::Grid(ListLayout::Copied) => {
-            GridBudget { listed: count * 17 / 4 + (1 << 16), cells: count + (1 << 18) }
+            GridBudget { listed: count * 17 / 4 + (1 << 20), cells: count + (1 << 21) }
         }
         Structure::Grid(ListLayout::Referenced) => {
             GridBudget { listed: count * 3 + (1 << 16), cells: count * 2 / 5 + (1 << 16) }
