@@ -26,12 +26,25 @@ pub enum Structure {
 
 impl Structure {
     /// All of them.
-    pub const ALL: &'static [Self] =
-        &[Self::List, Self::Grid(ListLayout::Copied), Self::Grid(ListLayout::Referenced)];
+    pub const ALL: &'static [Self] = &[
+        Self::List,
+        Self::Grid(ListLayout::Copied),
+        Self::Grid(ListLayout::Referenced),
+        Self::NestedGrid(ListLayout::Copied),
+        Self::NestedGrid(ListLayout::Referenced),
+        Self::WideTree,
+        Self::BinaryTree,
+    ];
 
     /// Those that are chosen where the user leaves it open.
-    pub const AUTOMATIC: &'static [Self] =
-        &[Self::List, Self::Grid(ListLayout::Copied), Self::Grid(ListLayout::Referenced)];
+    pub const AUTOMATIC: &'static [Self] = &[
+        Self::List,
+        Self::Grid(ListLayout::Copied),
+        Self::Grid(ListLayout::Referenced),
+        Self::NestedGrid(ListLayout::Copied),
+        Self::NestedGrid(ListLayout::Referenced),
+        Self::WideTree,
+    ];
 
     /// What it is called in reports.
     #[must_use]

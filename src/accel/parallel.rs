@@ -4,7 +4,7 @@
 #[cfg(feature = "parallel")]
 pub(super) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R> {
     use rayon::prelude::*;
-    (0..count).into_par_iter().map(|i| f(i)).collect()
+    (0..count).into_par_iter().map(&f).collect()
 }
 
 /// The results of `f` for `0..count`, in order.
@@ -17,7 +17,7 @@ pub(super) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync) -> Vec<R
 #[cfg(feature = "parallel")]
 pub(super) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync) {
     use rayon::prelude::*;
-    parts.into_par_iter().for_each(|part| f(part));
+    parts.into_par_iter().for_each(&f);
 }
 
 /// Calls `f` with every element of `parts`.
@@ -32,10 +32,10 @@ pub(super) fn chunks(count: usize, size: usize) -> Vec<std::ops::Range<usize>> {
 }
 
 /// Cuts a slice at ascending `ends`, of which the last is its length.
-pub(super) fn split_mut<'a, T>(
-    mut slice: &'a mut [T],
+pub(super) fn split_mut<T>(
+    mut slice: &mut [T],
     ends: impl IntoIterator<Item = usize>,
-) -> Vec<&'a mut [T]> {
+) -> Vec<&mut [T]> {
     let mut start = 0;
     ends.into_iter()
         .map(|end| {

@@ -30,6 +30,9 @@ pub enum AccelChoice {
 /// Up to so many spheres no structure pays.
 const FEW: usize = 32;
 
+/// With more spheres in about the smallest cell that a nested grid may have, a tree is better.
+const MOST_IN_A_CUBE: f32 = 256.0;
+
 /// How many spheres one dispatch tries without a structure: below the 65,535 iterations after which Mesa
 /// 22.3's lavapipe leaves a loop silently.
 const LIST_LEN: usize = 3 << 14;
@@ -227,6 +230,13 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice) -> (Structure, Stri
         AccelChoice::Auto if count <= FEW => {
             (Structure::List, format!("up to {FEW} spheres, no structure pays"))
         }
+        AccelChoice::Auto if statistics.densest > MOST_IN_A_CUBE => (
+            Structure::WideTree,
+            format!(
+                "about {:.0} spheres lie in 1/4096 of the scene's side, which two levels of cells cannot tell apart",
+                statistics.densest
+            ),
+        ),
         AccelChoice::Auto => (Structure::Grid(layout), format!("{count} spheres, {why}")),
         AccelChoice::Grid => (Structure::Grid(layout), format!("asked for; {why}")),
     }

@@ -19,13 +19,11 @@ pub struct SceneStatistics {
     pub radius_max: f32,
     /// The mean radius.
     pub radius_mean: f32,
-    /// The share of the spheres that lie in the densest of the equal cubes that the box is divided into,
-    /// 16 along the longest side; evenly spread spheres have one over the number of cubes.
-    pub crowding: f32,
+    /// How many different spheres are expected to have their centres in the densest of the equal cubes that
+    /// the box is divided into, 4096 along the longest side; from a sample, and 0 where that is too coarse to
+    /// tell.
+    pub densest: f32,
 }
-
-/// Cubes along the longest side.
-const CUBES: usize = 16;
 
 impl SceneStatistics {
     /// Of spheres in the scene's frame: centre and radius.
@@ -51,7 +49,7 @@ impl SceneStatistics {
         if parts.is_empty() {
             let (min, max) = (Vec3::ZERO, Vec3::ZERO);
             let (radius_min, radius_max, radius_mean) = (0.0, 0.0, 0.0);
-            return Self { count: 0, min, max, radius_min, radius_max, radius_mean, crowding: 0.0 };
+            return Self { count: 0, min, max, radius_min, radius_max, radius_mean, densest: 0.0 };
         }
         let mut all = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
         for part in parts {
@@ -63,8 +61,8 @@ impl SceneStatistics {
         }
         let (min, max, radius_min, radius_max, sum) = all;
         let radius_mean = (sum / spheres.len() as f64) as f32;
-        let crowding = crowding(spheres, min, max);
-        Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, crowding }
+        let densest = densest(spheres, min, max);
+        Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, densest }
     }
 
     /// How far from a sphere's surface the f32 arithmetic of a ray that starts in the box can stray: 2⁻¹⁸
@@ -90,17 +88,25 @@ impl SceneStatistics {
     }
 }
 
-/// From a sample.
-fn crowding(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
+/// From a sample, in which the densest cube must have several.
+fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
     const SAMPLES: usize = 1 << 16;
-    let cube = (max - min).max_element() / CUBES as f32;
-    let mut counts = vec![0_u32; CUBES * CUBES * CUBES];
-    let mut sampled = 0;
-    for [x, y, z, _] in spheres.iter().step_by(spheres.len().div_ceil(SAMPLES).max(1)) {
-        let place = ((Vec3::new(*x, *y, *z) - min) / cube).to_array();
-        let [i, j, k] = place.map(|p| (p as usize).min(CUBES - 1));
-        counts[(k * CUBES + j) * CUBES + i] += 1;
-        sampled += 1;
-    }
-    counts.iter().max().map_or(0.0, |most| *most as f32 / sampled.max(1) as f32)
+    const SEVERAL: usize = 8;
+    const CUBES: f32 = 4096.0;
+    let cubes_per_length = CUBES / (max - min).max_element();
+    let stride = spheres.len().div_ceil(SAMPLES).max(1);
+    let mut sample: Vec<_> = spheres
+        .iter()
+        .step_by(stride)
+        .map(|sphere| {
+            let center = Vec3::new(sphere[0], sphere[1], sphere[2]);
+            let cube = ((center - min) * cubes_per_length).to_array().map(|place| place as u16);
+            (cube, sphere.map(f32::to_bits))
+        })
+        .collect();
+    sample.sort_unstable();
+    // Of spheres that are the same, a list keeps one.
+    sample.dedup();
+    let most = sample.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).max().unwrap_or(0);
+    if most < SEVERAL { 0.0 } else { (most * stride) as f32 }
 }

@@ -299,7 +299,7 @@ mod tests {
         let layouts = Layouts::new(&device, ColorTarget::Srgb8, false, &[Structure::List]);
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
-            let kernel = shaders::trace_kernel(CameraKind::Pinhole, Structure::List)
+            let kernel = shaders::trace_kernel(CameraKind::Pinhole, Structure::List, Turn::First)
                 .with_part("broken.wgsl", broken);
             match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
                 Err(GpuError::Device { message }) => {

@@ -67,9 +67,12 @@ fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part>
             part!("wide_node.wgsl"),
             part!("wide_tree.wgsl"),
         ]),
-        Structure::BinaryTree => {
-            parts.extend([part!("slab.wgsl"), part!("leaf.wgsl"), part!("binary_tree.wgsl")])
-        }
+        Structure::BinaryTree => parts.extend([
+            part!("slab.wgsl"),
+            part!("leaf.wgsl"),
+            part!("binary_node.wgsl"),
+            part!("binary_tree.wgsl"),
+        ]),
         Structure::Grid(layout) => {
             parts.extend([part!("grid_ray.wgsl"), part!("grid.wgsl"), list_part(layout)]);
         }
@@ -290,17 +293,14 @@ mod tests {
     fn twins_exist() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let mut twins = 0;
-        for kernel in all_kernels() {
-            for part in &kernel.parts {
-                for (_, after) in part
-                    .source
-                    .match_indices("win: ")
-                    .map(|(at, m)| (at, &part.source[at + m.len()..]))
-                {
-                    let path = after.split([',', ' ', '\n']).next().unwrap().trim_end_matches('.');
-                    assert!(root.join(path).exists(), "{}: {path} is missing", part.file);
-                    twins += 1;
-                }
+        for part in all_kernels().iter().flat_map(|kernel| &kernel.parts) {
+            let twin =
+                part.source.lines().find(|line| line.contains("win: ") || line.contains("win of "));
+            let Some(line) = twin else { continue };
+            let words = line.split([' ', ',', '`']).map(|word| word.trim_end_matches('.'));
+            for path in words.filter(|word| word.starts_with("src/")) {
+                assert!(root.join(path).exists(), "{}: {path} is missing", part.file);
+                twins += 1;
             }
         }
         assert!(twins > 10, "{twins}");

@@ -2,7 +2,11 @@
 
 use crate::film::Film;
 
-/// The most pixels of a tile: its largest buffer then takes about 64 MiB, half of WebGPU's smallest limit.
+/// The most pixels of a tile of a headless render: its buffers then take 24 MiB, little beside a large scene,
+/// and little for a software device to clear.
+pub(super) const MAX_TILE_PIXELS: u64 = 1 << 19;
+
+/// The most pixels of a band of a host's picture, whose hits are kept together.
 pub(super) const MAX_PIXELS: u64 = 1 << 22;
 
 /// The side of a workgroup, as in `@workgroup_size(8, 8)`.
@@ -64,8 +68,8 @@ impl Groups {
 /// The size of tiles for a device whose textures have sides of at most `side_limit` pixels.
 pub(super) fn tile_size(film: &Film, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
-    // No side exceeds 2^15 on any device, so that at least one row of workgroups fits.
-    let rows = (MAX_PIXELS / u64::from(width)) as u32;
+    // No side exceeds 2^15 on any device, so that one row of workgroups always fits.
+    let rows = (MAX_TILE_PIXELS / u64::from(width)) as u32;
     [width, height.min((rows / WORKGROUP_SIDE).max(1) * WORKGROUP_SIDE)]
 }
 
