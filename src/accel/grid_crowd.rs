@@ -18,6 +18,10 @@ const MOST_GROWTH: usize = 64;
 /// A grid is worth its memory if it costs a ray less than this part of what the list costs.
 const GAIN: f32 = 0.9;
 
+/// Two levels are worth it if they save this part of the cost of all cells: a kernel that knows of two is
+/// slower in all of them, by a tenth.
+const WORTH_IT: f32 = 0.1;
+
 /// A grid that a cell would be better with.
 #[derive(Clone, Copy)]
 struct Wish {
@@ -27,6 +31,8 @@ struct Wish {
     level: u8,
     /// Expected elements of the lists inside.
     met: f32,
+    /// What a ray through the cell saves.
+    saved: f32,
 }
 
 /// The crowded cells that the budget is enough for.
@@ -51,22 +57,22 @@ impl Crowd {
                 .filter(|(_, start, end)| end - start >= CROWDED)
                 .filter_map(|(cell, start, end)| {
                     let list = &places[start as usize..end as usize];
-                    let (level, met) = best_level(cells.size, list, spheres, margin)?;
-                    Some(Wish { cell: cell as u32, len: end - start, level, met })
+                    let best = best_level(cells.size, list, spheres, margin)?;
+                    Some(Wish { cell: cell as u32, len: end - start, ..best })
                 })
                 .collect::<Vec<_>>()
         });
         let mut wishes: Vec<Wish> = wishes.into_iter().flatten().collect();
         let mut levels = vec![0; cells.len()];
-        // A kernel that knows of two levels is slower in all cells, by a tenth.
-        let crowded: usize = wishes.iter().map(|wish| wish.len as usize).sum();
-        if crowded < places.len() / 20 {
+        let saved: f32 = wishes.iter().map(|wish| wish.saved).sum();
+        let all = cells.len() as f32 * STEP_COST + places.len() as f32;
+        if saved < WORTH_IT * all {
             return Self { levels };
         }
         wishes.sort_unstable_by_key(|wish| (std::cmp::Reverse(wish.len), wish.cell));
         let mut cells_left = budget.cells.saturating_sub(cells.len().next_multiple_of(8));
         let mut listed_left = budget.listed.saturating_sub(places.len());
-        for Wish { cell, len, level, met } in wishes {
+        for Wish { cell, len, level, met, .. } in wishes {
             let needed = (1_usize << (3 * level), most_listed(met).saturating_sub(len as usize));
             if needed.0 <= cells_left && needed.1 <= listed_left {
                 cells_left -= needed.0;
@@ -113,9 +119,10 @@ pub(super) fn inner_lists(
     (listed <= most).then_some(lists)
 }
 
-/// The level at which a ray costs least, and the expected elements of its lists; `None` if that is no level.
-fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<(u8, f32)> {
-    let mut least = GAIN * (STEP_COST + list.len() as f32);
+/// The level at which a ray costs least, if there is one that is cheaper than the list; of no cell yet.
+fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<Wish> {
+    let list_cost = STEP_COST + list.len() as f32;
+    let mut least = GAIN * list_cost;
     let mut best = None;
     for level in 1..=MAX_LEVEL {
         let side = (1_u32 << level) as f32;
@@ -131,7 +138,7 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
         let cost = side * (STEP_COST + met / (side * side * side));
         if cost < least {
             least = cost;
-            best = Some((level, met));
+            best = Some(Wish { cell: 0, len: 0, level, met, saved: list_cost - cost });
         }
     }
     best

@@ -249,7 +249,7 @@ fn grid_budget(structure: Structure, count: usize) -> GridBudget {
             GridBudget { listed: count * 17 / 4 + (1 << 20), cells: count + (1 << 21) }
         }
         Structure::Grid(ListLayout::Referenced) => {
-            GridBudget { listed: count * 3 + (1 << 16), cells: count * 2 / 5 + (1 << 16) }
+            GridBudget { listed: count * 18 / 5 + (1 << 16), cells: count * 11 / 20 + (1 << 16) }
         }
         _ => GridBudget { listed: 0, cells: 0 },
     }

@@ -8,11 +8,13 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use wgpu::{Adapter, AdapterInfo, ComputePassDescriptor, Device, Limits, Queue};
+use wgpu::{Adapter, AdapterInfo, ComputePassDescriptor, Device, Queue};
 
 use super::adapter;
 use super::error::{GpuError, scoped};
+use super::faults::Faults;
 use super::frame::Frame;
+use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
 use super::pace::Pace;
 use super::readback::ReadableTexture;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
@@ -26,48 +28,6 @@ use crate::film::Film;
 use crate::image::{Image, LayerSet};
 use crate::scene::Scene;
 use crate::settings::Settings;
-
-/// How a device is opened.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeadlessOptions {
-    /// The adapter whose name contains this text, as in [`adapter::candidates`].
-    pub adapter: Option<String>,
-    /// What the device may use.
-    pub limits: LimitChoice,
-    /// How long one submission may take before it is given up. Submissions adapt to the device and take
-    /// about 60 milliseconds.
-    pub timeout: Duration,
-}
-
-/// Which limits a device is opened with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LimitChoice {
-    /// What the adapter has.
-    #[default]
-    Adapter,
-    /// WebGPU's defaults, or less where the adapter has less: what every browser guarantees.
-    WebGpu,
-}
-
-impl Default for HeadlessOptions {
-    /// The best adapter with its own limits; ten minutes.
-    fn default() -> Self {
-        let timeout = Duration::from_secs(600);
-        Self { adapter: None, limits: LimitChoice::Adapter, timeout }
-    }
-}
-
-/// What a render is doing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Pixels of one brick that were traced; a pixel counts once for every brick.
-    pub done: u64,
-    /// How many there are in all.
-    pub total: u64,
-}
-
-/// Told of progress after every submission; decides whether the render goes on.
-pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// A device for rendering without a display.
 #[derive(Debug)]
@@ -86,35 +46,6 @@ type Renderers = HashMap<RendererKey, Renderer>;
 
 /// Camera, structure, what rays are asked, whether there are data layers, and several bricks.
 type RendererKey = (CameraKind, Structure, Query, bool, bool);
-
-/// What wgpu reported outside any call.
-#[derive(Debug, Default)]
-struct Faults {
-    first: Mutex<Option<GpuError>>,
-}
-
-impl Faults {
-    /// Keeps the first fault, unless this one explains it: what follows a lost device is noise.
-    fn report(&self, fault: GpuError) {
-        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
-        if first.is_none() || matches!(fault, GpuError::DeviceLost { .. }) {
-            *first = Some(fault);
-        }
-    }
-
-    /// Forgets what an earlier render or the caller's own commands met; a lost device stays lost.
-    fn forget(&self) {
-        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
-        first.take_if(|fault| !matches!(fault, GpuError::DeviceLost { .. }));
-    }
-
-    fn check(&self) -> Result<(), GpuError> {
-        match self.first.lock().unwrap_or_else(PoisonError::into_inner).clone() {
-            Some(fault) => Err(fault),
-            None => Ok(()),
-        }
-    }
-}
 
 impl Headless {
     /// Opens the first of [`adapter::candidates`] that gives a device.
@@ -142,7 +73,7 @@ impl Headless {
         let info = adapter.get_info();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("pinhole"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & wanted_features(info.device_type),
             required_limits: required_limits(&adapter.limits(), options.limits),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
@@ -449,19 +380,5 @@ impl Headless {
             Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: self.timeout }),
             Err(error) => Err(GpuError::Device { message: error.to_string() }),
         }
-    }
-}
-
-fn required_limits(available: &Limits, choice: LimitChoice) -> Limits {
-    // WebGPU's limits, where the adapter has them, so that a picture does not depend on more.
-    let webgpu = Limits::default().or_worse_values_from(available);
-    match choice {
-        LimitChoice::WebGpu => webgpu,
-        // And all that it has of what bounds the size of pictures and scenes.
-        LimitChoice::Adapter => Limits {
-            max_buffer_size: available.max_buffer_size,
-            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
-            ..webgpu.using_resolution(available.clone())
-        },
     }
 }

@@ -9,9 +9,11 @@ pub use wgpu;
 
 pub mod adapter;
 mod error;
+mod faults;
 mod frame;
 mod headless;
 mod layouts;
+mod options;
 mod pace;
 mod readback;
 mod records;
@@ -24,7 +26,8 @@ mod timer;
 
 pub use error::GpuError;
 pub use frame::{DataTargets, Frame, Targets};
-pub use headless::{Headless, HeadlessOptions, LimitChoice, Progress, Watch};
+pub use headless::Headless;
+pub use options::{HeadlessOptions, LimitChoice, Progress, Watch};
 pub use renderer::{ColorTarget, Query, Renderer, RendererOptions};
 pub use scene_buffers::SceneBuffers;
 pub use timer::TraceTime;

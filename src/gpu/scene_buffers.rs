@@ -250,12 +250,29 @@ impl Upload<'_> {
         contents: &[T],
     ) -> Buffer {
         let contents: &[u8] = bytemuck::cast_slice(contents);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+        let size = contents.len() as u64;
+        let descriptor = |usage, mapped_at_creation| wgpu::BufferDescriptor {
             label: Some(label),
-            size: contents.len() as u64,
-            usage: usage | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+            size,
+            usage,
+            mapped_at_creation,
+        };
+        // Where the device's memory is the host's, contents are written where they stay.
+        let is_shared = self.device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
+        if is_shared && size.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
+            let buffer =
+                self.device.create_buffer(&descriptor(usage | BufferUsages::MAP_WRITE, true));
+            if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
+                target.copy_from_slice(contents);
+                drop(target);
+                buffer.unmap();
+                self.bytes += size;
+                return buffer;
+            }
+            // It could not be created, which the error scope around us has noted.
+            return buffer;
+        }
+        let buffer = self.device.create_buffer(&descriptor(usage | BufferUsages::COPY_DST, false));
         self.queue.write_buffer(&buffer, 0, contents);
         self.bytes += contents.len() as u64;
         buffer

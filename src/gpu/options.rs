@@ -1,0 +1,72 @@
+//! How a headless device is opened, and how it tells of progress.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use wgpu::Limits;
+
+/// How a device is opened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadlessOptions {
+    /// The adapter whose name contains this text, as in [`adapter::candidates`].
+    pub adapter: Option<String>,
+    /// What the device may use.
+    pub limits: LimitChoice,
+    /// How long one submission may take before it is given up. Submissions adapt to the device and take
+    /// about 60 milliseconds.
+    pub timeout: Duration,
+}
+
+/// Which limits a device is opened with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitChoice {
+    /// What the adapter has.
+    #[default]
+    Adapter,
+    /// WebGPU's defaults, or less where the adapter has less: what every browser guarantees.
+    WebGpu,
+}
+
+impl Default for HeadlessOptions {
+    /// The best adapter with its own limits; ten minutes.
+    fn default() -> Self {
+        let timeout = Duration::from_secs(600);
+        Self { adapter: None, limits: LimitChoice::Adapter, timeout }
+    }
+}
+
+/// What a render is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Pixels of one brick that were traced; a pixel counts once for every brick.
+    pub done: u64,
+    /// How many there are in all.
+    pub total: u64,
+}
+
+/// Told of progress after every submission; decides whether the render goes on.
+pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// What is used where it exists: a clock and, where the device's memory is the host's, writing into it.
+pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {
+    match device_type {
+        wgpu::DeviceType::Cpu | wgpu::DeviceType::IntegratedGpu => {
+            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS
+        }
+        _ => wgpu::Features::TIMESTAMP_QUERY,
+    }
+}
+
+pub(super) fn required_limits(available: &Limits, choice: LimitChoice) -> Limits {
+    // WebGPU's limits, where the adapter has them, so that a picture does not depend on more.
+    let webgpu = Limits::default().or_worse_values_from(available);
+    match choice {
+        LimitChoice::WebGpu => webgpu,
+        // And all that it has of what bounds the size of pictures and scenes.
+        LimitChoice::Adapter => Limits {
+            max_buffer_size: available.max_buffer_size,
+            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+            ..webgpu.using_resolution(available.clone())
+        },
+    }
+}
