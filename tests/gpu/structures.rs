@@ -42,12 +42,18 @@ fn all_scenes() -> Vec<(&'static str, fn() -> Spheres)> {
         ("lattice", || spheres::lattice(14)),
         ("one_around_all", || spheres::one_around_all(1_500)),
         ("clusters", || spheres::clusters(10, 200)),
-        ("far", || spheres::far(1_000)),
+        ("far", || {
+            // Spheres too small to be seen, and some that are not.
+            let mut spheres = spheres::far(800);
+            spheres.extend(spheres::scaled(&spheres::random(200, 24, |_| 0.03), 1e7));
+            spheres
+        }),
         ("flat", || spheres::flat(1_500)),
         ("outlier", || spheres::outlier(1_500)),
         ("times_2_to_the_50", || spheres::scaled(&spheres::four_decades(500), 2_f32.powi(50))),
         ("times_2_to_the_minus_50", || {
-            spheres::scaled(&spheres::four_decades(500), 2_f32.powi(-50))
+            // A scene's radii are not below 2⁻⁶⁰.
+            spheres::scaled(&spheres::random(500, 25, |_| 0.03), 2_f32.powi(-50))
         }),
     ]
 }
