@@ -61,6 +61,12 @@ pub enum GridError {
         /// The place.
         place: u32,
     },
+    /// A sphere, with the margin, is not within the cells.
+    #[error("sphere {id} reaches beyond the cells")]
+    Outside {
+        /// Index in input order.
+        id: u32,
+    },
     /// A cell's list lacks a sphere whose surface is near the cell.
     #[error("the list of cell {cell} lacks the sphere {id}")]
     Missing {
@@ -339,7 +345,16 @@ impl Check<'_> {
     /// Every cell near the sphere's surface lists it, or the same sphere with a smaller id.
     fn check_listed(&self, lists: &[Range], id: u32) -> Result<(), GridError> {
         let sphere = self.input[id as usize];
-        self.check_level(lists, id, sphere, &Level::of(self.grid))
+        let whole = Level::of(self.grid);
+        let reach = f64::from(sphere[3]) + MUST * self.margin;
+        for axis in 0..3 {
+            let center = f64::from(sphere[axis]) - whole.low[axis];
+            let side = whole.size * whole.counts[axis] as f64;
+            if center - reach < 0.0 || center + reach > side {
+                return Err(GridError::Outside { id });
+            }
+        }
+        self.check_level(lists, id, sphere, &whole)
     }
 
     fn check_level(

@@ -90,6 +90,9 @@ fn every_scene_has_a_grid_that_a_kernel_may_walk() {
     let scenes = [
         ("one", vec![[1.0, 2.0, 3.0, 0.5]]),
         ("random", spheres::random(5_000, 1, |_| 0.01)),
+        // More cells than one task makes.
+        ("many", spheres::random(60_000, 2, |_| 0.004)),
+        ("many crowds", spheres::clusters(40, 1_000)),
         ("sparse", spheres::random(5_000, 3, |_| 0.001)),
         ("four decades", spheres::four_decades(3_000)),
         ("coincident", spheres::coincident(20_000)),
@@ -119,6 +122,10 @@ fn every_scene_has_a_grid_that_a_kernel_may_walk() {
             let listed = references.as_ref().map_or(built.of.spheres.len(), Vec::len);
             assert!(cells.len() <= budget.cells, "{name}, {layout:?}: {} cells", cells.len());
             assert!(listed <= budget.listed, "{name}, {layout:?}: {listed} listed");
+            if name == "coincident" {
+                let longest = built.of.grid.statistics(&built.of.spheres).longest_list;
+                assert!(longest <= 32, "{layout:?}: {longest} of the same in one list");
+            }
             nested += built.of.grid.statistics(&built.of.spheres).grids;
         }
     }
@@ -138,7 +145,7 @@ const DAMAGES: &[Damage] = &[
     (
         "cells moved by a tenth of one",
         |built| built.of.grid.min.x += 0.1 * built.of.grid.cell_size,
-        |error| matches!(error, GridError::Missing { .. }),
+        |error| matches!(error, GridError::Missing { .. } | GridError::Outside { .. }),
     ),
     (
         "a kind that does not exist",
@@ -359,4 +366,40 @@ fn a_sphere_that_is_elsewhere_is_found() {
         built.check(),
         Err(GridError::Far { cell: cell as u32, id: built.input.len() as u32 - 1 })
     );
+}
+
+/// A budget is kept however little it leaves for grids inside cells, or for spheres in step with the cells.
+#[test]
+fn a_tight_budget_is_kept() {
+    let scenes = [mixed(), spheres::clusters(20, 300), spheres::lattice(16), spheres::twice(2_000)];
+    for input in scenes {
+        let ids: Vec<u32> = (0..input.len() as u32).collect();
+        let margin = SceneStatistics::of(&input).margin();
+        for (listed, cells) in [(1, 2), (2, 2), (3, 2), (4, 2), (4, 4), (8, 1), (16, 8)] {
+            let count = input.len();
+            let budget = GridBudget { listed: count * listed, cells: count * cells / 2 };
+            for layout in LAYOUTS {
+                let BuiltGrid { grid, spheres, ids } =
+                    build_grid(&input, &ids, margin, layout, budget);
+                grid.validate(&spheres, &ids, &input, margin).unwrap();
+                let found = grid.references.as_ref().map_or(spheres.len(), Vec::len);
+                assert!(found <= budget.listed, "{found} listed, {layout:?}, {budget:?}");
+                assert!(grid.cells.len() <= budget.cells, "{} cells, {budget:?}", grid.cells.len());
+            }
+        }
+    }
+}
+
+/// What `SceneStatistics::margin` derives: 2⁻¹⁸ of the diagonal, and two neighbours in f32 of the farthest
+/// coordinate.
+#[test]
+fn the_margin_is_what_rounding_needs() {
+    for input in [mixed(), spheres::far(2_000), vec![[1e7, 0.0, 0.0, 1e-2]]] {
+        let statistics = SceneStatistics::of(&input);
+        let margin = f64::from(statistics.margin());
+        let diagonal = f64::from((statistics.max - statistics.min).length());
+        assert!(margin >= diagonal / 262_145.0, "{margin}");
+        let farthest = statistics.min.abs().max(statistics.max.abs()).max_element();
+        assert!(margin >= f64::from(farthest) / 4_194_305.0, "{margin}");
+    }
 }

@@ -91,6 +91,12 @@ fn check_memory(name: &str, plan: &AccelPlan, accel: &Accel) {
 
 /// Each sphere of the input is in one brick, and each grid is what its check says.
 fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
+    let (low, high) = accel.bounds();
+    for [x, y, z, radius] in spheres {
+        let (center, reach) = (Vec3::new(*x, *y, *z), radius + margin);
+        let is_inside = low.cmple(center - reach).all() && high.cmpge(center + reach).all();
+        assert!(is_inside, "{name}: a sphere reaches beyond the box of the scene");
+    }
     let mut seen = vec![false; spheres.len()];
     for brick in accel.bricks() {
         let mut own = brick.ids.clone();

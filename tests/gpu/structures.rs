@@ -42,6 +42,7 @@ fn all_scenes() -> Vec<(&'static str, fn() -> Spheres)> {
         ("lattice", || spheres::lattice(14)),
         ("one_around_all", || spheres::one_around_all(1_500)),
         ("clusters", || spheres::clusters(10, 200)),
+        ("crowd", || spheres::crowd(1_500)),
         ("far", || {
             // Spheres too small to be seen, and some that are not.
             let mut spheres = spheres::far(800);

@@ -108,3 +108,13 @@ pub(crate) fn outlier(count: usize) -> Spheres {
     spheres.push([3e4, -2e4, 1e4, 2e3]);
     spheres
 }
+
+/// A crowd in a corner of what is nearly empty: grids inside cells, and long ways through empty ones.
+pub(crate) fn crowd(count: usize) -> Spheres {
+    let mut spheres = random(count, 14, |_| 0.02);
+    for sphere in &mut spheres {
+        *sphere = sphere.map(|x| x * 0.2);
+    }
+    spheres.extend(random(count / 20, 15, |_| 0.01));
+    spheres
+}
