@@ -34,7 +34,8 @@ impl Grid {
     /// Whether any sphere is nearer than `t_max`.
     #[must_use]
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
-        let mut found = Found { t: t_max, place: None };
+        // A list takes what is as near as the nearest so far.
+        let mut found = Found { t: t_max.next_down(), place: None };
         self.walk(spheres, ray, &mut found, true);
         found.place.is_some()
     }

@@ -13,6 +13,7 @@ mod divide;
 mod extent;
 mod grid;
 mod grid_build;
+mod grid_check;
 mod grid_crowd;
 mod grid_empty;
 mod grid_walk;
@@ -40,6 +41,7 @@ pub use binary_tree::{
 pub use brick::{Accel, Brick, Index, Structure};
 pub use grid::{Grid, GridStatistics, ListLayout};
 pub use grid_build::{BuiltGrid, GridBudget, build_grid};
+pub use grid_check::GridError;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};
 pub use query::{NO_HIT, Nearest, RayF32};
 pub use slab::SMALLEST_COMPONENT;

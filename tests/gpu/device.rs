@@ -1,8 +1,12 @@
 //! Choosing a device, and what happens when it fails.
 
+use std::ops::ControlFlow;
+use std::time::Duration;
+
 use libtest_mimic::Trial;
-use pinhole::LayerSet;
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, wgpu};
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, Progress, wgpu};
+use pinhole::{Film, Image, LayerSet};
 
 use crate::support::View;
 use crate::trial;
@@ -13,6 +17,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("device::an_unknown_name_lists_the_adapters", unknown_name),
         trial("device::a_destroyed_device_is_an_error", destroyed),
         trial("device::a_fault_of_the_callers_does_not_outlive_it", callers_fault),
+        trial("device::a_device_that_is_destroyed_in_the_middle_of_a_render", lost_midway),
+        trial("device::a_device_that_does_not_finish_in_time", too_slow),
+        trial("device::a_render_that_is_stopped_leaves_the_device_usable", stopped),
+        trial("device::what_cannot_be_allocated_is_an_error", no_memory),
     ]
 }
 
@@ -57,4 +65,60 @@ fn callers_fault(_: &'static Headless) {
     });
     let View { scene, camera, film, settings } = View::three_spheres();
     headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR).unwrap();
+}
+
+/// A picture of several submissions; `watch` is told after each but the last.
+fn render_watched(
+    headless: &Headless,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Image, GpuError> {
+    let View { scene, camera, settings, .. } = View::three_spheres();
+    let film = Film::new(2400, 1800).unwrap();
+    let accel = headless.plan(&scene, AccelChoice::Auto).build(scene.spheres());
+    let scene = headless.upload(&scene, &accel)?;
+    headless.render_uploaded(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR, &mut watch)
+}
+
+fn lost_midway(_: &'static Headless) {
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let mut told = 0;
+    let result = render_watched(&headless, |_| {
+        told += 1;
+        headless.device().destroy();
+        ControlFlow::Continue(())
+    });
+    assert!(told > 0, "the picture is too small for more than one submission");
+    assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
+    // It stays lost.
+    let result = render_watched(&headless, |_| ControlFlow::Continue(()));
+    assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
+}
+
+fn too_slow(_: &'static Headless) {
+    let timeout = Duration::ZERO;
+    let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
+    let headless = Headless::open(&options).unwrap();
+    // An upload waits for next to nothing, which may be done at once; a picture is not.
+    let result = render_watched(&headless, |_| ControlFlow::Continue(()));
+    assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
+}
+
+fn stopped(headless: &'static Headless) {
+    let mut told = 0;
+    let result = render_watched(headless, |progress| {
+        told += 1;
+        assert!(progress.done < progress.total, "{progress:?}");
+        ControlFlow::Break(())
+    });
+    assert_eq!((result.err(), told), (Some(GpuError::Stopped), 1));
+    let whole = render_watched(headless, |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(whole, render_watched(headless, |_| ControlFlow::Continue(())).unwrap());
+}
+
+/// Twelve bytes a pixel or more of the host, before the device is asked for anything.
+fn no_memory(headless: &'static Headless) {
+    let View { scene, camera, settings, .. } = View::three_spheres();
+    let Ok(film) = Film::new(u32::MAX, u32::MAX) else { return };
+    let result = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR);
+    assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
 }

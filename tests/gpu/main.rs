@@ -13,6 +13,7 @@ mod embedding;
 mod pictures;
 mod program;
 mod scenes;
+mod structures;
 
 use std::sync::LazyLock;
 
@@ -53,6 +54,7 @@ fn main() {
         embedding::trials(),
         device::trials(),
         program::trials(),
+        structures::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();

@@ -1,6 +1,8 @@
 //! Shared by the CPU and the GPU tests.
 
 pub(crate) mod compare;
+#[allow(dead_code, reason = "each test program uses some of them")]
+pub(crate) mod spheres;
 
 use pinhole::camera::Camera;
 use pinhole::scene_file::SceneFile;

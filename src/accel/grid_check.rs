@@ -1,0 +1,476 @@
+//! What a grid must be, so that a kernel that walks it neither leaves an array nor loses a sphere.
+//!
+//! The geometry is done again, in f64 and by other means than the builder's, so that a mistake there is not
+//! made here as well.
+
+use std::ops::RangeInclusive;
+
+use super::grid::{Grid, LAST, MAX_CELLS, word};
+
+/// The levels that a grid inside a cell may have: 2 to 32 cells along an axis.
+const LEVELS: RangeInclusive<u32> = 1..=5;
+
+/// The builder's f32 may leave out a sphere that is nearer than `margin` by rounding, and list one that is
+/// farther. What a ray's own arithmetic needs is less than half a margin (see `SceneStatistics::margin`), so
+/// within half a margin a sphere must be listed; beyond two, listing it is a mistake.
+const MUST: f64 = 0.5;
+const MAY: f64 = 2.0;
+
+/// Why a grid is not one that a kernel may walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// The cells' size or number is not what cells are computed with.
+    #[error("the first level is not a box of cells")]
+    Shape,
+    /// A word is of no kind that may stand at its place.
+    #[error("word {cell} is of no kind that may stand there")]
+    Kind {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+    },
+    /// A grid inside a cell is too coarse or too fine.
+    #[error("the grid inside cell {cell} has the level {level}")]
+    Level {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+        /// The logarithm, to base 2, of its cells along an axis.
+        level: u32,
+    },
+    /// A grid inside a cell is not a run of words of its own.
+    #[error("the grid inside cell {cell} is not where it may be")]
+    Link {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+    },
+    /// A list starts or ends beyond the arrays, or names what is no place, or is a part of another list.
+    #[error("the list of cell {cell} is not where it may be, or has no end")]
+    List {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+    },
+    /// The ids of a list do not ascend.
+    #[error("the ids in the list of cell {cell} do not ascend")]
+    Order {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+    },
+    /// A place's id is of no sphere of the input, of another one, or missing from the ids.
+    #[error("the sphere in place {place} is not the one that its id says")]
+    Sphere {
+        /// The place.
+        place: u32,
+    },
+    /// A sphere, with the margin, is not within the cells.
+    #[error("sphere {id} reaches beyond the cells")]
+    Outside {
+        /// Index in input order.
+        id: u32,
+    },
+    /// A cell's list lacks a sphere whose surface is near the cell.
+    #[error("the list of cell {cell} lacks the sphere {id}")]
+    Missing {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+        /// Index in input order.
+        id: u32,
+    },
+    /// A cell's list has a sphere whose surface is not near the cell.
+    #[error("the list of cell {cell} has the sphere {id}, which is not there")]
+    Far {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+        /// Index in input order.
+        id: u32,
+    },
+    /// Not all cells are empty that an empty cell says are.
+    #[error("not all cells around cell {cell} are empty that should be")]
+    Reach {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+    },
+}
+
+impl Grid {
+    /// Whether the grid is one that a kernel may walk: every link leads to a place inside the arrays, every
+    /// list ends and ascends in id, and every sphere is listed in exactly the cells that it should be.
+    ///
+    /// `spheres` and `ids` are in the order of the grid's places; `input` are the spheres that the grid was
+    /// built of, all of them, and `margin` how far from a surface a cell must know of it. Of spheres that
+    /// are the same, a list may lack all but that with the smallest id.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn validate(
+        &self,
+        spheres: &[[f32; 4]],
+        ids: &[u32],
+        input: &[[f32; 4]],
+        margin: f32,
+    ) -> Result<(), GridError> {
+        self.check_shape()?;
+        self.check_places(spheres, ids, input)?;
+        let check = Check { grid: self, ids, input, margin: f64::from(margin) };
+        let lists = check.lists(spheres)?;
+        check.check_reach()?;
+        for id in 0..input.len() as u32 {
+            check.check_listed(&lists, id)?;
+        }
+        check.check_near(&lists)
+    }
+
+    fn check_shape(&self) -> Result<(), GridError> {
+        let is_length = self.cell_size.is_finite() && self.cell_size > 0.0;
+        let count = self.cell_counts.iter().try_fold(1, |all: u32, count| all.checked_mul(*count));
+        let is_box = count.is_some_and(|count| (1..=MAX_CELLS as u32).contains(&count));
+        if !is_length || !self.min.is_finite() || !is_box {
+            return Err(GridError::Shape);
+        }
+        let padded = self.first_level_len().next_multiple_of(8);
+        if self.cells.len() < padded || !self.cells.len().is_multiple_of(8) {
+            return Err(GridError::Shape);
+        }
+        // A walk may, by rounding, read one cell too far.
+        match (self.first_level_len()..padded).find(|cell| self.cells[*cell] != word::EMPTY) {
+            Some(cell) => Err(GridError::Kind { cell: cell as u32 }),
+            None => Ok(()),
+        }
+    }
+
+    /// Each place has the sphere of its id; with references, each id has one place.
+    fn check_places(
+        &self,
+        spheres: &[[f32; 4]],
+        ids: &[u32],
+        input: &[[f32; 4]],
+    ) -> Result<(), GridError> {
+        let wrong = |place: usize| Err(GridError::Sphere { place: place as u32 });
+        if spheres.len() != ids.len() {
+            return wrong(spheres.len().min(ids.len()));
+        }
+        let mut seen = vec![false; input.len()];
+        for (place, (sphere, id)) in spheres.iter().zip(ids).enumerate() {
+            let Some(original) = input.get(*id as usize) else { return wrong(place) };
+            let mut plain = *sphere;
+            if self.references.is_none() {
+                plain[3] = plain[3].abs();
+            } else if std::mem::replace(&mut seen[*id as usize], true) {
+                return wrong(place);
+            }
+            if plain.map(f32::to_bits) != original.map(f32::to_bits) {
+                return wrong(place);
+            }
+        }
+        if self.references.is_some() && ids.len() != input.len() {
+            return wrong(ids.len());
+        }
+        Ok(())
+    }
+}
+
+/// Where a cell's list is, in the references or, without them, in the spheres; empty without a list.
+type Range = std::ops::Range<usize>;
+
+/// A cell of either level: the index of its word, and the box that it fills.
+#[derive(Clone, Copy)]
+struct Cell {
+    index: usize,
+    low: [f64; 3],
+    size: f64,
+}
+
+impl Cell {
+    /// Distances from a point to the nearest and the farthest point of the cell.
+    fn distances(&self, point: [f64; 3]) -> (f64, f64) {
+        let (mut near, mut far) = (0.0, 0.0);
+        for (low, x) in self.low.into_iter().zip(point) {
+            let nearest = x.clamp(low, low + self.size);
+            near += (x - nearest).powi(2);
+            far += (x - low).abs().max((x - low - self.size).abs()).powi(2);
+        }
+        (near.sqrt(), far.sqrt())
+    }
+
+    /// Whether the surface of a sphere comes as near to the cell as `margin`.
+    fn is_near(&self, [x, y, z, radius]: [f32; 4], margin: f64) -> bool {
+        let radius = f64::from(radius);
+        let (near, far) = self.distances([x, y, z].map(f64::from));
+        near <= radius + margin && far >= radius - margin
+    }
+}
+
+struct Check<'a> {
+    grid: &'a Grid,
+    ids: &'a [u32],
+    input: &'a [[f32; 4]],
+    margin: f64,
+}
+
+impl Check<'_> {
+    /// The list of every word, after checks that all links lead where they may.
+    fn lists(&self, spheres: &[[f32; 4]]) -> Result<Vec<Range>, GridError> {
+        let words = &self.grid.cells;
+        let first_level_len = self.grid.first_level_len();
+        let padded = first_level_len.next_multiple_of(8);
+        let listed = self.grid.references.as_ref().map_or(spheres.len(), Vec::len);
+        // Each word behind the first level and each element of a list is some one cell's own.
+        let mut is_inner = vec![false; words.len()];
+        let mut is_listed = vec![false; listed];
+        for cell in 0..first_level_len {
+            if words[cell] & word::KIND == word::GRID {
+                self.take_inner(cell, padded, &mut is_inner)?;
+            }
+        }
+        let mut lists = vec![0..0; words.len()];
+        for (index, value) in words.iter().enumerate() {
+            let cell = index as u32;
+            let is_first = index < first_level_len;
+            match value & word::KIND {
+                // Behind the first level nothing is said of what is around.
+                word::EMPTY if is_first || *value == word::EMPTY => {}
+                word::LIST if is_first || is_inner[index] => {
+                    let list = self.list(spheres, cell, (value & !word::KIND) as usize)?;
+                    for at in list.clone() {
+                        if std::mem::replace(&mut is_listed[at], true) {
+                            return Err(GridError::List { cell });
+                        }
+                    }
+                    lists[index] = list;
+                }
+                word::GRID if is_first => {}
+                _ => return Err(GridError::Kind { cell }),
+            }
+        }
+        Ok(lists)
+    }
+
+    fn take_inner(
+        &self,
+        cell: usize,
+        padded: usize,
+        is_inner: &mut [bool],
+    ) -> Result<(), GridError> {
+        let value = self.grid.cells[cell];
+        let level = value >> word::LEVEL_SHIFT & 7;
+        let cell = cell as u32;
+        if !LEVELS.contains(&level) {
+            return Err(GridError::Level { cell, level });
+        }
+        let first = first_inner(value);
+        let link = GridError::Link { cell };
+        let own = is_inner.get_mut(first..first + (1 << (3 * level))).ok_or(link)?;
+        if first < padded || own.contains(&true) {
+            return Err(link);
+        }
+        own.fill(true);
+        Ok(())
+    }
+
+    /// Follows a list to its end, and checks that it names places, by ascending id.
+    fn list(&self, spheres: &[[f32; 4]], cell: u32, start: usize) -> Result<Range, GridError> {
+        let mut last_id = None;
+        let mut at = start;
+        loop {
+            let out = GridError::List { cell };
+            let is_last = match &self.grid.references {
+                Some(references) => *references.get(at).ok_or(out)? & LAST != 0,
+                None => spheres.get(at).ok_or(out)?[3].is_sign_negative(),
+            };
+            let id = *self.ids.get(self.place(at)).ok_or(out)?;
+            if last_id.is_some_and(|last| last >= id) {
+                return Err(GridError::Order { cell });
+            }
+            last_id = Some(id);
+            at += 1;
+            if is_last {
+                return Ok(start..at);
+            }
+        }
+    }
+
+    /// The place that an element of a list names.
+    fn place(&self, at: usize) -> usize {
+        self.grid.references.as_ref().map_or(at, |references| (references[at] & !LAST) as usize)
+    }
+
+    fn id(&self, at: usize) -> u32 {
+        self.ids[self.place(at)]
+    }
+
+    /// By a table of sums: how many cells are not empty in the box from the first cell to each.
+    fn check_reach(&self) -> Result<(), GridError> {
+        let [width, height, depth] = self.grid.cell_counts.map(|count| count as usize);
+        let sum_index = |x: usize, y: usize, z: usize| (z * (height + 1) + y) * (width + 1) + x;
+        let index = |x: usize, y: usize, z: usize| (z * height + y) * width + x;
+        let mut sums = vec![0_i64; (width + 1) * (height + 1) * (depth + 1)];
+        let all = || {
+            (0..depth).flat_map(move |z| {
+                (0..height).flat_map(move |y| (0..width).map(move |x| (x, y, z)))
+            })
+        };
+        for (x, y, z) in all() {
+            let is_full = self.grid.cells[index(x, y, z)] & word::KIND != word::EMPTY;
+            let at = |i: usize, j: usize, k: usize| sums[sum_index(x + i, y + j, z + k)];
+            let sum = i64::from(is_full) + at(0, 1, 1) + at(1, 0, 1) + at(1, 1, 0)
+                - at(0, 0, 1)
+                - at(0, 1, 0)
+                - at(1, 0, 0)
+                + at(0, 0, 0);
+            sums[sum_index(x + 1, y + 1, z + 1)] = sum;
+        }
+        for (x, y, z) in all() {
+            let cell = index(x, y, z);
+            let value = self.grid.cells[cell];
+            if value & word::KIND != word::EMPTY {
+                continue;
+            }
+            let reach = value as usize;
+            let from = |i: usize| i.saturating_sub(reach);
+            let to = |i: usize, count: usize| (i.saturating_add(reach) + 1).min(count);
+            let low = [from(x), from(y), from(z)];
+            let high = [to(x, width), to(y, height), to(z, depth)];
+            let corner = |i: usize| {
+                let [a, b, c] =
+                    [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { high[axis] } else { low[axis] });
+                let sign = if (i.count_ones() + 1) % 2 == 0 { 1 } else { -1 };
+                sign * sums[sum_index(a, b, c)]
+            };
+            if (0..8).map(corner).sum::<i64>() != 0 {
+                return Err(GridError::Reach { cell: cell as u32 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Every cell near the sphere's surface lists it, or the same sphere with a smaller id.
+    fn check_listed(&self, lists: &[Range], id: u32) -> Result<(), GridError> {
+        let sphere = self.input[id as usize];
+        let whole = Level::of(self.grid);
+        let reach = f64::from(sphere[3]) + MUST * self.margin;
+        for axis in 0..3 {
+            let center = f64::from(sphere[axis]) - whole.low[axis];
+            let side = whole.size * whole.counts[axis] as f64;
+            if center - reach < 0.0 || center + reach > side {
+                return Err(GridError::Outside { id });
+            }
+        }
+        self.check_level(lists, id, sphere, &whole)
+    }
+
+    fn check_level(
+        &self,
+        lists: &[Range],
+        id: u32,
+        sphere: [f32; 4],
+        level: &Level,
+    ) -> Result<(), GridError> {
+        let reach = f64::from(sphere[3]) + self.margin;
+        for cell in level.cells_around(sphere, reach) {
+            if !cell.is_near(sphere, MUST * self.margin) {
+                continue;
+            }
+            let value = self.grid.cells[cell.index];
+            if value & word::KIND == word::GRID {
+                self.check_level(lists, id, sphere, &Level::inside(&cell, value))?;
+            } else if !self.lists_it(&lists[cell.index], id, sphere) {
+                return Err(GridError::Missing { cell: cell.index as u32, id });
+            }
+        }
+        Ok(())
+    }
+
+    fn lists_it(&self, list: &Range, id: u32, sphere: [f32; 4]) -> bool {
+        // Ids ascend.
+        let (mut low, mut high) = (list.start, list.end);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.id(middle) < id { low = middle + 1 } else { high = middle }
+        }
+        let is_same = |at: usize| {
+            self.input[self.id(at) as usize].map(f32::to_bits) == sphere.map(f32::to_bits)
+        };
+        (low < list.end && self.id(low) == id) || (list.start..low).any(is_same)
+    }
+
+    /// No cell lists a sphere that is not there.
+    fn check_near(&self, lists: &[Range]) -> Result<(), GridError> {
+        for cell in Level::of(self.grid).cells() {
+            let value = self.grid.cells[cell.index];
+            if value & word::KIND == word::GRID {
+                for inner in Level::inside(&cell, value).cells() {
+                    self.check_list_near(&inner, &lists[inner.index])?;
+                }
+            } else {
+                self.check_list_near(&cell, &lists[cell.index])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_list_near(&self, cell: &Cell, list: &Range) -> Result<(), GridError> {
+        for id in list.clone().map(|at| self.id(at)) {
+            if !cell.is_near(self.input[id as usize], MAY * self.margin) {
+                return Err(GridError::Far { cell: cell.index as u32, id });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn first_inner(value: u32) -> usize {
+    (value & ((1 << word::LEVEL_SHIFT) - 1)) as usize * 8
+}
+
+/// A box of cells whose words follow each other.
+struct Level {
+    first: usize,
+    low: [f64; 3],
+    size: f64,
+    counts: [usize; 3],
+}
+
+impl Level {
+    fn of(grid: &Grid) -> Self {
+        Self {
+            first: 0,
+            low: grid.min.to_array().map(f64::from),
+            size: f64::from(grid.cell_size),
+            counts: grid.cell_counts.map(|count| count as usize),
+        }
+    }
+
+    /// The grid inside a cell, whose word is `value`.
+    fn inside(cell: &Cell, value: u32) -> Self {
+        let side = 1_usize << (value >> word::LEVEL_SHIFT & 7);
+        let size = cell.size / side as f64;
+        Self { first: first_inner(value), low: cell.low, size, counts: [side; 3] }
+    }
+
+    fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.cells_between([0; 3], self.counts)
+    }
+
+    /// At least those that come as near to a sphere's centre as `reach`.
+    fn cells_around(&self, [x, y, z, _]: [f32; 4], reach: f64) -> impl Iterator<Item = Cell> {
+        let center = [x, y, z].map(f64::from);
+        let low = [0, 1, 2].map(|axis| {
+            ((center[axis] - reach - self.low[axis]) / self.size - 1.0).max(0.0) as usize
+        });
+        let high = [0, 1, 2].map(|axis| {
+            let beyond = (center[axis] + reach - self.low[axis]) / self.size + 2.0;
+            (beyond.max(0.0) as usize).min(self.counts[axis])
+        });
+        self.cells_between(low, high)
+    }
+
+    fn cells_between(&self, low: [usize; 3], high: [usize; 3]) -> impl Iterator<Item = Cell> {
+        let along = move |axis: usize| low[axis]..high[axis];
+        let places = along(2)
+            .flat_map(move |z| along(1).flat_map(move |y| along(0).map(move |x| [x, y, z])));
+        places.map(move |[x, y, z]| Cell {
+            index: self.first + (z * self.counts[1] + y) * self.counts[0] + x,
+            low: [0, 1, 2].map(|axis| self.low[axis] + [x, y, z][axis] as f64 * self.size),
+            size: self.size,
+        })
+    }
+}

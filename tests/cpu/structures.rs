@@ -1,0 +1,284 @@
+//! Every structure, in one brick and in several, against trying every sphere: in f32 and to the bit. And none
+//! takes more memory than was planned.
+
+use fastrand::Rng;
+use pinhole::accel::{
+    Accel, AccelChoice, AccelPlan, Brick, Index, ListLayout, NO_HIT, RayF32, Structure,
+};
+use pinhole::glam::Vec3;
+
+use crate::rays::{assert_same, brute, rays};
+use crate::support::spheres::{self, Spheres};
+
+/// What a large device binds.
+const ROOMY: u64 = 1 << 30;
+
+/// 256 spheres a brick, for what needs 16 bytes a sphere.
+const TINY: u64 = 4096;
+
+/// What a grid may take beside its spheres, and 68 bytes for each of 300 spheres.
+const TINY_FOR_GRIDS: u64 = (1 << 20) + 300 * 68;
+
+/// Every structure of the spheres, with its plan.
+fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
+    let choices =
+        [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];
+    let mut all = Vec::new();
+    for choice in choices {
+        let tiny = if choice == AccelChoice::Grid { TINY_FOR_GRIDS } else { TINY };
+        for binding_bytes in [ROOMY, tiny] {
+            let plan = AccelPlan::new(spheres, choice, binding_bytes);
+            let mut plans = vec![plan.clone()];
+            if choice == AccelChoice::Grid && !spheres.is_empty() {
+                // Chosen for millions only.
+                let mut referenced = plan;
+                referenced.structure = Structure::Grid(ListLayout::Referenced);
+                plans.push(referenced);
+            }
+            for plan in plans {
+                let accel = plan.build(spheres);
+                let name = format!("{} in {}", accel.structure().name(), accel.bricks().len());
+                all.push((name, plan, accel));
+            }
+        }
+    }
+    all
+}
+
+/// Bytes of each buffer of a brick, by the names that plans give them.
+fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
+    let mut buffers = vec![
+        ("spheres", size_of_val(&brick.spheres[..]) as u64),
+        ("ids", size_of_val(&brick.ids[..]) as u64),
+    ];
+    match &brick.index {
+        Index::List => {}
+        Index::Grid(grid) => {
+            buffers.push(("cells", size_of_val(&grid.cells[..]) as u64));
+            buffers.extend(
+                grid.references.iter().map(|all| ("references", size_of_val(&all[..]) as u64)),
+            );
+        }
+        Index::WideTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
+        Index::BinaryTree(tree) => buffers.push(("nodes", size_of_val(tree.nodes()) as u64)),
+    }
+    buffers
+}
+
+/// No buffer is larger than planned, in any brick and in all together.
+fn check_memory(name: &str, plan: &AccelPlan, accel: &Accel) {
+    assert!(accel.bricks().len() <= plan.brick_count, "{name}");
+    let planned = |buffer: &str| {
+        // The plan of copies, with the structure of references, names no references.
+        let name = if buffer == "references" { "spheres" } else { buffer };
+        let planned = plan.buffers.iter().find(|planned| planned.name == name);
+        planned.map_or((0, 0), |planned| (planned.bytes, planned.bytes_per_binding))
+    };
+    let mut sums = std::collections::BTreeMap::new();
+    for brick in accel.bricks() {
+        for (buffer, bytes) in buffers(brick) {
+            let (_, most) = planned(buffer);
+            assert!(bytes <= most, "{name}: a brick has {bytes} bytes of {buffer}, planned {most}");
+            *sums.entry(buffer).or_insert(0) += bytes;
+        }
+    }
+    for (buffer, sum) in &sums {
+        let (most, _) = planned(buffer);
+        assert!(*sum <= most, "{name}: {sum} bytes of {buffer}, planned {most}");
+    }
+    assert!(sums.values().sum::<u64>() <= plan.device_bytes(), "{name}");
+}
+
+/// Each sphere of the input is in one brick, and each grid is what its check says.
+fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
+    let (low, high) = accel.bounds();
+    for [x, y, z, radius] in spheres {
+        let (center, reach) = (Vec3::new(*x, *y, *z), radius + margin);
+        let is_inside = low.cmple(center - reach).all() && high.cmpge(center + reach).all();
+        assert!(is_inside, "{name}: a sphere reaches beyond the box of the scene");
+    }
+    let mut seen = vec![false; spheres.len()];
+    for brick in accel.bricks() {
+        let mut own = brick.ids.clone();
+        own.sort_unstable();
+        own.dedup();
+        for id in &own {
+            let seen = &mut seen[*id as usize];
+            assert!(!std::mem::replace(seen, true), "{name}: sphere {id} is in two bricks");
+        }
+        if let Index::Grid(grid) = &brick.index {
+            // As if the brick were a scene.
+            let input: Spheres = own.iter().map(|id| spheres[*id as usize]).collect();
+            let local = |id: &u32| own.binary_search(id).unwrap() as u32;
+            let ids: Vec<u32> = brick.ids.iter().map(local).collect();
+            grid.validate(&brick.spheres, &ids, &input, margin)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+}
+
+/// Along faces, edges and through corners of the cells of a grid.
+fn rays_in_step(rng: &mut Rng, accel: &Accel, count: usize) -> Vec<RayF32> {
+    let Index::Grid(grid) = &accel.bricks()[0].index else { return Vec::new() };
+    let (low, high) = accel.bounds();
+    let mut corner = || {
+        let place = grid.cell_counts.map(|count| rng.u32(0..=count) as f32);
+        (grid.min + grid.cell_size * Vec3::from(place)).clamp(low, high)
+    };
+    (0..count)
+        .map(|i| {
+            let (origin, other) = (corner(), corner());
+            let mut along = other - origin;
+            // From corner to corner; in a plane; along an axis.
+            for axis in 0..i % 3 {
+                along[(i / 3 + axis) % 3] = if i % 2 == 0 { 0.0 } else { -0.0 };
+            }
+            RayF32 { origin, direction: along.normalize_or(Vec3::NEG_Y) }
+        })
+        .collect()
+}
+
+/// What a host does with rays that come from elsewhere.
+fn entering(rng: &mut Rng, (low, high): (Vec3, Vec3)) -> RayF32 {
+    let wall = rng.usize(0..3);
+    let (mut origin, mut target) = (Vec3::ZERO, Vec3::ZERO);
+    for axis in 0..3 {
+        origin[axis] = low[axis] + rng.f32() * (high[axis] - low[axis]);
+        target[axis] = low[axis] + rng.f32() * (high[axis] - low[axis]);
+    }
+    origin[wall] = if rng.bool() { low[wall] } else { high[wall] };
+    RayF32 { origin, direction: (target - origin).normalize_or(Vec3::X) }
+}
+
+fn check(scene: &str, spheres: &Spheres, count: usize) {
+    let built = all(spheres);
+    let mut rng = Rng::with_seed(spheres.len() as u64);
+    let mut rays = rays(&mut rng, spheres, count);
+    for (_, _, accel) in &built {
+        rays.extend(rays_in_step(&mut rng, accel, count / 16));
+    }
+    if !spheres.is_empty() {
+        rays.extend((0..count / 8).map(|_| entering(&mut rng, built[0].2.bounds())));
+    }
+    let answers: Vec<_> = rays.iter().map(|ray| brute(spheres, ray)).collect();
+    for (name, plan, accel) in &built {
+        let name = format!("{scene}, {name}");
+        check_memory(&name, plan, accel);
+        check_bricks(&name, accel, spheres, plan.statistics.margin());
+        for (ray, expected) in rays.iter().zip(&answers) {
+            assert_same(accel.find_nearest(ray), *expected, &name, ray);
+            // Strictly before, so not at the nearest distance itself.
+            for (t_max, any) in [(NO_HIT, expected.t < NO_HIT), (expected.t, false)] {
+                assert_eq!(accel.find_any(ray, t_max), any, "{name}: {ray:?} up to {t_max}");
+            }
+            if expected.t < NO_HIT {
+                let beyond = expected.t.next_up();
+                assert!(accel.find_any(ray, beyond), "{name}: {ray:?} up to {beyond}");
+            }
+        }
+    }
+    let hits = answers.iter().filter(|nearest| nearest.t < NO_HIT).count();
+    assert!(hits > 0 || spheres.is_empty(), "{scene}: no ray hits");
+}
+
+#[test]
+fn few_spheres() {
+    check("none", &Vec::new(), 100);
+    for count in [1, 2, 3, 31, 33] {
+        check(&format!("{count}"), &spheres::random(count, 1, |_| 0.2), 400);
+    }
+}
+
+#[test]
+fn random_spheres() {
+    check("random", &spheres::random(3_000, 2, |_| 0.02), 800);
+    check("sparse", &spheres::random(3_000, 3, |_| 0.002), 800);
+    check("four decades", &spheres::four_decades(2_000), 800);
+}
+
+#[test]
+fn spheres_that_nothing_tells_apart() {
+    check("1,000 equal", &vec![[1.0, 2.0, 3.0, 0.5]; 1_000], 200);
+    check("twice", &spheres::twice(1_000), 800);
+    check("concentric", &spheres::concentric(500), 300);
+}
+
+#[test]
+fn spheres_in_order() {
+    check("line", &spheres::line(1_000), 400);
+    check("nested", &spheres::nested(300), 300);
+    check("geometric", &spheres::geometric(1_000), 400);
+    check("lattice", &spheres::lattice(14), 800);
+}
+
+#[test]
+fn spheres_of_uneven_size_and_density() {
+    check("one around all", &spheres::one_around_all(2_000), 600);
+    check("clusters", &spheres::clusters(10, 300), 600);
+    check("outlier", &spheres::outlier(2_000), 600);
+    check("flat", &spheres::flat(2_000), 600);
+    check("needle", &spheres::needle(2_000), 600);
+}
+
+#[test]
+fn far_and_very_long_and_very_short() {
+    check("far", &spheres::far(1_500), 600);
+    let decades = spheres::four_decades(1_000);
+    for power in [50, -50] {
+        let scaled = spheres::scaled(&decades, 2_f32.powi(power));
+        check(&format!("times 2^{power}"), &scaled, 600);
+    }
+}
+
+/// Bindings for one sphere each.
+#[test]
+fn a_brick_for_every_sphere() {
+    let spheres = spheres::random(60, 22, |_| 0.1);
+    let plan = AccelPlan::new(&spheres, AccelChoice::Grid, TINY);
+    let accel = plan.build(&spheres);
+    assert_eq!(accel.bricks().len(), 60);
+    check_memory("sixty bricks", &plan, &accel);
+    let mut rng = Rng::with_seed(22);
+    for ray in rays(&mut rng, &spheres, 800) {
+        assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "sixty bricks", &ray);
+    }
+}
+
+/// The scenes do lead to every structure.
+#[test]
+fn every_structure_is_met() {
+    let mut met: Vec<Structure> = [spheres::clusters(10, 300), spheres::random(2_000, 2, |_| 0.02)]
+        .iter()
+        .flat_map(|spheres| all(spheres).into_iter().map(|(_, _, accel)| accel.structure()))
+        .collect();
+    met.sort_by_key(|structure| structure.name());
+    met.dedup();
+    assert_eq!(met.len(), 7, "{met:?}");
+}
+
+/// All in one place: lists keep the one that counts, and trees end.
+fn coincident(count: usize) {
+    let spheres = spheres::coincident(count);
+    let few = spheres::coincident(1);
+    for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
+        let plan = AccelPlan::new(&spheres, choice, ROOMY);
+        let accel = plan.build(&spheres);
+        let name = format!("{count} coincident, {choice}");
+        check_memory(&name, &plan, &accel);
+        let mut rng = Rng::with_seed(23);
+        for ray in rays(&mut rng, &few, 24) {
+            assert_same(accel.find_nearest(&ray), brute(&few, &ray), &name, &ray);
+        }
+    }
+}
+
+#[test]
+fn a_hundred_thousand_coincident_centres() {
+    coincident(100_000);
+}
+
+#[test]
+#[ignore = "minutes without optimisation"]
+fn a_million_coincident_centres() {
+    coincident(1_000_000);
+}

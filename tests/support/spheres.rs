@@ -1,0 +1,120 @@
+//! Scenes that a structure may lose spheres in: what is equal, nested, flat, in step with cells, far away, or
+//! of uneven size and density.
+
+use fastrand::Rng;
+
+/// Centre and radius of each, in the scene's frame.
+pub(crate) type Spheres = Vec<[f32; 4]>;
+
+/// In the unit cube.
+pub(crate) fn random(count: usize, seed: u64, radius: impl Fn(&mut Rng) -> f32) -> Spheres {
+    let mut rng = Rng::with_seed(seed);
+    (0..count).map(|_| [rng.f32(), rng.f32(), rng.f32(), radius(&mut rng)]).collect()
+}
+
+/// Coordinates and radii times a factor.
+pub(crate) fn scaled(spheres: &Spheres, factor: f32) -> Spheres {
+    spheres.iter().map(|sphere| sphere.map(|x| x * factor)).collect()
+}
+
+/// Radii from 0.3 down to 0.00003.
+pub(crate) fn four_decades(count: usize) -> Spheres {
+    random(count, 4, |rng| 10_f32.powf(-4.0 * rng.f32() - 0.5))
+}
+
+pub(crate) fn coincident(count: usize) -> Spheres {
+    vec![[0.0, 0.0, 0.0, 1.0]; count]
+}
+
+/// One centre, many radii.
+pub(crate) fn concentric(count: usize) -> Spheres {
+    (0..count).map(|i| [7.0, 7.0, 7.0, 1.0 + i as f32 * 1e-3]).collect()
+}
+
+/// Equal pairs, so that every answer is a tie.
+pub(crate) fn twice(count: usize) -> Spheres {
+    let mut spheres = random(count, 5, |_| 0.03);
+    spheres.extend_from_within(..);
+    spheres
+}
+
+/// Each touches the next.
+pub(crate) fn line(count: usize) -> Spheres {
+    (0..count).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect()
+}
+
+/// Each inside the next.
+pub(crate) fn nested(count: usize) -> Spheres {
+    (0..count).map(|i| [i as f32 * 1e-3, 0.0, 0.0, 1.0 + i as f32]).collect()
+}
+
+/// Along a line, each larger and farther by the same factor.
+pub(crate) fn geometric(count: i32) -> Spheres {
+    (0..count).map(|i| [1.03_f32.powi(i), 0.0, 0.0, 0.01 * 1.03_f32.powi(i)]).collect()
+}
+
+/// Face-centred cubic, touching neighbours, with integer centres.
+pub(crate) fn lattice(side: usize) -> Spheres {
+    (0..side * side * side)
+        .filter_map(|i| {
+            let [x, y, z] = [i % side, i / side % side, i / (side * side)];
+            let radius = std::f32::consts::FRAC_1_SQRT_2;
+            ((x + y + z) % 2 == 0).then_some([x as f32, y as f32, z as f32, radius])
+        })
+        .collect()
+}
+
+/// A huge one around many small ones.
+pub(crate) fn one_around_all(count: usize) -> Spheres {
+    let mut around = random(count, 6, |_| 0.005);
+    around.insert(count / 3, [0.5, 0.5, 0.5, 3.0]);
+    around
+}
+
+/// Dense in a few places, of sizes from 1 to 0.001.
+pub(crate) fn clusters(count: usize, each: usize) -> Spheres {
+    let mut rng = Rng::with_seed(8);
+    (0..count)
+        .flat_map(|_| {
+            let center = [rng.f32() * 100.0, rng.f32() * 100.0, rng.f32() * 100.0];
+            let size = 10_f32.powf(-3.0 * rng.f32());
+            let near = random(each, rng.u64(..), |_| 0.05);
+            near.into_iter().map(move |[x, y, z, radius]| {
+                let [a, b, c] = center;
+                [a + x * size, b + y * size, c + z * size, radius * size]
+            })
+        })
+        .collect()
+}
+
+/// Coordinates about 10⁷, where neighbours in f32 are 1 apart, and radii of 10⁻².
+pub(crate) fn far(count: usize) -> Spheres {
+    scaled(&random(count, 9, |_| 1e-9), 1e7)
+}
+
+/// All in a plane.
+pub(crate) fn flat(count: usize) -> Spheres {
+    random(count, 11, |_| 0.004).into_iter().map(|[x, y, _, r]| [x, y, 0.25, r]).collect()
+}
+
+/// All on a line, and far apart.
+pub(crate) fn needle(count: usize) -> Spheres {
+    random(count, 12, |_| 1e-4).into_iter().map(|[x, _, _, r]| [0.5, 0.5, x, r]).collect()
+}
+
+/// Many in a small place, and a huge one far away.
+pub(crate) fn outlier(count: usize) -> Spheres {
+    let mut spheres = random(count, 13, |_| 0.02);
+    spheres.push([3e4, -2e4, 1e4, 2e3]);
+    spheres
+}
+
+/// A crowd in a corner of what is nearly empty: grids inside cells, and long ways through empty ones.
+pub(crate) fn crowd(count: usize) -> Spheres {
+    let mut spheres = random(count, 14, |_| 0.02);
+    for sphere in &mut spheres {
+        *sphere = sphere.map(|x| x * 0.2);
+    }
+    spheres.extend(random(count / 20, 15, |_| 0.01));
+    spheres
+}
