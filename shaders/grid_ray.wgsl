@@ -66,7 +66,8 @@ fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
 }
 
 fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
-    var found = Found(t_max, NO_PLACE);
+    // A list takes what is as near as the nearest so far; `t_max` is positive, so this is the number below it.
+    var found = Found(bitcast<f32>(bitcast<u32>(t_max) - 1u), NO_PLACE);
     walk(ray, inverse, &found, true);
     return found.place != NO_PLACE;
 }

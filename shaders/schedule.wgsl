@@ -14,9 +14,10 @@ fn pixel_in_tile(group: vec2u, lane: u32) -> vec2u {
 
 // a % b, for a below 2^24: software devices divide integers lane by lane.
 fn remainder(a: u32, b: u32) -> u32 {
-    let rest = a - u32(f32(a) / f32(b)) * b;
-    // A quotient that was rounded up leaves a rest below zero.
-    return select(rest, rest + b, rest >= b);
+    // The quotient may be one too large, and the rest then lies below zero, or one too small.
+    let rest = i32(a) - i32(f32(a) / f32(b)) * i32(b);
+    let raised = select(rest, rest + i32(b), rest < 0);
+    return u32(select(raised, raised - i32(b), raised >= i32(b)));
 }
 
 fn every_second_bit(lane: u32) -> u32 {

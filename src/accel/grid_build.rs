@@ -50,6 +50,10 @@ pub fn build_grid(
 ) -> BuiltGrid {
     let (min, max) = bounds(spheres, ids, margin);
     let mut cells = first_level(spheres, ids, (min, max), budget);
+    // The size was chosen by volume, and a flat box has more cells than its volume says.
+    while cells.len() > budget.cells.min(MAX_CELLS) {
+        cells = coarser(&cells, max);
+    }
     let (sorted, sorted_ids) = sort_by_cell(spheres, ids, &cells);
     let mut counts = count(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions; spheres in step with the cells may meet more.
