@@ -11,6 +11,7 @@ mod agreement;
 mod device;
 mod embedding;
 mod pictures;
+mod plan;
 mod program;
 mod scenes;
 
@@ -53,6 +54,7 @@ fn main() {
         embedding::trials(),
         device::trials(),
         program::trials(),
+        plan::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();
