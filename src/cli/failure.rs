@@ -22,7 +22,8 @@ pub(super) enum Failure {
     Usage(anyhow::Error),
     /// The job could not be done.
     Job(anyhow::Error),
-    /// The user stopped it.
+    /// The user stopped it while a device was at work.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "elsewhere the program exits"))]
     Stopped,
 }
 
