@@ -107,7 +107,7 @@ fn on_adapter(
     film: Film,
 ) {
     group.throughput(Throughput::Elements(film.pixel_count()));
-    for choice in CHOICES {
+    for choice in [AccelChoice::Grid, AccelChoice::Tree] {
         let accel = headless.plan(scene, choice).build(scene.spheres());
         let buffers = headless.upload(scene, &accel).unwrap();
         for (query, asked) in [(Query::Nearest, "nearest"), (Query::Any, "any")] {

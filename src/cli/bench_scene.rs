@@ -23,6 +23,9 @@ pub(super) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standar
 /// Bytes of a sphere while its scene is made and built: twice itself, and the largest structure's copies.
 const BYTES_WHILE_BUILT: u64 = 2 * BYTES_PER_SPHERE + 128;
 
+/// Bytes of a pixel: of the image, and of the hits, texture and read-back of a software device.
+const BYTES_PER_PIXEL: u64 = 12 + 48;
+
 /// A scene that was named.
 pub(super) enum BenchSource {
     Standard(Standard),
@@ -69,19 +72,22 @@ impl BenchSource {
 
 fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
     let (name, count) = (standard.name(), standard.count());
-    let bytes = count * BYTES_WHILE_BUILT;
+    let film = match size {
+        Some((width, height)) => film(width, height)?,
+        None => standard.film().context(name)?,
+    };
+    let bytes = count * BYTES_WHILE_BUILT + film.pixel_count().saturating_mul(BYTES_PER_PIXEL);
     memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
         .map_err(Failure::usage)?;
-    tell(format_args!("{name}: {count} spheres, at most {} of memory", memory::readable(bytes)));
+    tell(format_args!(
+        "{name}: {count} spheres, at most {} of memory beside the driver's",
+        memory::readable(bytes)
+    ));
     progress::stage(format!("making {name}"));
     let started = Instant::now();
     let spheres = standard.spheres().context(name)?;
     let scene = Scene::from_f32(spheres, LinearRgb::from_srgb8(DEFAULT_COLOR)).context(name)?;
     let load = started.elapsed();
-    let film = match size {
-        Some((width, height)) => film(width, height)?,
-        None => standard.film().context(name)?,
-    };
     let camera = Box::new(standard.camera().context(name)?);
     Ok(BenchScene { name: name.to_owned(), scene, camera, film, load })
 }

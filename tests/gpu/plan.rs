@@ -150,8 +150,7 @@ fn bench(headless: &'static Headless) {
 /// 30,000 spheres for each of 16 million rays. The eye is among them, so that no ray is done at once.
 fn stopped(_: &'static Headless) {
     let folder = folder_with(30_000);
-    let render =
-        "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5";
+    let render = "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
     for delay in [100, 300, 1000] {
         let mut command = program(folder.path(), render);
         let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
