@@ -58,6 +58,14 @@ pub struct PlannedBuffer {
     pub bytes_per_binding: u64,
 }
 
+impl PlannedBuffer {
+    /// A single buffer of so many bytes.
+    #[must_use]
+    pub const fn one(name: &'static str, bytes: u64) -> Self {
+        Self { name, bytes, bytes_per_binding: bytes }
+    }
+}
+
 /// What will be built of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccelPlan {

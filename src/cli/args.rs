@@ -7,11 +7,14 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::camera::CameraArgs;
 use super::data::DataFormat;
 use super::generate::kinds;
+use crate::accel::AccelChoice;
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
-#[command(after_help = "Exit codes: 0 done; 1 the job failed; 2 wrong usage.")]
+#[command(
+    after_help = "Exit codes: 0 done; 1 the job failed, or would not fit; 2 wrong usage; 130 stopped by a signal."
+)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
@@ -21,6 +24,12 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Render a scene file or a data file
     Render(Box<RenderArgs>),
+    /// Say what a render would take of the device and the machine, and whether it fits
+    #[cfg(feature = "gpu")]
+    Plan(Box<PlanArgs>),
+    /// Measure structures on an adapter
+    #[cfg(feature = "gpu")]
+    Bench(BenchArgs),
     /// Write the scene file of three spheres into this folder and render it
     Demo(DemoArgs),
     /// Write a file of made-up spheres, for trying things out and measuring
@@ -38,6 +47,8 @@ pub(super) struct RenderArgs {
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
+    #[command(flatten)]
+    pub(super) accel: AccelArgs,
     /// Also write a layer (color, depth, normal, id) as a NumPy array; may be repeated
     #[arg(long = "layer", value_name = "LAYER=FILE.npy")]
     pub(super) layers: Vec<String>,
@@ -95,9 +106,115 @@ pub(super) struct DeviceArgs {
     /// What renders: a GPU if there is an adapter, a GPU, or the CPU reference
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub(super) backend: Backend,
+    #[command(flatten)]
+    pub(super) adapter: AdapterArgs,
+}
+
+/// Which device, and what of it.
+#[derive(Debug, Args)]
+pub(super) struct AdapterArgs {
     /// The adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best one]
     #[arg(long, value_name = "NAME")]
     pub(super) adapter: Option<String>,
+    /// The limits that the device is opened with [default: adapter]
+    #[arg(long, value_enum)]
+    pub(super) limits: Option<Limits>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Limits {
+    /// All that the adapter has
+    Adapter,
+    /// WebGPU's defaults, or less where the adapter has less
+    Webgpu,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AccelArgs {
+    /// What finds the spheres of a ray on an adapter [default: auto]
+    #[arg(long, value_enum)]
+    pub(super) accel: Option<Structure>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Structure {
+    /// What suits the spheres
+    Auto,
+    /// Cells, nested where it is crowded
+    Grid,
+    /// A tree with eight children a node
+    Tree,
+    /// A tree with two children a node: slower, a second opinion
+    BinaryTree,
+    /// Every sphere for every ray: slow, a second opinion
+    List,
+}
+
+impl From<Structure> for AccelChoice {
+    fn from(structure: Structure) -> Self {
+        match structure {
+            Structure::Auto => Self::Auto,
+            Structure::Grid => Self::Grid,
+            Structure::Tree => Self::Tree,
+            Structure::BinaryTree => Self::BinaryTree,
+            Structure::List => Self::List,
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Nothing is allocated on the device. Exit codes: 0 it fits; 1 it does not, \
+    with the line that `render` would end with; 2 wrong usage.\n\n\
+    JSON: `scene` (spheres, bounds, radius), `structure` (name, reason, bricks), `picture` (width, height, \
+    tile_width, tile_height, tiles, submissions_at_least), `buffers` (name, bytes, bytes_per_binding, \
+    bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, `host_peak`, \
+    `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
+    `problem`. Keys may be added, not changed."
+)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub(super) input: InputArgs,
+    #[command(flatten)]
+    pub(super) adapter: AdapterArgs,
+    #[command(flatten)]
+    pub(super) accel: AccelArgs,
+    /// A layer that would be written beside the picture (depth, normal, id); may be repeated
+    #[arg(long = "layer", value_name = "LAYER")]
+    pub(super) layers: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Each scene is measured with what --accel auto chooses and with the other of grid \
+    and tree. Rays go through the centres of all pixels; `any` asks only whether there is a hit. Times are \
+    medians; the peak of the process's memory only grows. JSON: `version`, `adapter`, `reps`, `scenes` \
+    (name, spheres, width, height, load_seconds, runs, note); a run has seconds, rays per second and bytes \
+    under the names that the table has. Keys may be added, not changed."
+)]
+pub(super) struct BenchArgs {
+    /// R1M, R10M, L1M, C200k, or a scene or data file; R10M takes most of a GiB [default: R1M L1M C200k]
+    #[arg(value_name = "SCENE")]
+    pub(super) scenes: Vec<PathBuf>,
+    /// Size in pixels [default: 1024x1024, or the file's]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<String>,
+    /// Only these structures, with commas between them
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(super) accel: Vec<Structure>,
+    /// How often each is measured
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) reps: u32,
+    #[command(flatten)]
+    pub(super) adapter: AdapterArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 
 use super::args::DemoArgs;
+use super::device::Device;
 use super::failure::Failure;
 use super::input::Source;
 use super::output::Outputs;
-use super::render::{Device, render};
+use super::render::render;
 use super::speak::tell;
 use super::threads;
 use crate::image::LayerSet;
@@ -19,7 +20,7 @@ const SCENE_FILE: &str = "three-spheres.toml";
 const PICTURE_FILE: &str = "three-spheres.png";
 
 pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
-    let device = Device::new(&args.device)?;
+    let device = Device::new(&args.device, None)?;
     let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
     let scene_file = PathBuf::from(SCENE_FILE);
     let is_there = is_there(&scene_file)?;

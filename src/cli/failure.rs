@@ -9,6 +9,12 @@ pub(super) const FAILED: u8 = 1;
 /// Exit code of wrong usage.
 pub(super) const USAGE: u8 = 2;
 
+/// Exit code of a job that a signal stopped: as shells have it for SIGINT.
+pub(super) const STOPPED: u8 = 130;
+
+/// What a stopped job says.
+pub(super) const NOTHING_WRITTEN: &str = "stopped; nothing was written";
+
 /// One line for the user, and an exit code.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -16,6 +22,9 @@ pub(super) enum Failure {
     Usage(anyhow::Error),
     /// The job could not be done.
     Job(anyhow::Error),
+    /// The user stopped it while a device was at work.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "elsewhere the program exits"))]
+    Stopped,
 }
 
 impl Failure {
@@ -23,10 +32,19 @@ impl Failure {
         Self::Usage(anyhow::Error::msg(message.into()))
     }
 
+    /// The error with all its contexts.
+    pub(super) fn message(&self) -> String {
+        match self {
+            Self::Usage(error) | Self::Job(error) => format!("{error:#}"),
+            Self::Stopped => NOTHING_WRITTEN.to_owned(),
+        }
+    }
+
     pub(super) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Usage(_) => USAGE.into(),
             Self::Job(_) => FAILED.into(),
+            Self::Stopped => STOPPED.into(),
         }
     }
 }
@@ -38,9 +56,11 @@ impl From<anyhow::Error> for Failure {
 }
 
 impl fmt::Display for Failure {
-    /// The error with all its contexts.
+    /// The line that the program ends with.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Usage(error) | Self::Job(error)) = self;
-        write!(f, "{error:#}")
+        match self {
+            Self::Usage(_) | Self::Job(_) => write!(f, "error: {}", self.message()),
+            Self::Stopped => f.write_str(&self.message()),
+        }
     }
 }

@@ -8,6 +8,7 @@ use super::args::GenerateArgs;
 use super::failure::Failure;
 use super::memory;
 use super::output::{self, SpheresFormat};
+use super::progress;
 use super::speak::tell;
 use super::threads;
 use crate::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
@@ -27,7 +28,9 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
         .map_err(Failure::usage)?;
     tell(format_args!("{}: {count} spheres, {bytes} bytes", path.display()));
     threads::start()?;
+    progress::stage("making spheres");
     let spheres = kind.spheres(count, args.seed).map_err(|error| Failure::Job(error.into()))?;
+    progress::stage("writing");
     Ok(output::write_spheres(path, format, &spheres)?)
 }
 

@@ -9,6 +9,7 @@ use super::args::InputArgs;
 use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
 use super::memory;
+use super::progress;
 use crate::camera::{Camera, CameraParameters};
 use crate::color::LinearRgb;
 use crate::film::Film;
@@ -103,9 +104,17 @@ impl Source {
         Self { path: path.to_path_buf(), format: Format::Scene, size: None, options, camera: None }
     }
 
+    /// A file whose extension says what it is, with no flag but a size.
+    #[cfg(feature = "gpu")]
+    pub(super) fn of_file(path: &Path, size: Option<(u32, u32)>) -> Result<Self, Failure> {
+        let format = Format::of(path).map_err(Failure::Usage)?;
+        Ok(Self { format, size, ..Self::of_scene(path) })
+    }
+
     /// Reads the file, and the data that it names.
     pub(super) fn load(&self) -> Result<Input, Failure> {
         let path = &self.path;
+        progress::stage(format!("reading {}", path.display()));
         let Format::Data(format) = self.format else {
             let text = String::from_utf8(read(path)?).map_err(|_| {
                 anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
@@ -204,7 +213,7 @@ fn default_color() -> LinearRgb {
 }
 
 /// `WxH`
-fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     let sides = text.split_once(['x', 'X']);
     sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
         || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),

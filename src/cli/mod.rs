@@ -7,40 +7,61 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 
+#[cfg(feature = "gpu")]
+mod adapter;
 mod args;
+#[cfg(feature = "gpu")]
+mod bench;
+#[cfg(feature = "gpu")]
+mod bench_report;
+#[cfg(feature = "gpu")]
+mod bench_scene;
 mod camera;
 mod data;
 mod demo;
+mod device;
 mod failure;
 mod generate;
 mod info;
 mod input;
+mod interrupt;
 mod memory;
 mod output;
+#[cfg(feature = "gpu")]
+mod plan;
+mod process;
+mod progress;
 mod render;
 mod speak;
+#[cfg(feature = "gpu")]
+mod table;
 mod threads;
 
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
 
-/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage.
+/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 130 stopped.
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return explain(&error),
     };
-    let result = match arguments.command {
+    let result = interrupt::install().and_then(|()| match arguments.command {
         Command::Render(args) => render::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Plan(args) => plan::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Bench(args) => bench::run(&args),
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Info(args) => info::run(&args),
-    };
+    });
+    progress::clear();
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            tell(format_args!("error: {failure}"));
+            tell(&failure);
             failure.exit_code()
         }
     }

@@ -10,6 +10,8 @@ use tempfile::NamedTempFile;
 
 use super::failure::Failure;
 use super::input::extension;
+use super::interrupt;
+use super::progress;
 use super::speak::answer;
 use crate::image::{Image, Layer};
 use crate::io::{npy, png, raw};
@@ -52,6 +54,7 @@ impl Outputs {
     /// Encodes and writes everything, and `text` to a file if there is one; files get their names once
     /// all of them are complete.
     pub(super) fn write(&self, image: &Image, text: Option<(&PathBuf, &str)>) -> Result<()> {
+        progress::stage("writing");
         let picture = png::encode(image)?;
         let mut files = Vec::new();
         if let Some((path, text)) = text {
@@ -65,6 +68,9 @@ impl Outputs {
         }
         name_all(files)?;
         if self.picture.is_none() {
+            interrupt::words(
+                "stopped; what was written to standard output is not the whole picture",
+            );
             answer(&picture).context("standard output: cannot be written")?;
         }
         Ok(())
@@ -109,8 +115,12 @@ pub(super) fn write_spheres(
     name_all(vec![(&path.to_path_buf(), file)])
 }
 
-/// A file beside the one that it will become.
+/// A file beside the one that it will become. It is removed if the program is stopped.
 fn temporary(path: &Path) -> Result<NamedTempFile> {
+    interrupt::creating(|| temporary_in_folder(path), |file| file.path().to_path_buf())
+}
+
+fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");
     // As any new file: what the umask leaves of this.
@@ -146,6 +156,11 @@ fn unnamed_with(
 
 /// Gives complete files their names. If one cannot have its name, those that were new are removed again.
 fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
+    let any = !files.is_empty();
+    interrupt::all_or_nothing(any, || name_each(files))
+}
+
+fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let mut new = Vec::new();
     for (path, file) in files {
         let existed = path.exists();

@@ -2,16 +2,24 @@
 
 use anyhow::Context;
 
-use super::args::{Backend, DeviceArgs, RenderArgs};
+use super::args::RenderArgs;
+use super::device::Device;
+#[cfg(feature = "gpu")]
+use super::device::explained;
 use super::failure::Failure;
 use super::input::{Input, Source};
+#[cfg(feature = "gpu")]
+use super::interrupt;
 use super::memory;
 use super::output::Outputs;
+use super::progress;
 use super::speak::tell;
 use super::threads;
+#[cfg(feature = "gpu")]
+use crate::accel::AccelChoice;
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::{GpuError, Headless, HeadlessOptions};
+use crate::gpu::{Headless, Progress};
 use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
@@ -21,36 +29,12 @@ struct Job {
     device: Device,
 }
 
-/// What renders.
-pub(super) enum Device {
-    /// The CPU reference.
-    Cpu,
-    /// An adapter, or if there is none at all and `or_cpu` is set, the CPU reference.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
-    Adapter { name: Option<String>, or_cpu: bool },
-}
-
-impl Device {
-    pub(super) fn new(args: &DeviceArgs) -> Result<Self, Failure> {
-        let name = args.adapter.clone();
-        match (args.backend, &name) {
-            (Backend::Cpu, None) => Ok(Self::Cpu),
-            (Backend::Cpu, Some(_)) => {
-                Err(Failure::usage("--adapter and --backend cpu exclude each other; drop one"))
-            }
-            (Backend::Gpu, _) => Ok(Self::Adapter { name, or_cpu: false }),
-            // Who names an adapter wants that one.
-            (Backend::Auto, _) => Ok(Self::Adapter { or_cpu: name.is_none(), name }),
-        }
-    }
-}
-
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         Ok(Self {
             source: Source::new(&args.input)?,
             outputs: Outputs::new(&args.output, &args.layers)?,
-            device: Device::new(&args.device)?,
+            device: Device::new(&args.device, args.accel.accel)?,
         })
     }
 }
@@ -70,23 +54,19 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 /// Renders on the device, and says so if that is not what the user would expect.
 pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
-    memory::check(&input.film, &input.size_from, layers)?;
     match device {
         Device::Cpu => on_cpu(input, layers),
         #[cfg(feature = "gpu")]
-        Device::Adapter { name, or_cpu } => match Headless::open(&HeadlessOptions {
-            adapter: name.clone(),
-            ..HeadlessOptions::default()
-        }) {
-            Ok(headless) => on_gpu(&headless, input, layers),
-            Err(GpuError::NoAdapter) if *or_cpu => {
+        Device::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
+            Ok(headless) => on_gpu(&headless, input, layers, *choice),
+            Err(_) if *or_cpu => {
+                memory::check(&input.film, &input.size_from, layers)?;
                 tell(
                     "note: no Vulkan, Metal or DX12 adapter was found; \
                      rendering on the CPU reference, which is slower",
                 );
                 on_cpu(input, layers)
             }
-            Err(error @ GpuError::UnknownAdapter { .. }) => Err(Failure::Usage(error.into())),
             Err(error) => Err(Failure::Job(error.into())),
         },
         #[cfg(not(feature = "gpu"))]
@@ -99,21 +79,38 @@ pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result
 }
 
 fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {
-    let Input { scene, camera, film, settings, .. } = input;
+    let Input { scene, camera, film, settings, size_from, .. } = input;
+    memory::check(film, size_from, layers)?;
+    progress::stage("rendering on the CPU reference");
     let image = cpu::render(scene, camera.as_ref(), film, settings, layers);
     Ok(image.context("the CPU reference")?)
 }
 
 #[cfg(feature = "gpu")]
-fn on_gpu(headless: &Headless, input: &Input, layers: LayerSet) -> Result<Image, Failure> {
+fn on_gpu(
+    headless: &Headless,
+    input: &Input,
+    layers: LayerSet,
+    choice: AccelChoice,
+) -> Result<Image, Failure> {
     let Input { scene, camera, film, settings, .. } = input;
-    headless.render(scene, camera.as_ref(), film, settings, layers).map_err(|error| {
-        let adapter = headless.adapter_info().name.clone();
-        let remedy = if matches!(error, GpuError::Limit { .. }) {
-            "; --backend cpu has no such limit"
-        } else {
-            ""
+    progress::stage("planning");
+    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+    let plan = headless.plan_render(scene, choice, film, layers, encoding);
+    let limits = headless.device().limits();
+    plan.check(&limits, memory::available()).map_err(|error| explained(headless, &error))?;
+    progress::stage(format!("building: {}", plan.accel.structure.name()));
+    let accel = plan.accel.build(scene.spheres());
+    progress::stage("copying to the device");
+    let image = interrupt::on_device(|| {
+        let buffers = headless.upload(scene, &accel)?;
+        drop(accel);
+        progress::stage("preparing");
+        let mut watch = |Progress { done, total }| {
+            progress::tracing(done, total);
+            interrupt::decide()
         };
-        Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}"))
-    })
+        headless.render_uploaded(&buffers, camera.as_ref(), film, settings, layers, &mut watch)
+    })?;
+    image.map_err(|error| explained(headless, &error))
 }

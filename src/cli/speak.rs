@@ -3,11 +3,15 @@
 use std::fmt;
 use std::io::{self, Write};
 
+use super::progress;
 use crate::text::one_line;
 
 /// One line on standard error, with nothing in it that a terminal would obey.
 pub(super) fn tell(line: impl fmt::Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", one_line(&line.to_string()));
+    let line = one_line(&line.to_string());
+    progress::beside(|| {
+        let _ = writeln!(io::stderr().lock(), "{line}");
+    });
 }
 
 /// Text of several lines on standard error.

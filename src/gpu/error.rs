@@ -49,6 +49,20 @@ pub enum GpuError {
         /// The limit's value in bytes.
         limit: u64,
     },
+    /// The host's memory is too small.
+    #[error(
+        "{what} needs {needed} bytes of host memory, but {available} are free; choose {instead}"
+    )]
+    HostMemory {
+        /// What takes it.
+        what: &'static str,
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes that are free.
+        available: u64,
+        /// What would need less.
+        instead: &'static str,
+    },
     /// A target texture is not what the renderer was built for.
     #[error("the {layer} target is {found}; it must be {expected}")]
     Target {

@@ -5,7 +5,7 @@ use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 use super::error::{GpuError, check_storage_size, scoped};
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
-use super::scene_buffers::{SceneBuffers, SceneId, part};
+use super::scene_buffers::{SceneBuffers, SceneId, binding_limit, part};
 use super::tiles::{self, Groups, Tile};
 use crate::camera::{Camera, CameraKind};
 use crate::film::Film;
@@ -89,14 +89,9 @@ impl Frame {
         let views = checked_targets(renderer, targets)?;
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
-        let hit_size = size_of::<records::Hit>() as u64;
         let limits = device.limits();
-        let binding_limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let pixels_per_band = (binding_limit / hit_size).min(tiles::MAX_PIXELS);
-        // At most MAX_PIXELS, so it fits.
-        let rows_per_band = (pixels_per_band / u64::from(size[0])).max(1) as u32;
-        let rows_per_band = rows_per_band.min(size[1]);
-        let hit_bytes = u64::from(size[0]) * u64::from(rows_per_band) * hit_size;
+        let rows_per_band = rows_per_band(&limits, size);
+        let hit_bytes = hit_bytes(&limits, size);
         check_storage_size(device, "the buffer of hits", hit_bytes)?;
         let record_size = size_of::<records::Frame>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
@@ -293,6 +288,20 @@ impl Frame {
     pub(super) fn target_group(&self) -> &BindGroup {
         &self.target_group
     }
+}
+
+const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+
+/// How many rows of targets of a size are traced before they are shaded: their hits fit into one binding.
+fn rows_per_band(limits: &wgpu::Limits, [width, height]: [u32; 2]) -> u32 {
+    let pixels_per_band = (binding_limit(limits) / HIT_BYTES).min(tiles::MAX_PIXELS);
+    // At most MAX_PIXELS, so it fits.
+    ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
+}
+
+/// Bytes of the hits of targets of a size.
+pub(super) fn hit_bytes(limits: &wgpu::Limits, size: [u32; 2]) -> u64 {
+    u64::from(size[0]) * u64::from(rows_per_band(limits, size)) * HIT_BYTES
 }
 
 /// How many iterations of loops an invocation may take.

@@ -30,16 +30,25 @@ impl ReadableTexture {
             usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        // Every format in use is one uncompressed colour plane.
-        let bytes_per_pixel = format.block_copy_size(None).unwrap_or(0);
+        let bytes_per_pixel = bytes_per_pixel(format);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
-            size: u64::from(padded_row(width, bytes_per_pixel)) * u64::from(height),
+            size: Self::buffer_bytes(format, [width, height]),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
         Self { texture, view, buffer, bytes_per_pixel }
+    }
+
+    /// Bytes of the texture.
+    pub(super) fn texture_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
+        u64::from(width) * u64::from(height) * u64::from(bytes_per_pixel(format))
+    }
+
+    /// Bytes of the buffer.
+    pub(super) fn buffer_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
+        u64::from(padded_row(width, bytes_per_pixel(format))) * u64::from(height)
     }
 
     pub(super) fn view(&self) -> &TextureView {
@@ -127,6 +136,11 @@ impl ReadableWord {
 
 fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
+}
+
+/// Every format in use is one uncompressed colour plane.
+fn bytes_per_pixel(format: TextureFormat) -> u32 {
+    format.block_copy_size(None).unwrap_or(0)
 }
 
 /// Bytes of a row in a copy, which WebGPU wants to be a multiple of 256.

@@ -1,6 +1,6 @@
 //! The textures of one tile of a headless render.
 
-use wgpu::Device;
+use wgpu::{Device, TextureFormat};
 
 use super::error::GpuError;
 use super::frame::{DataTargets, Targets};
@@ -8,7 +8,29 @@ use super::readback::{ReadableTexture, ReadableWord};
 use super::records::NO_HIT;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::tiles::Tile;
+use crate::accel::PlannedBuffer;
 use crate::image::Image;
+
+const COLOR_FORMAT: TextureFormat = ColorTarget::Linear32.texture_format();
+
+/// What the textures of such a tile will take, and the buffers that they are copied to.
+pub(super) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
+    let color = ("color texture", "color read-back", COLOR_FORMAT);
+    let data = [
+        ("depth texture", "depth read-back", DEPTH_FORMAT),
+        ("normal texture", "normal read-back", NORMAL_FORMAT),
+        ("id texture", "id read-back", ID_FORMAT),
+    ];
+    std::iter::once(color)
+        .chain(data.into_iter().filter(|_| data_layers))
+        .flat_map(|(texture, buffer, format)| {
+            [
+                PlannedBuffer::one(texture, ReadableTexture::texture_bytes(format, size)),
+                PlannedBuffer::one(buffer, ReadableTexture::buffer_bytes(format, size)),
+            ]
+        })
+        .collect()
+}
 
 #[derive(Debug)]
 pub(super) struct TileTextures {
@@ -28,7 +50,7 @@ impl TileTextures {
     pub(super) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
         let texture = |label, format| ReadableTexture::new(device, label, format, size);
         Self {
-            color: texture("pinhole color", ColorTarget::Linear32.texture_format()),
+            color: texture("pinhole color", COLOR_FORMAT),
             data: data_layers.then(|| DataTextures {
                 depth: texture("pinhole depth", DEPTH_FORMAT),
                 normal: texture("pinhole normal", NORMAL_FORMAT),

@@ -63,7 +63,14 @@ fn readers_and_writers_touch_no_files() {
     assert_absent(
         "src",
         &["std::fs"],
-        &["cli/input.rs", "cli/output.rs", "cli/demo.rs", "gpu/shaders.rs"],
+        &[
+            "cli/input.rs",
+            "cli/output.rs",
+            "cli/demo.rs",
+            "cli/interrupt.rs",
+            "cli/process.rs",
+            "gpu/shaders.rs",
+        ],
     );
 }
 

@@ -11,6 +11,7 @@ mod agreement;
 mod device;
 mod embedding;
 mod pictures;
+mod plan;
 mod program;
 mod scenes;
 mod structures;
@@ -55,6 +56,7 @@ fn main() {
         device::trials(),
         program::trials(),
         structures::trials(),
+        plan::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();

@@ -182,6 +182,24 @@ fn usage() {
     refused(&[], "render scene.toml -o out.png --frame=-1", 2, &["--frame"]);
     refused(&[], "render scene.toml -o out.png --backend cpu --adapter x", 2, &["--adapter"]);
     refused(&[], "render scene.toml -o out.png --colour red", 2, &["--colour"]);
+    for flag in ["--accel grid", "--accel auto", "--limits webgpu"] {
+        let arguments = format!("render scene.toml -o out.png --backend cpu {flag}");
+        refused(
+            &[],
+            &arguments,
+            2,
+            &[flag.split(' ').next().unwrap(), "--backend cpu", "drop one"],
+        );
+    }
+    refused(&[], "render scene.toml -o out.png --accel bvh", 2, &["bvh", "grid", "binary-tree"]);
+    refused(&[], "render scene.toml -o out.png --limits none", 2, &["none", "adapter", "webgpu"]);
+    refused(&[], "plan scene.csv", 2, &["scene.csv", ".toml"]);
+    refused(&[], "plan scene.toml --layer depht", 2, &["--layer depht", "depth"]);
+    refused(&[], "plan no.toml", 1, &["no.toml", "cannot be read"]);
+    refused(&[], "bench R2M", 2, &["R2M", ".npy"]);
+    refused(&[], "bench R1M --reps 0", 2, &["--reps", "0"]);
+    refused(&[], "bench R1M --size 5", 2, &["--size 5", "WIDTHxHEIGHT"]);
+    refused(&[], "bench R1M --accel octree", 2, &["octree", "tree"]);
     refused(&[], "rendr scene.toml", 2, &["rendr", "render"]);
     let name = "no-such-adapter";
     for backend in ["auto", "gpu"] {

@@ -11,4 +11,5 @@ mod arrays;
 mod bad_input;
 mod generate;
 mod good_input;
+mod interrupt;
 mod support;

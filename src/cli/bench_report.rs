@@ -1,0 +1,219 @@
+//! What `pinhole bench` found, as JSON and for people.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::adapter::AdapterReport;
+use super::bench_scene::BenchScene;
+use super::memory::readable;
+use super::table::table;
+
+/// A device's own clock.
+pub(super) const DEVICE_CLOCK: &str = "device";
+
+/// The host's. A software device's own says when commands were queued, not when they ran.
+pub(super) const HOST_CLOCK: &str = "host";
+
+/// The JSON document.
+#[derive(Serialize)]
+pub(super) struct BenchReport {
+    pub(super) version: &'static str,
+    pub(super) adapter: AdapterReport,
+    pub(super) reps: u32,
+    pub(super) scenes: Vec<SceneReport>,
+}
+
+/// A scene, with every structure that it was measured with.
+#[derive(Serialize)]
+pub(super) struct SceneReport {
+    name: String,
+    spheres: usize,
+    width: u32,
+    height: u32,
+    load_seconds: f64,
+    runs: Vec<RunReport>,
+    /// Which structure was faster, where there are several.
+    note: Option<String>,
+}
+
+/// A structure.
+#[derive(Serialize)]
+pub(super) struct RunReport {
+    pub(super) choice: String,
+    pub(super) structure: &'static str,
+    pub(super) reason: String,
+    /// With planning.
+    pub(super) build_seconds: f64,
+    pub(super) upload_seconds: f64,
+    /// With the building of pipelines and the way back.
+    pub(super) first_render_seconds: f64,
+    pub(super) trace_wall: Option<Spread>,
+    /// By the device's clock, if it has one.
+    pub(super) trace_device: Option<Spread>,
+    pub(super) any_wall: Option<Spread>,
+    pub(super) any_device: Option<Spread>,
+    /// Whose clock rates and comparisons go by: `device`, or `host`.
+    pub(super) clock: &'static str,
+    pub(super) rays: u64,
+    pub(super) submissions: u32,
+    pub(super) longest_submission_seconds: f64,
+    /// Of scene and frame.
+    pub(super) device_bytes: u64,
+    pub(super) device_bytes_per_sphere: Option<f64>,
+    /// Of the process so far.
+    pub(super) peak_memory_bytes: Option<u64>,
+}
+
+/// Times of repeated measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Spread {
+    pub(super) median_seconds: f64,
+    pub(super) best_seconds: f64,
+}
+
+impl Spread {
+    /// `None` if there is no time, or one is not known.
+    pub(super) fn of(times: impl Iterator<Item = Option<Duration>>) -> Option<Self> {
+        let mut times: Vec<Duration> = times.collect::<Option<_>>()?;
+        times.sort_unstable();
+        let median = times.get(times.len() / 2)?;
+        Some(Self {
+            median_seconds: median.as_secs_f64(),
+            best_seconds: times.first()?.as_secs_f64(),
+        })
+    }
+}
+
+impl BenchReport {
+    pub(super) fn heading(&self) -> String {
+        let Self { version, adapter, reps, .. } = self;
+        format!(
+            "pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {}\n",
+            adapter.line(),
+            adapter.clock()
+        )
+    }
+}
+
+impl SceneReport {
+    pub(super) fn new(scene: &BenchScene, runs: Vec<RunReport>) -> Self {
+        let BenchScene { name, scene, film, load, .. } = scene;
+        Self {
+            name: name.clone(),
+            spheres: scene.len(),
+            width: film.width(),
+            height: film.height(),
+            load_seconds: load.as_secs_f64(),
+            note: compared(&runs),
+            runs,
+        }
+    }
+
+    pub(super) fn readable(&self) -> String {
+        let Self { name, spheres, width, height, load_seconds, .. } = self;
+        let mut text = format!(
+            "\n{name}: {spheres} spheres, {width}x{height}, loaded in {load_seconds:.2} s\n"
+        );
+        let rows: Vec<_> = self.runs.iter().map(RunReport::row).collect();
+        text += &table(
+            [
+                "structure",
+                "build s",
+                "upload s",
+                "first s",
+                "wall ms",
+                "best",
+                "device ms",
+                "best",
+                "Mrays/s",
+                "any Mrays/s",
+                "B/sphere",
+                "peak",
+                "submissions",
+                "longest ms",
+            ],
+            &rows,
+        );
+        if let Some(note) = &self.note {
+            text += &format!("  {note}\n");
+        }
+        text
+    }
+}
+
+impl RunReport {
+    fn trace_seconds(&self) -> Option<f64> {
+        self.median(self.trace_wall, self.trace_device)
+    }
+
+    fn any_seconds(&self) -> Option<f64> {
+        self.median(self.any_wall, self.any_device)
+    }
+
+    fn median(&self, wall: Option<Spread>, device: Option<Spread>) -> Option<f64> {
+        let spread = if self.clock == DEVICE_CLOCK { device.or(wall) } else { wall };
+        spread.map(|spread| spread.median_seconds)
+    }
+
+    fn row(&self) -> [String; 14] {
+        let dash = || "-".to_owned();
+        let milliseconds = |seconds: f64| format!("{:.1}", seconds * 1e3);
+        let spread = |spread: Option<Spread>| {
+            spread.map_or([dash(), dash()], |spread| {
+                [spread.median_seconds, spread.best_seconds].map(milliseconds)
+            })
+        };
+        let rate = |seconds: Option<f64>| {
+            seconds.map_or_else(dash, |seconds| format!("{:.2}", self.rays as f64 / seconds / 1e6))
+        };
+        let [wall, wall_best] = spread(self.trace_wall);
+        let [device, device_best] = spread(self.trace_device);
+        [
+            format!("{}: {}", self.choice, self.structure),
+            format!("{:.2}", self.build_seconds),
+            format!("{:.2}", self.upload_seconds),
+            format!("{:.2}", self.first_render_seconds),
+            wall,
+            wall_best,
+            device,
+            device_best,
+            rate(self.trace_seconds()),
+            rate(self.any_seconds()),
+            self.device_bytes_per_sphere.map_or_else(dash, |bytes| format!("{bytes:.1}")),
+            self.peak_memory_bytes.map_or_else(dash, readable),
+            self.submissions.to_string(),
+            milliseconds(self.longest_submission_seconds),
+        ]
+    }
+}
+
+/// Compares the first run with the fastest of the others.
+fn compared(runs: &[RunReport]) -> Option<String> {
+    let (first, others) = runs.split_first()?;
+    let timed = others.iter().filter_map(|run| Some((run, run.trace_seconds()?)));
+    let (other, theirs) = timed.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let own = first.trace_seconds()?;
+    let (name, other) = (first.structure, other.structure);
+    let chose = format!("{} chose {name}; {other} is", first.choice);
+    let percent = |slow: f64, fast: f64| (slow / fast - 1.0) * 100.0;
+    Some(if theirs < own {
+        format!("{chose} {:.0} % faster", percent(own, theirs))
+    } else {
+        format!("{chose} {:.0} % slower", percent(theirs, own))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_is_of_all_times() {
+        let seconds = |s: u64| Some(Duration::from_secs(s));
+        let spread = Spread::of([seconds(5), seconds(1), seconds(3)].into_iter());
+        assert_eq!(spread, Some(Spread { median_seconds: 3.0, best_seconds: 1.0 }));
+        assert_eq!(Spread::of([seconds(5), None].into_iter()), None);
+        assert_eq!(Spread::of([].into_iter()), None);
+    }
+}

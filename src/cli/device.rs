@@ -1,0 +1,104 @@
+//! What renders, as it was asked for, and opening it.
+
+use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
+use super::failure::Failure;
+#[cfg(feature = "gpu")]
+use super::interrupt;
+use crate::accel::AccelChoice;
+#[cfg(feature = "gpu")]
+use crate::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
+
+/// What renders.
+pub(super) enum Device {
+    /// The CPU reference.
+    Cpu,
+    /// An adapter.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
+    Adapter {
+        /// Which.
+        wanted: WantedAdapter,
+        /// What finds spheres.
+        choice: AccelChoice,
+        /// If there is no adapter at all, the CPU reference.
+        or_cpu: bool,
+    },
+}
+
+/// An adapter that is asked for.
+#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
+pub(super) struct WantedAdapter {
+    name: Option<String>,
+    limits: Option<Limits>,
+}
+
+impl Device {
+    pub(super) fn new(args: &DeviceArgs, accel: Option<Structure>) -> Result<Self, Failure> {
+        let AdapterArgs { adapter, limits } = &args.adapter;
+        let given = [
+            ("--adapter", adapter.is_some()),
+            ("--accel", accel.is_some()),
+            ("--limits", limits.is_some()),
+        ];
+        let given = given.into_iter().find(|(_, is_given)| *is_given);
+        match (args.backend, given) {
+            (Backend::Cpu, None) => Ok(Self::Cpu),
+            (Backend::Cpu, Some((flag, _))) => Err(Failure::usage(format!(
+                "{flag} and --backend cpu exclude each other; drop one"
+            ))),
+            (backend, given) => Ok(Self::Adapter {
+                wanted: WantedAdapter::new(&args.adapter),
+                choice: choice(accel),
+                // Who asks for something that the reference has not wants an adapter.
+                or_cpu: backend == Backend::Auto && given.is_none(),
+            }),
+        }
+    }
+}
+
+/// What is asked for, where that is left open.
+pub(super) fn choice(accel: Option<Structure>) -> AccelChoice {
+    accel.unwrap_or(Structure::Auto).into()
+}
+
+impl WantedAdapter {
+    pub(super) fn new(args: &AdapterArgs) -> Self {
+        Self { name: args.adapter.clone(), limits: args.limits }
+    }
+
+    /// Opens it. The error within is that there is no adapter, which some can do without.
+    #[cfg(feature = "gpu")]
+    pub(super) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
+        let options = HeadlessOptions {
+            adapter: self.name.clone(),
+            limits: match self.limits {
+                Some(Limits::Webgpu) => LimitChoice::WebGpu,
+                Some(Limits::Adapter) | None => LimitChoice::Adapter,
+            },
+            ..HeadlessOptions::default()
+        };
+        match interrupt::on_device(|| Headless::open(&options))? {
+            Ok(headless) => Ok(Ok(headless)),
+            Err(error @ GpuError::NoAdapter) => Ok(Err(error)),
+            Err(error @ GpuError::UnknownAdapter { .. }) => Err(Failure::Usage(error.into())),
+            Err(error) => Err(Failure::Job(error.into())),
+        }
+    }
+
+    /// Opens it; that there is none is a failure.
+    #[cfg(feature = "gpu")]
+    pub(super) fn open_any(&self) -> Result<Headless, Failure> {
+        self.open()?.map_err(|error| Failure::Job(error.into()))
+    }
+}
+
+/// The line for an error of a device, with its name and what may help.
+#[cfg(feature = "gpu")]
+pub(super) fn explained(headless: &Headless, error: &GpuError) -> Failure {
+    let adapter = &headless.adapter_info().name;
+    let remedy = match error {
+        GpuError::Stopped => return Failure::Stopped,
+        GpuError::Limit { .. } => "; --backend cpu has no such limit",
+        _ => "",
+    };
+    Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}"))
+}

@@ -1,0 +1,114 @@
+//! Ctrl-C, and what else asks the program to end: no file is left that is not complete.
+//!
+//! Where nothing is at stake the program exits at once. While a driver is at work it is asked to stop, and a
+//! second signal exits. What is being written has no name yet and is removed; files get their names under
+//! the lock that a signal needs, so that there are all of them or none.
+
+#[cfg(feature = "gpu")]
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use anyhow::Context;
+
+use super::failure::{Failure, NOTHING_WRITTEN, STOPPED};
+use super::process::ignores_hang_up;
+use super::progress;
+use super::speak::tell;
+
+static STATE: Mutex<State> = Mutex::new(State {
+    phase: Phase::Free,
+    is_requested: false,
+    temporaries: Vec::new(),
+    words: NOTHING_WRITTEN,
+});
+
+struct State {
+    phase: Phase,
+    /// There was a signal.
+    is_requested: bool,
+    /// Files without a name. Those that have got one, or are gone, do no harm here.
+    temporaries: Vec<PathBuf>,
+    /// What is said if the program ends now.
+    words: &'static str,
+}
+
+/// What a signal would interrupt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Nothing that minds.
+    Free,
+    /// A driver, whose threads must not be pulled away.
+    Device,
+}
+
+fn state() -> MutexGuard<'static, State> {
+    STATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Listens for SIGINT, SIGTERM and SIGHUP, or what the system has for them.
+pub(super) fn install() -> Result<(), Failure> {
+    // Listening would take back what `nohup` did.
+    if !ignores_hang_up() {
+        ctrlc::set_handler(on_signal).context("signals cannot be listened for")?;
+    }
+    Ok(())
+}
+
+/// On a thread of its own.
+fn on_signal() {
+    let mut state = state();
+    if state.phase == Phase::Device && !state.is_requested {
+        state.is_requested = true;
+        return;
+    }
+    for path in state.temporaries.drain(..) {
+        let _ = std::fs::remove_file(path);
+    }
+    progress::close();
+    tell(state.words);
+    // The lock is still held, so that no file gets a name or is created.
+    std::process::exit(STOPPED.into());
+}
+
+/// Does work with a driver, which should end soon after [`decide`] says so.
+#[cfg(feature = "gpu")]
+pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
+    state().phase = Phase::Device;
+    let result = work();
+    let mut state = state();
+    state.phase = Phase::Free;
+    if state.is_requested { Err(Failure::Stopped) } else { Ok(result) }
+}
+
+/// Whether the work on the device should go on.
+#[cfg(feature = "gpu")]
+pub(super) fn decide() -> ControlFlow<()> {
+    if state().is_requested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Creates a file that is removed if the program is stopped.
+pub(super) fn creating<F, E>(
+    create: impl FnOnce() -> Result<F, E>,
+    path: impl FnOnce(&F) -> PathBuf,
+) -> Result<F, E> {
+    let mut state = state();
+    let file = create()?;
+    state.temporaries.push(path(&file));
+    Ok(file)
+}
+
+/// Gives files their names, if there are `any`; a signal waits until it is done.
+pub(super) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
+    let mut state = state();
+    name()?;
+    if any {
+        state.words = "stopped; the files were complete";
+    }
+    Ok(())
+}
+
+/// Changes what is said if the program is stopped from now on.
+pub(super) fn words(words: &'static str) {
+    state().words = words;
+}

@@ -1,0 +1,92 @@
+//! What the program is doing, for people: one line on a terminal's standard error, gone at the end.
+//!
+//! There is one for the whole program, so that whatever is told can move it out of the way.
+
+use std::borrow::Cow;
+use std::io::IsTerminal;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// What is shown.
+static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, is_closed: false });
+
+struct Line {
+    bar: Option<ProgressBar>,
+    /// Of a bar; a stage without an end has none.
+    total: Option<u64>,
+    is_closed: bool,
+}
+
+fn line() -> MutexGuard<'static, Line> {
+    LINE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Line {
+    fn show(&mut self, bar: ProgressBar, template: &str, total: Option<u64>) -> &ProgressBar {
+        if let Some(old) = self.bar.take() {
+            old.finish_and_clear();
+        }
+        // A template that is wrong is no reason to fail.
+        let style = ProgressStyle::with_template(template);
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        self.total = total;
+        self.bar.insert(bar)
+    }
+
+    /// Whether there is somebody to show it to.
+    fn is_seen(&self) -> bool {
+        !self.is_closed && std::io::stderr().is_terminal()
+    }
+}
+
+/// Shows a stage whose end is not known.
+pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
+    let mut line = line();
+    if line.is_seen() {
+        let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
+        bar.set_message(crate::text::one_line(&text.into()));
+        bar.enable_steady_tick(Duration::from_millis(100));
+    }
+}
+
+/// Shows how much is traced.
+#[cfg(feature = "gpu")]
+pub(super) fn tracing(done: u64, total: u64) {
+    let mut line = line();
+    if !line.is_seen() {
+        return;
+    }
+    if line.total != Some(total) {
+        let template = "tracing [{bar:40}] {percent}%, {eta} left";
+        line.show(ProgressBar::new(total), template, Some(total));
+    }
+    if let Some(bar) = &line.bar {
+        bar.set_position(done);
+    }
+}
+
+/// Writes while the line is out of the way.
+pub(super) fn beside<T>(write: impl FnOnce() -> T) -> T {
+    let bar = line().bar.clone();
+    match bar {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
+}
+
+/// Takes the line away.
+pub(super) fn clear() {
+    let mut line = line();
+    line.total = None;
+    if let Some(bar) = line.bar.take() {
+        bar.finish_and_clear();
+    }
+}
+
+/// Takes the line away for good.
+pub(super) fn close() {
+    clear();
+    line().is_closed = true;
+}

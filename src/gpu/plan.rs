@@ -1,0 +1,273 @@
+//! What a render will take of the device and of the host: known before either is asked for it.
+
+use wgpu::{DeviceType, Limits};
+
+use super::error::GpuError;
+use super::frame::hit_bytes;
+use super::headless::Headless;
+use super::records;
+use super::tile_textures;
+use super::tiles::tile_size;
+use crate::accel::{AccelChoice, AccelPlan, PlannedBuffer};
+use crate::film::Film;
+use crate::image::LayerSet;
+use crate::scene::Scene;
+
+/// What a render by [`Headless`] takes. Bytes are upper bounds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderPlan {
+    /// The structure, and why.
+    pub accel: AccelPlan,
+    /// Buffers of the scene: those of the structure, and the colours.
+    pub scene_buffers: Vec<PlannedBuffer>,
+    /// Buffers that kernels write for one tile.
+    pub tile_buffers: Vec<PlannedBuffer>,
+    /// Textures of one tile, and the buffers that the host reads them from.
+    pub tile_textures: Vec<PlannedBuffer>,
+    /// Width and height of a tile in pixels; the whole picture, if it is small enough.
+    pub tile_size: [u32; 2],
+    /// How many tiles are rendered, one after the other.
+    pub tile_count: u64,
+    /// Bytes on the device, of scene and tile.
+    pub device_bytes: u64,
+    /// Bytes of host memory beside the scene itself, at the worst moment.
+    pub host_bytes: u64,
+    /// Which moment that is.
+    pub host_peak: HostPeak,
+}
+
+/// When a render takes the most of the host's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HostPeak {
+    /// While the structure is built.
+    Building,
+    /// While it is copied to the device.
+    Uploading,
+    /// Once there is the picture.
+    Picture,
+}
+
+impl RenderPlan {
+    /// Plans a picture of a scene on a device with such limits. A software device takes its memory from the
+    /// host's. `host_bytes_per_pixel` is what the caller will take for the picture beside the image itself,
+    /// such as for encoding it.
+    #[must_use]
+    pub fn new(
+        scene: &Scene,
+        film: &Film,
+        layers: LayerSet,
+        accel: AccelPlan,
+        (limits, device_type): (&Limits, DeviceType),
+        host_bytes_per_pixel: u64,
+    ) -> Self {
+        let scene_buffers = scene_buffers(scene, &accel);
+        let tile_size = tile_size(film, limits.max_texture_dimension_2d);
+        let hits = hit_bytes(limits, tile_size);
+        let tile_buffers = vec![PlannedBuffer::one("hits", hits)];
+        let tile_textures = tile_textures::planned(tile_size, layers != LayerSet::COLOR);
+        let scene_bytes = total(&scene_buffers);
+        let tile_bytes = total(&tile_buffers) + total(&tile_textures);
+        let in_host = |bytes| if device_type == DeviceType::Cpu { bytes } else { 0 };
+        // One brick's copy is waiting for the device at a time.
+        let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
+        let per_pixel = layers.bytes_per_pixel().saturating_add(host_bytes_per_pixel);
+        let picture = film.pixel_count().saturating_mul(per_pixel);
+        let moments = [
+            (HostPeak::Building, accel.host_bytes()),
+            (HostPeak::Uploading, accel.device_bytes() + queued + in_host(scene_bytes)),
+            (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
+        ];
+        let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);
+        let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
+        Self {
+            accel,
+            scene_buffers,
+            tile_buffers,
+            tile_textures,
+            tile_size,
+            tile_count: tile_count(film, tile_size),
+            device_bytes: scene_bytes + tile_bytes,
+            host_bytes,
+            host_peak,
+        }
+    }
+
+    /// How many submissions there are at least: one for every brick of every tile. There are more, because
+    /// they are cut so that each takes about 60 milliseconds.
+    #[must_use]
+    pub fn least_submissions(&self) -> u64 {
+        self.tile_count * self.accel.brick_count as u64
+    }
+
+    /// Bytes on the device for every sphere, if there is one.
+    #[must_use]
+    pub fn device_bytes_per_sphere(&self) -> Option<f64> {
+        let count = self.accel.statistics.count;
+        (count > 0).then(|| self.device_bytes as f64 / count as f64)
+    }
+
+    /// Refuses what does not fit into such limits, or into so many free bytes of the host's memory; `None`
+    /// is not known, and then the allocation itself decides.
+    ///
+    /// # Errors
+    /// The first limit that is too low; or that the memory is too small.
+    pub fn check(&self, limits: &Limits, memory: Option<u64>) -> Result<(), GpuError> {
+        let binding = ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size);
+        let buffer = ("max_buffer_size", limits.max_buffer_size);
+        let bound = self.scene_buffers.iter().chain(&self.tile_buffers);
+        let checks = bound
+            .flat_map(|planned| [(planned, binding), (planned, buffer)])
+            .chain(self.tile_textures.iter().map(|planned| (planned, buffer)));
+        for (planned, (limit_name, limit)) in checks {
+            let needed = planned.bytes_per_binding;
+            if needed > limit {
+                let what = in_words(planned.name);
+                return Err(GpuError::Limit { what, needed, limit_name, limit });
+            }
+        }
+        match memory {
+            Some(available) if self.host_bytes > available => Err(GpuError::HostMemory {
+                what: self.host_peak.what(),
+                needed: self.host_bytes,
+                available,
+                instead: self.host_peak.instead(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Headless {
+    /// What a picture of a scene will take on this device, with what [`Headless::plan`] plans.
+    /// `host_bytes_per_pixel` is as in [`RenderPlan::new`].
+    #[must_use]
+    pub fn plan_render(
+        &self,
+        scene: &Scene,
+        choice: AccelChoice,
+        film: &Film,
+        layers: LayerSet,
+        host_bytes_per_pixel: u64,
+    ) -> RenderPlan {
+        let (accel, limits) = (self.plan(scene, choice), self.device().limits());
+        let device = (&limits, self.adapter_info().device_type);
+        RenderPlan::new(scene, film, layers, accel, device, host_bytes_per_pixel)
+    }
+}
+
+impl HostPeak {
+    /// What takes the memory.
+    #[must_use]
+    pub const fn what(self) -> &'static str {
+        match self {
+            Self::Building => "building the structure",
+            Self::Uploading => "copying the scene to the device",
+            Self::Picture => "the picture",
+        }
+    }
+
+    /// What to choose if there is not enough.
+    const fn instead(self) -> &'static str {
+        match self {
+            Self::Building | Self::Uploading => "fewer spheres, or the structure `tree`",
+            Self::Picture => "a smaller size",
+        }
+    }
+}
+
+/// The structure's, and what shading reads.
+fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
+    let mut buffers = accel.buffers.clone();
+    // A sphere that is copied into several cells has its colour as often as its id.
+    let ids = buffers.iter().find(|buffer| buffer.name == "ids");
+    if let (Some(ids), Some(_)) = (ids.copied(), scene.color_indices()) {
+        buffers.push(PlannedBuffer { name: "colors", ..ids });
+    }
+    let palette = scene.palette().len().max(1) * size_of::<records::Color>();
+    buffers.push(PlannedBuffer::one("palette", palette as u64));
+    buffers
+}
+
+fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
+    u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
+}
+
+/// What a buffer of a plan is called in an error.
+fn in_words(name: &str) -> &'static str {
+    match name {
+        "spheres" => "the buffer of spheres",
+        "ids" => "the buffer of ids",
+        "colors" => "the buffer of colors",
+        "palette" => "the palette",
+        "hits" => "the buffer of hits",
+        "nodes" | "cells" | "references" => "the buffer of the structure",
+        _ => "a tile of the picture",
+    }
+}
+
+fn total(buffers: &[PlannedBuffer]) -> u64 {
+    buffers.iter().map(|buffer| buffer.bytes).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::LinearRgb;
+    use crate::sphere::Sphere;
+
+    fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
+        let red = LinearRgb::from_srgb8([255, 0, 0]);
+        let spheres: Vec<Sphere> =
+            (0..1000).map(|i| Sphere::new([f64::from(i), 0.0, 0.0], 0.5, red)).collect();
+        let scene = Scene::new(&spheres).unwrap();
+        let accel = AccelPlan::new(scene.spheres(), AccelChoice::Auto, 1 << 27);
+        let film = Film::new(size, size).unwrap();
+        RenderPlan::new(&scene, &film, layers, accel, (&Limits::default(), device_type), 16)
+    }
+
+    #[test]
+    fn a_tile_takes_hits_texture_and_what_is_read_back() {
+        let plan = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 1024], 1));
+        let hit = size_of::<records::Hit>() as u64;
+        assert_eq!(total(&plan.tile_buffers), hit << 20);
+        assert_eq!(total(&plan.tile_textures), 32 << 20);
+
+        assert_eq!(plan.check(&Limits::default(), None), Ok(()));
+        let all = super::tests::plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
+        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
+    }
+
+    #[test]
+    fn a_software_device_takes_its_memory_from_the_host() {
+        let gpu = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        let software = plan(1024, LayerSet::COLOR, DeviceType::Cpu);
+        assert_eq!(software.device_bytes, gpu.device_bytes);
+        assert_eq!(software.host_peak, HostPeak::Picture);
+        assert_eq!(software.host_bytes, gpu.host_bytes + gpu.device_bytes);
+        assert_eq!(software.check(&Limits::default(), Some(software.host_bytes)), Ok(()));
+        assert!(matches!(
+            software.check(&Limits::default(), Some(software.host_bytes - 1)),
+            Err(GpuError::HostMemory { what: "the picture", .. })
+        ));
+    }
+
+    #[test]
+    fn a_limit_that_is_too_low_is_named() {
+        let plan = plan(64, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        let limits = Limits { max_storage_buffer_binding_size: 100, ..Limits::default() };
+        let refused = plan.check(&limits, None);
+        assert!(
+            matches!(
+                refused,
+                Err(GpuError::Limit {
+                    what: "the buffer of spheres",
+                    limit_name: "max_storage_buffer_binding_size",
+                    limit: 100,
+                    ..
+                })
+            ),
+            "{refused:?}"
+        );
+    }
+}
