@@ -29,11 +29,13 @@ struct Frame {
     tile_size: vec2u,
     // Where that part lies in the target textures.
     target_origin: vec2u,
-    // The first workgroup of the slice of the tile that is traced, in workgroups.
+    // The workgroups of the tile that may meet the scene's box: the first, and how many. The rest are misses.
+    traced_first: vec2u,
+    traced_size: vec2u,
+    // The first workgroup of the slice of those that is traced now.
     first_group: vec2u,
-    // Row i of workgroups is row i * row_step modulo row_count of the tile.
+    // Row i of them is row i * row_step modulo their number.
     row_step: u32,
-    row_count: u32,
 }
 
 // A part of the scene that fits into bindings.

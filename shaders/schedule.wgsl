@@ -7,9 +7,11 @@
 // lie close together. Rows of workgroups are taken in the order that the host chose: software devices give
 // each thread one run of workgroups, and sky must not be the share of one of them.
 fn pixel_in_tile(group: vec2u, lane: u32) -> vec2u {
-    let row = remainder((frame.first_group.y + group.y) * frame.row_step, frame.row_count);
+    let ordinal = (frame.first_group.y + group.y) * frame.row_step;
+    let row = remainder(ordinal, frame.traced_size.y);
     let in_group = vec2u(every_second_bit(lane), every_second_bit(lane >> 1u));
-    return vec2u(frame.first_group.x + group.x, row) * 8u + in_group;
+    let group_in_tile = frame.traced_first + vec2u(frame.first_group.x + group.x, row);
+    return group_in_tile * 8u + in_group;
 }
 
 // a % b, for a below 2^24: software devices divide integers lane by lane.

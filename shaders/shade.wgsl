@@ -13,7 +13,12 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (any(invocation.xy >= frame.tile_size)) {
         return;
     }
-    let hit = load_hit(hit_index(invocation.xy));
+    var hit = load_hit(hit_index(invocation.xy));
+    let group = invocation.xy / 8u - frame.traced_first;
+    // What lies before the first has become a large number.
+    if (any(group >= frame.traced_size)) {
+        hit = Hit(NO_HIT, NO_ID, 0u);
+    }
     let pixel = frame.target_origin + invocation.xy;
     if (hit.id == NO_ID) {
         if (brick.is_first != 0u) {

@@ -2,6 +2,9 @@
 
 use glam::Vec3;
 
+/// Cells along the side of a block: its spheres fit into a processor's nearest cache, or two of its pages.
+const BLOCK: u32 = 4;
+
 /// A box of equal cubes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells {
@@ -29,9 +32,21 @@ impl Cells {
         (z as usize * height + y as usize) * width + x as usize
     }
 
-    /// The cell of a sphere's centre.
-    pub(super) fn index_of_center(&self, sphere: &[f32; 4]) -> usize {
-        self.index([0, 1, 2].map(|axis| self.place(sphere[axis], axis)))
+    /// How many numbers [`Self::index_in_blocks`] may give.
+    pub(super) fn len_in_blocks(&self) -> usize {
+        self.counts.iter().map(|count| count.next_multiple_of(BLOCK) as usize).product()
+    }
+
+    /// A number for the cell of a sphere's centre, such that cells near each other in space, along any axis,
+    /// have numbers near each other: block by block.
+    pub(super) fn index_in_blocks(&self, sphere: &[f32; 4]) -> usize {
+        let place = [0, 1, 2].map(|axis| self.place(sphere[axis], axis));
+        let blocks = self.counts.map(|count| count.div_ceil(BLOCK));
+        let join = |[x, y, z]: [u32; 3], [width, height]: [u32; 2]| {
+            (z as usize * height as usize + y as usize) * width as usize + x as usize
+        };
+        let block = join(place.map(|i| i / BLOCK), [blocks[0], blocks[1]]);
+        block * BLOCK.pow(3) as usize + join(place.map(|i| i % BLOCK), [BLOCK, BLOCK])
     }
 
     /// As [`Self::met_by`], for cells that are only a part of what the sphere may meet: a sphere beside

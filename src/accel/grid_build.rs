@@ -123,13 +123,13 @@ fn coarser(cells: &Cells, max: Vec3) -> Cells {
     cells_of_size(cells.min, max, cells.size * 1.1)
 }
 
-/// The spheres in the order of the cells that hold their centres, so that what is near in space is near
-/// in memory; within a cell, by id.
+/// The spheres in the order of the cells that hold their centres, block by block, so that what is near in
+/// space is near in memory; within a cell, by id.
 fn sort_by_cell(spheres: &[[f32; 4]], ids: &[u32], cells: &Cells) -> (Vec<[f32; 4]>, Vec<u32>) {
-    let counts = zeros(cells.len());
+    let counts = zeros(cells.len_in_blocks());
     for_chunks(ids.len(), |range| {
         for id in &ids[range] {
-            let cell = cells.index_of_center(&spheres[*id as usize]);
+            let cell = cells.index_in_blocks(&spheres[*id as usize]);
             counts[cell].fetch_add(1, Ordering::Relaxed);
         }
     });
@@ -137,7 +137,7 @@ fn sort_by_cell(spheres: &[[f32; 4]], ids: &[u32], cells: &Cells) -> (Vec<[f32; 
     let order = zeros(ids.len());
     for_chunks(ids.len(), |range| {
         for id in &ids[range] {
-            let cell = cells.index_of_center(&spheres[*id as usize]);
+            let cell = cells.index_in_blocks(&spheres[*id as usize]);
             // Counts down, so that no second array of counts is needed.
             let at = starts[cell] + counts[cell].fetch_sub(1, Ordering::Relaxed) - 1;
             order[at as usize].store(*id, Ordering::Relaxed);

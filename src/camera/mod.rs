@@ -36,6 +36,10 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
     /// The ray that belongs to `location`, in the world; its direction has unit length.
     fn ray_in_world(&self, location: DVec2) -> Ray;
 
+    /// The relative location of a point in the world, perhaps outside [−1, 1]²: that of the ray that meets
+    /// it. `None` if no ray does, or none can be told.
+    fn location_of(&self, point_in_world: DVec3) -> Option<DVec2>;
+
     /// What the WGSL part of this camera needs to answer the same question.
     fn vectors(&self) -> CameraVectors;
 }

@@ -1,6 +1,6 @@
 //! The parallel camera: every ray has the same direction.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
@@ -57,6 +57,13 @@ impl Camera for OrthographicCamera {
                 + location.y * basis.v() * self.half_extent.y,
             direction: -basis.w(),
         }
+    }
+
+    fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
+        let basis = self.pose.basis();
+        let aside = point_in_world - self.pose.origin();
+        let location = DVec2::new(aside.dot(basis.u()), aside.dot(basis.v())) / self.half_extent;
+        location.is_finite().then_some(location)
     }
 
     fn vectors(&self) -> CameraVectors {

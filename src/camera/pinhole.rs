@@ -106,6 +106,16 @@ impl Camera for PinholeCamera {
         Ray { origin: self.pose.origin(), direction: toward / toward.length() }
     }
 
+    fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
+        let basis = self.pose.basis();
+        let toward = point_in_world - self.pose.origin();
+        let depth = -toward.dot(basis.w());
+        // From the eye, or behind it, there is no ray.
+        let aside = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
+        let location = aside * (self.distance / depth) / self.half_extent;
+        (depth > 0.0 && location.is_finite()).then_some(location)
+    }
+
     fn vectors(&self) -> CameraVectors {
         let basis = self.pose.basis();
         CameraVectors {

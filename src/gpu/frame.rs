@@ -6,6 +6,7 @@ use super::error::{GpuError, check_storage_size, scoped};
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
 use super::scene_buffers::{SceneBuffers, SceneId, binding_limit, part};
+use super::seen::Seen;
 use super::tiles::{self, Groups, Tile};
 use crate::camera::{Camera, CameraKind};
 use crate::film::Film;
@@ -201,11 +202,15 @@ impl Frame {
         settings: &Settings,
     ) {
         let (vectors, space) = (camera.vectors(), scene.space());
+        let seen = Seen::of(camera, space, film);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
         let limit = self.iteration_limit;
         let records: Vec<_> = bands
             .iter()
-            .map(|band| records::Frame::new(&vectors, space, film, *band, settings, limit))
+            .map(|band| {
+                let traced = seen.groups_of(*band);
+                records::Frame::new(&vectors, space, film, *band, traced, settings, limit)
+            })
             .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];
         for (target, record) in bytes.chunks_mut(self.stride).zip(&records) {
@@ -234,13 +239,13 @@ impl Frame {
 
     /// What is to be traced for the view, in order.
     pub(super) fn parts(&self, scene: &SceneBuffers) -> Vec<Part> {
-        let bands = self.view.as_ref().map_or(&[][..], |view| &view.bands);
+        let bands = self.view.as_ref().map_or(&[][..], |view| &view.records);
         let (band_count, brick_count) = (bands.len(), scene.bricks().len());
         let all = (0..band_count).flat_map(|band| (0..brick_count).map(move |brick| (band, brick)));
         all.map(|(band, brick)| Part {
             band,
             brick,
-            groups: Groups::of_size(bands[band]),
+            groups: Groups { first: [0, 0], size: bands[band].traced_size },
             is_last_of_band: brick + 1 == brick_count,
             is_last: brick + 1 == brick_count && band + 1 == band_count,
         })

@@ -20,6 +20,7 @@ mod readback;
 mod records;
 mod renderer;
 mod scene_buffers;
+mod seen;
 mod shaders;
 mod tile_textures;
 mod tiles;

@@ -9,17 +9,25 @@ const TARGET: Duration = Duration::from_millis(60);
 /// How many workgroups the first submission has: some milliseconds of a software device's time.
 const FIRST: u64 = 2048;
 
+/// How many spheres a submission tries at most, where every ray tries all: less than half a second of a
+/// software device's time.
+const MOST_TESTS: u64 = 1 << 27;
+
 /// Adapts to the device, from one submission to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     next: u64,
+    most: u64,
 }
 
 impl Pace {
     /// For rays of which each tries about so many spheres.
     pub(super) fn new(tests_per_ray: usize) -> Self {
-        // A list of spheres costs a thousand times what a structure does.
-        Self { next: (FIRST * 128 / tests_per_ray.max(128) as u64).max(1) }
+        let tests_per_group = 64 * tests_per_ray.max(1) as u64;
+        // A list of spheres costs a thousand times what a structure does; and its rays cost nothing or all of
+        // it, so that what was learned from sky is no guide.
+        let most = (MOST_TESTS / tests_per_group).max(1);
+        Self { next: FIRST.min(most / 16).max(1), most }
     }
 
     /// How many workgroups the next submission should have.
@@ -30,7 +38,7 @@ impl Pace {
     /// Takes note of what a submission took. What looks quick may have been sky, so that it grows by steps.
     pub(super) fn took(&mut self, groups: u64, elapsed: Duration) {
         let ratio = TARGET.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
-        self.next = ((groups as f64 * ratio.min(8.0)) as u64).max(1);
+        self.next = ((groups as f64 * ratio.min(8.0)) as u64).clamp(1, self.most);
     }
 }
 
@@ -52,9 +60,14 @@ mod tests {
         assert_eq!(pace.groups(), 2000);
     }
 
-    /// 49,152 spheres for each of 64 rays are three million tests.
+    /// 49,152 spheres for each of 64 rays are three million tests, a hundredth of a second.
     #[test]
-    fn without_a_structure_the_first_submission_is_short() {
-        assert_eq!(Pace::new(3 << 14).groups(), 5);
+    fn without_a_structure_submissions_are_short() {
+        let mut pace = Pace::new(3 << 14);
+        assert_eq!(pace.groups(), 2);
+        for _ in 0..10 {
+            pace.took(pace.groups(), Duration::ZERO);
+        }
+        assert_eq!(pace.groups(), 42);
     }
 }

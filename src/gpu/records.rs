@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use super::tiles::{Tile, WORKGROUP_SIDE};
+use super::tiles::{Groups, Tile};
 use crate::camera::CameraVectors;
 use crate::film::{Film, YAxis};
 use crate::settings::{Settings, Shading};
@@ -35,9 +35,11 @@ pub(super) struct Frame {
     tile_origin: [u32; 2],
     tile_size: [u32; 2],
     target_origin: [u32; 2],
+    pub(super) traced_first: [u32; 2],
+    pub(super) traced_size: [u32; 2],
     pub(super) first_group: [u32; 2],
     row_step: u32,
-    row_count: u32,
+    _pad: u32,
 }
 
 #[repr(C)]
@@ -105,18 +107,20 @@ impl Frame {
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
+        traced: Groups,
         settings: &Settings,
         iteration_limit: u32,
     ) -> Self {
-        let row_count = tile.size[1].div_ceil(WORKGROUP_SIDE);
         Self {
             camera: Camera::new(vectors, scene),
             scene_min: scene.min.to_array(),
             scene_max: scene.max.to_array(),
             iteration_limit,
+            traced_first: traced.first,
+            traced_size: traced.size,
             first_group: [0, 0],
-            row_step: row_step(row_count),
-            row_count,
+            row_step: row_step(traced.size[1]),
+            _pad: 0,
             background: settings.background().to_array(),
             shading: match settings.shading() {
                 Shading::Flat => 0,
@@ -144,6 +148,9 @@ fn row_step(row_count: u32) -> u32 {
         }
         a != 1
     };
+    if row_count <= 1 {
+        return 1;
+    }
     let golden = (f64::from(row_count) * 0.618_033_988_75) as u32;
     (golden.max(1)..).find(|step| !has_common_factor(*step)).unwrap_or(1)
 }
@@ -204,9 +211,10 @@ mod tests {
                 tile_origin,
                 tile_size,
                 target_origin,
+                traced_first,
+                traced_size,
                 first_group,
-                row_step,
-                row_count
+                row_step
             }),
             layout!(Brick {
                 min,
@@ -264,7 +272,8 @@ mod tests {
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let settings = Settings::default().with_shading(shading);
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
-            let frame = Frame::new(&vectors, &scene, &film, tile, &settings, 0);
+            let frame =
+                Frame::new(&vectors, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }

@@ -146,17 +146,16 @@ impl Renderer {
         scene: &SceneBuffers,
         frame: &Frame,
     ) -> Result<(), GpuError> {
-        let view = frame.view(self, scene)?;
+        frame.view(self, scene)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
         });
-        for (band, size) in view.bands.iter().enumerate() {
-            let all = Groups::of_size(*size);
-            for brick in 0..scene.bricks().len() {
-                self.record_trace(&mut pass, scene, frame, (band, brick, all))?;
+        for part in frame.parts(scene) {
+            self.record_trace(&mut pass, scene, frame, (part.band, part.brick, part.groups))?;
+            if part.is_last_of_band {
+                self.record_shade(&mut pass, scene, frame, part.band)?;
             }
-            self.record_shade(&mut pass, scene, frame, band)?;
         }
         Ok(())
     }
@@ -170,6 +169,9 @@ impl Renderer {
         (band, brick, groups): (usize, usize, Groups),
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
+        if groups.count() == 0 {
+            return Ok(());
+        }
         let structure = scene.structure();
         let pipeline = self
             .trace

@@ -47,6 +47,9 @@ impl Groups {
     /// Takes about `count` workgroups out of those that are left: whole rows, or a part of one.
     pub(super) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
         let Self { first: [x, y], size: [width, height] } = left.pop()?;
+        if width == 0 || height == 0 {
+            return Self::take(left, count);
+        }
         let mut leave = |first: [u32; 2], size: [u32; 2]| {
             if size[0] > 0 && size[1] > 0 {
                 left.push(Self { first, size });
