@@ -2,7 +2,7 @@
 //
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
 // planes are computed from the plane's number and never added up, so that their error does not grow.
-// An empty cell knows how many around it are empty, and all of them are crossed in one step.
+// An empty cell knows how many ahead of it are empty, and all of them are crossed in one step.
 
 fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bool) {
     let along = grid_ray(ray, inverse);
@@ -12,6 +12,9 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
     }
     let counts = vec3f(brick.cell_counts);
     let strides = vec3f(1.0, counts.x, counts.x * counts.y);
+    // Three bits of a word for each: bit i of the octant is set for a ray that descends along axis i.
+    let behind = vec3u(1.0 - along.ahead);
+    let octant = 3u * (behind.x + 2u * behind.y + 4u * behind.z);
     var cell = first_cell(along);
     var word = EMPTY;
     var t_leave = 0.0;
@@ -20,8 +23,8 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
         // device then walk their cells together, and not each while others cross empty space.
         loop {
             word = cells[u32(dot(cell, strides))];
-            // An empty cell's word is the number of empty cells around it.
-            let reach = select(0.0, f32(word), (word & KIND) == EMPTY);
+            // An empty cell's word is, for each octant, how many cells ahead are empty.
+            let reach = select(0.0, f32((word >> octant) & 7u), (word & KIND) == EMPTY);
             t_leave = least(leaving(along, cell, reach));
             if ((word & KIND) != EMPTY || t_leave >= along.t_leave || !spend(1u)) {
                 break;
@@ -41,7 +44,7 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
     }
 }
 
-// The distances at which the ray leaves the cells around `cell`, up to `reach` cells away.
+// The distances at which the ray leaves `cell` and the `reach` cells ahead of it.
 fn leaving(along: GridRay, cell: vec3f, reach: f32) -> vec3f {
     return along.base + (cell + along.step * reach + along.ahead) * along.delta;
 }
@@ -50,7 +53,9 @@ fn leaving(along: GridRay, cell: vec3f, reach: f32) -> vec3f {
 fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
     let there = floor(along.start + t * along.speed);
     let last = vec3f(brick.cell_counts) - 1.0;
-    let kept = clamp(clamp(there, cell - reach, cell + reach), vec3f(0.0), last);
+    let farthest = cell + along.step * reach;
+    let ahead = clamp(there, min(cell, farthest), max(cell, farthest));
+    let kept = clamp(ahead, vec3f(0.0), last);
     let is_left = leaving(along, cell, reach) <= vec3f(t);
     return select(kept, cell + along.step * (reach + 1.0), is_left);
 }

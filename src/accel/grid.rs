@@ -4,8 +4,8 @@ use glam::Vec3;
 
 /// What a word of [`Grid::cells`] stands for, in its two highest bits.
 pub(super) mod word {
-    /// No sphere meets the cell. The other bits: how many cells around it, in every direction, are empty
-    /// as well.
+    /// No sphere meets the cell. Bits 3 o to 3 o + 2: how many cells ahead of it, for a ray in octant o and
+    /// along all three axes, are empty as well; bit i of o is set for a ray that descends along axis i.
     pub(crate) const EMPTY: u32 = 0;
     /// The other bits: where the cell's list starts.
     pub(crate) const LIST: u32 = 1 << 30;
@@ -98,7 +98,7 @@ impl Grid {
         })
     }
 
-    /// Whether a walk needs to know of grids inside cells, or of cells that are empty all around.
+    /// Whether a walk needs to know of grids inside cells, or of empty cells ahead.
     #[must_use]
     pub fn is_nested(&self) -> bool {
         self.cells[..self.first_level_len()]

@@ -84,7 +84,7 @@ pub enum GridError {
         id: u32,
     },
     /// Not all cells are empty that an empty cell says are.
-    #[error("not all cells around cell {cell} are empty that should be")]
+    #[error("not all cells ahead of cell {cell} are empty that should be")]
     Reach {
         /// Index into [`Grid::cells`].
         cell: u32,
@@ -324,19 +324,26 @@ impl Check<'_> {
             if value & word::KIND != word::EMPTY {
                 continue;
             }
-            let reach = value as usize;
-            let from = |i: usize| i.saturating_sub(reach);
-            let to = |i: usize, count: usize| (i.saturating_add(reach) + 1).min(count);
-            let low = [from(x), from(y), from(z)];
-            let high = [to(x, width), to(y, height), to(z, depth)];
-            let corner = |i: usize| {
-                let [a, b, c] =
-                    [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { high[axis] } else { low[axis] });
-                let sign = if (i.count_ones() + 1) % 2 == 0 { 1 } else { -1 };
-                sign * sums[sum_index(a, b, c)]
-            };
-            if (0..8).map(corner).sum::<i64>() != 0 {
-                return Err(GridError::Reach { cell: cell as u32 });
+            for octant in 0..8 {
+                let reach = (value >> (3 * octant) & 7) as usize;
+                let descends = |axis: usize| octant >> axis & 1 == 1;
+                let place = [x, y, z];
+                let low = [0, 1, 2].map(|axis| {
+                    if descends(axis) { place[axis].saturating_sub(reach) } else { place[axis] }
+                });
+                let high = [(0, width), (1, height), (2, depth)].map(|(axis, count)| {
+                    let last = if descends(axis) { place[axis] } else { place[axis] + reach };
+                    (last + 1).min(count)
+                });
+                let corner = |i: usize| {
+                    let [a, b, c] = [0, 1, 2]
+                        .map(|axis| if i >> axis & 1 == 1 { high[axis] } else { low[axis] });
+                    let sign = if (i.count_ones() + 1) % 2 == 0 { 1 } else { -1 };
+                    sign * sums[sum_index(a, b, c)]
+                };
+                if value >> 24 != 0 || (0..8).map(corner).sum::<i64>() != 0 {
+                    return Err(GridError::Reach { cell: cell as u32 });
+                }
             }
         }
         Ok(())

@@ -1,63 +1,75 @@
-//! How far around an empty cell all others are empty, so that a ray may cross them in one step.
+//! How far ahead of an empty cell all others are empty, so that a ray may cross them in one step.
 
 use super::grid::word;
+use super::parallel::map;
 
-/// A step this long is long enough.
-const FARTHEST: u32 = 32;
+/// The longest step, in cells beside the first: what three bits hold.
+pub(super) const MOST_AHEAD: u8 = 7;
 
 /// Below this part of empty cells, there is little to skip.
 const WORTH_IT: f32 = 0.25;
 
-/// Writes into every empty word of the first level how many cells around it, in every direction, are
-/// empty as well: its distance, in Chebyshev's sense, to the nearest cell with a sphere, less one.
+/// Writes into every empty word of the first level, for each of the eight octants that a ray may head for,
+/// how many cells ahead along all three axes are empty as well, in three bits each.
 ///
-/// Two sweeps (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966, in three
-/// dimensions): a cell's distance is one more than the least of its neighbours' that come before it, and
-/// then, backwards, of those that come after it.
+/// By dynamic programming, as for the largest square of ones in a matrix: the empty cube that starts at a
+/// cell is one larger than the least of those that start at its seven neighbours ahead. What lies
+/// outside the grid is empty.
 pub(super) fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
-    let [width, height, depth] = counts.map(|count| count as usize);
-    let len = width * height * depth;
-    let empty = words[..len].iter().filter(|word| *word & word::KIND == word::EMPTY).count();
+    let counts = counts.map(|count| count as usize);
+    let len = counts.iter().product();
+    let is_empty: Vec<bool> =
+        words[..len].iter().map(|word| word & word::KIND == word::EMPTY).collect();
+    let empty = is_empty.iter().filter(|is_empty| **is_empty).count();
     if (empty as f32) < WORTH_IT * len as f32 {
         return;
     }
-    let mut distances: Vec<u8> = words[..len]
-        .iter()
-        .map(|w| if w & word::KIND == word::EMPTY { u8::MAX } else { 0 })
-        .collect();
-    // Neighbours that come before a cell in memory.
-    let before: Vec<[isize; 3]> =
-        (0..13).map(|i: isize| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]).collect();
-    let sweep = |distances: &mut [u8], cell: usize, sign: isize| {
-        if distances[cell] == 0 {
-            return;
+    let octants = map(8, |octant| cubes_ahead(&is_empty, counts, octant));
+    for (cell, word) in words[..len].iter_mut().enumerate() {
+        if is_empty[cell] {
+            let bits = |octant: usize| u32::from(octants[octant][cell]) << (3 * octant);
+            *word = word::EMPTY | (0..8).map(bits).sum::<u32>();
         }
-        let place = [cell % width, cell / width % height, cell / (width * height)];
-        let mut nearest = u32::from(distances[cell]);
-        for step in &before {
-            let mut index = 0;
-            let mut outside = false;
-            for axis in [2, 1, 0] {
-                let side = [width, height, depth][axis];
-                let i = place[axis] as isize + sign * step[axis];
-                outside |= i < 0 || i >= side as isize;
-                index = index * side as isize + i;
-            }
-            if !outside {
-                nearest = nearest.min(u32::from(distances[index as usize]) + 1);
-            }
-        }
-        distances[cell] = nearest.min(FARTHEST) as u8;
+    }
+}
+
+/// Of every empty cell, how many cells ahead of it are empty; bit i of the octant is set for a ray that
+/// descends along axis i.
+fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> {
+    let [width, height, depth] = counts;
+    // Of each cell, the side of the empty cube that starts there.
+    let mut sides = vec![0_u8; is_empty.len()];
+    let in_order = |axis: usize, i: usize| {
+        if octant >> axis & 1 == 1 { i } else { counts[axis] - 1 - i }
     };
-    for cell in 0..len {
-        sweep(&mut distances, cell, 1);
-    }
-    for cell in (0..len).rev() {
-        sweep(&mut distances, cell, -1);
-    }
-    for (word, distance) in words[..len].iter_mut().zip(distances) {
-        if distance > 0 {
-            *word = word::EMPTY | (u32::from(distance) - 1);
+    for k in 0..depth {
+        for j in 0..height {
+            for i in 0..width {
+                let place = [in_order(0, i), in_order(1, j), in_order(2, k)];
+                let index = |[x, y, z]: [usize; 3]| (z * height + y) * width + x;
+                if !is_empty[index(place)] {
+                    continue;
+                }
+                let mut side = MOST_AHEAD;
+                for neighbour in 1..8_usize {
+                    let ahead = [0, 1, 2].map(|axis| {
+                        let moves = neighbour >> axis & 1 == 1;
+                        match (moves, octant >> axis & 1) {
+                            (false, _) => Some(place[axis]),
+                            (true, 1) => place[axis].checked_sub(1),
+                            (true, _) => Some(place[axis] + 1).filter(|x| *x < counts[axis]),
+                        }
+                    });
+                    if let [Some(x), Some(y), Some(z)] = ahead {
+                        side = side.min(sides[index([x, y, z])]);
+                    }
+                }
+                sides[index(place)] = side + 1;
+            }
         }
     }
+    for side in &mut sides {
+        *side = side.saturating_sub(1);
+    }
+    sides
 }

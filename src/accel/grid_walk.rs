@@ -60,11 +60,12 @@ impl Grid {
         let strides = Vec3::new(1.0, counts.x, counts.x * counts.y);
         let is_done =
             |found: &Found, t: f32| found.t <= t || (stop_at_first && found.place.is_some());
+        let octant = 3 * (!forward).bitmask();
         let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
         loop {
             let outer = self.word(cell.dot(strides) as usize);
             let kind = outer & word::KIND;
-            let reach = if kind == word::EMPTY { outer as f32 } else { 0.0 };
+            let reach = if kind == word::EMPTY { (outer >> octant & 7) as f32 } else { 0.0 };
             let planes = base + (cell + step * reach + ahead) * delta;
             let t_leave = planes.min_element();
             if kind != word::EMPTY {
@@ -95,7 +96,9 @@ impl Grid {
                 break;
             }
             t = t_leave;
-            let crossed = (start + t * speed).floor().clamp(cell - reach, cell + reach);
+            let farthest = cell + step * reach;
+            let there = (start + t * speed).floor();
+            let crossed = there.clamp(cell.min(farthest), cell.max(farthest));
             let kept = crossed.clamp(Vec3::ZERO, counts - 1.0);
             let left: BVec3 = planes.cmple(Vec3::splat(t_leave));
             cell = Vec3::select(left, cell + step * (reach + 1.0), kept);

@@ -301,7 +301,9 @@ const DAMAGES: &[Damage] = &[
     (
         "a reach one too large",
         |built| {
-            let cell = built.find(|_, _, word| (1..8).contains(&word));
+            // Of the first octant.
+            let cell =
+                built.find(|_, _, word| word & KIND == EMPTY && (1..7).contains(&(word & 7)));
             built.of.grid.cells[cell] += 1;
         },
         |error| matches!(error, GridError::Reach { .. }),
