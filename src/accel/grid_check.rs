@@ -6,6 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::grid::{Grid, LAST, MAX_CELLS, word};
+use super::grid_geometry::{Cell, Level, first_inner};
 
 /// The levels that a grid inside a cell may have: 2 to 32 cells along an axis.
 const LEVELS: RangeInclusive<u32> = 1..=5;
@@ -171,34 +172,6 @@ impl Grid {
 /// Where a cell's list is, in the references or, without them, in the spheres; empty without a list.
 type Range = std::ops::Range<usize>;
 
-/// A cell of either level: the index of its word, and the box that it fills.
-#[derive(Clone, Copy)]
-struct Cell {
-    index: usize,
-    low: [f64; 3],
-    size: f64,
-}
-
-impl Cell {
-    /// Distances from a point to the nearest and the farthest point of the cell.
-    fn distances(&self, point: [f64; 3]) -> (f64, f64) {
-        let (mut near, mut far) = (0.0, 0.0);
-        for (low, x) in self.low.into_iter().zip(point) {
-            let nearest = x.clamp(low, low + self.size);
-            near += (x - nearest).powi(2);
-            far += (x - low).abs().max((x - low - self.size).abs()).powi(2);
-        }
-        (near.sqrt(), far.sqrt())
-    }
-
-    /// Whether the surface of a sphere comes as near to the cell as `margin`.
-    fn is_near(&self, [x, y, z, radius]: [f32; 4], margin: f64) -> bool {
-        let radius = f64::from(radius);
-        let (near, far) = self.distances([x, y, z].map(f64::from));
-        near <= radius + margin && far >= radius - margin
-    }
-}
-
 struct Check<'a> {
     grid: &'a Grid,
     ids: &'a [u32],
@@ -216,8 +189,8 @@ impl Check<'_> {
         // Each word behind the first level and each element of a list is some one cell's own.
         let mut is_inner = vec![false; words.len()];
         let mut is_listed = vec![false; listed];
-        for cell in 0..first_level_len {
-            if words[cell] & word::KIND == word::GRID {
+        for (cell, value) in words.iter().enumerate().take(first_level_len) {
+            if value & word::KIND == word::GRID {
                 self.take_inner(cell, padded, &mut is_inner)?;
             }
         }
@@ -338,7 +311,7 @@ impl Check<'_> {
                 let corner = |i: usize| {
                     let [a, b, c] = [0, 1, 2]
                         .map(|axis| if i >> axis & 1 == 1 { high[axis] } else { low[axis] });
-                    let sign = if (i.count_ones() + 1) % 2 == 0 { 1 } else { -1 };
+                    let sign = if i.count_ones().is_multiple_of(2) { -1 } else { 1 };
                     sign * sums[sum_index(a, b, c)]
                 };
                 if value >> 24 != 0 || (0..8).map(corner).sum::<i64>() != 0 {
@@ -354,8 +327,8 @@ impl Check<'_> {
         let sphere = self.input[id as usize];
         let whole = Level::of(self.grid);
         let reach = f64::from(sphere[3]) + MUST * self.margin;
-        for axis in 0..3 {
-            let center = f64::from(sphere[axis]) - whole.low[axis];
+        for (axis, x) in sphere.into_iter().take(3).enumerate() {
+            let center = f64::from(x) - whole.low[axis];
             let side = whole.size * whole.counts[axis] as f64;
             if center - reach < 0.0 || center + reach > side {
                 return Err(GridError::Outside { id });
@@ -421,63 +394,5 @@ impl Check<'_> {
             }
         }
         Ok(())
-    }
-}
-
-fn first_inner(value: u32) -> usize {
-    (value & ((1 << word::LEVEL_SHIFT) - 1)) as usize * 8
-}
-
-/// A box of cells whose words follow each other.
-struct Level {
-    first: usize,
-    low: [f64; 3],
-    size: f64,
-    counts: [usize; 3],
-}
-
-impl Level {
-    fn of(grid: &Grid) -> Self {
-        Self {
-            first: 0,
-            low: grid.min.to_array().map(f64::from),
-            size: f64::from(grid.cell_size),
-            counts: grid.cell_counts.map(|count| count as usize),
-        }
-    }
-
-    /// The grid inside a cell, whose word is `value`.
-    fn inside(cell: &Cell, value: u32) -> Self {
-        let side = 1_usize << (value >> word::LEVEL_SHIFT & 7);
-        let size = cell.size / side as f64;
-        Self { first: first_inner(value), low: cell.low, size, counts: [side; 3] }
-    }
-
-    fn cells(&self) -> impl Iterator<Item = Cell> {
-        self.cells_between([0; 3], self.counts)
-    }
-
-    /// At least those that come as near to a sphere's centre as `reach`.
-    fn cells_around(&self, [x, y, z, _]: [f32; 4], reach: f64) -> impl Iterator<Item = Cell> {
-        let center = [x, y, z].map(f64::from);
-        let low = [0, 1, 2].map(|axis| {
-            ((center[axis] - reach - self.low[axis]) / self.size - 1.0).max(0.0) as usize
-        });
-        let high = [0, 1, 2].map(|axis| {
-            let beyond = (center[axis] + reach - self.low[axis]) / self.size + 2.0;
-            (beyond.max(0.0) as usize).min(self.counts[axis])
-        });
-        self.cells_between(low, high)
-    }
-
-    fn cells_between(&self, low: [usize; 3], high: [usize; 3]) -> impl Iterator<Item = Cell> {
-        let along = move |axis: usize| low[axis]..high[axis];
-        let places = along(2)
-            .flat_map(move |z| along(1).flat_map(move |y| along(0).map(move |x| [x, y, z])));
-        places.map(move |[x, y, z]| Cell {
-            index: self.first + (z * self.counts[1] + y) * self.counts[0] + x,
-            low: [0, 1, 2].map(|axis| self.low[axis] + [x, y, z][axis] as f64 * self.size),
-            size: self.size,
-        })
     }
 }

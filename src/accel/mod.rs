@@ -16,6 +16,7 @@ mod grid_build;
 mod grid_check;
 mod grid_crowd;
 mod grid_empty;
+mod grid_geometry;
 mod grid_walk;
 mod leaf;
 pub mod list;

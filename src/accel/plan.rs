@@ -253,12 +253,14 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice) -> (Structure, Stri
 fn grid_budget(structure: Structure, count: usize) -> GridBudget {
     // A small scene may have more a sphere: it is little in all.
     match structure {
-        Structure::Grid(ListLayout::Copied) => {
-            GridBudget { listed: count * 17 / 4 + (1 << 20), cells: count + (1 << 21) }
-        }
-        Structure::Grid(ListLayout::Referenced) => {
-            GridBudget { listed: count * 18 / 5 + (1 << 16), cells: count * 11 / 20 + (1 << 16) }
-        }
+        Structure::Grid(ListLayout::Copied) => GridBudget {
+            listed: count * 17 / 4 + (64 * count).min(1 << 20),
+            cells: count + (256 * count).min(1 << 21),
+        },
+        Structure::Grid(ListLayout::Referenced) => GridBudget {
+            listed: count * 18 / 5 + (64 * count).min(1 << 16),
+            cells: count * 11 / 20 + (64 * count).min(1 << 16),
+        },
         _ => GridBudget { listed: 0, cells: 0 },
     }
 }

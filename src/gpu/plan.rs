@@ -220,7 +220,7 @@ mod tests {
         let spheres: Vec<Sphere> =
             (0..1000).map(|i| Sphere::new([f64::from(i), 0.0, 0.0], 0.5, red)).collect();
         let scene = Scene::new(&spheres).unwrap();
-        let accel = AccelPlan::new(scene.spheres(), AccelChoice::Auto, 1 << 27);
+        let accel = AccelPlan::new(scene.spheres(), AccelChoice::List, 1 << 27);
         let film = Film::new(size, size).unwrap();
         RenderPlan::new(&scene, &film, layers, accel, (&Limits::default(), device_type), 16)
     }
@@ -228,14 +228,14 @@ mod tests {
     #[test]
     fn a_tile_takes_hits_texture_and_what_is_read_back() {
         let plan = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
-        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 1024], 1));
+        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 512], 2));
         let hit = size_of::<records::Hit>() as u64;
-        assert_eq!(total(&plan.tile_buffers), hit << 20);
-        assert_eq!(total(&plan.tile_textures), 32 << 20);
+        assert_eq!(total(&plan.tile_buffers), hit << 19);
+        assert_eq!(total(&plan.tile_textures), 32 << 19);
 
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
         let all = super::tests::plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
-        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
+        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 19);
     }
 
     #[test]

@@ -68,7 +68,7 @@ impl Built {
     fn mark(&mut self, at: usize, is_last: bool) {
         match &mut self.of.grid.references {
             Some(references) => {
-                references[at] = references[at] << 1 >> 1 | u32::from(is_last) << 31
+                references[at] = references[at] << 1 >> 1 | u32::from(is_last) << 31;
             }
             None => {
                 let radius = &mut self.of.spheres[at][3];

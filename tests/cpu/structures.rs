@@ -230,17 +230,17 @@ fn far_and_very_long_and_very_short() {
     }
 }
 
-/// Bindings for one sphere each.
+/// Bindings for a few spheres each.
 #[test]
-fn a_brick_for_every_sphere() {
+fn many_small_bricks() {
     let spheres = spheres::random(60, 22, |_| 0.1);
     let plan = AccelPlan::new(&spheres, AccelChoice::Grid, TINY);
     let accel = plan.build(&spheres);
-    assert_eq!(accel.bricks().len(), 60);
-    check_memory("sixty bricks", &plan, &accel);
+    assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
+    check_memory("many bricks", &plan, &accel);
     let mut rng = Rng::with_seed(22);
     for ray in rays(&mut rng, &spheres, 800) {
-        assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "sixty bricks", &ray);
+        assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
     }
 }
 

@@ -30,7 +30,9 @@ static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
     Headless::open(&options).unwrap()
 });
 
-fn all_scenes() -> Vec<(&'static str, fn() -> Spheres)> {
+type Named = (&'static str, fn() -> Spheres);
+
+fn all_scenes() -> Vec<Named> {
     vec![
         ("three", || spheres::random(3, 1, |_| 0.3)),
         ("random", || spheres::random(2_000, 2, |_| 0.02)),
