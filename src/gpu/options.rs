@@ -8,7 +8,7 @@ use wgpu::Limits;
 /// How a device is opened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
-    /// The adapter whose name contains this text, as in [`adapter::candidates`].
+    /// The adapter whose name contains this text, as in [`candidates`](super::adapter::candidates).
     pub adapter: Option<String>,
     /// What the device may use.
     pub limits: LimitChoice,
