@@ -92,7 +92,7 @@ impl AccelPlan {
         let count = statistics.count;
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let brick_count = count.div_ceil(most_per_brick).max(1);
-        let budget = grid_budget(structure, count.div_ceil(brick_count));
+        let budget = grid_budget(structure, count.div_ceil(brick_count), binding_bytes);
         let mut plan =
             Self { statistics, structure, reason, brick_count, budget, buffers: Vec::new() };
         plan.buffers = plan.list_buffers();
@@ -250,26 +250,29 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice) -> (Structure, Stri
     }
 }
 
-fn grid_budget(structure: Structure, count: usize) -> GridBudget {
+fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBudget {
     // A small scene may have more a sphere: it is little in all.
-    match structure {
-        Structure::Grid(ListLayout::Copied) => GridBudget {
-            listed: count * 17 / 4 + (64 * count).min(1 << 20),
-            cells: count + (256 * count).min(1 << 21),
-        },
-        Structure::Grid(ListLayout::Referenced) => GridBudget {
-            listed: count * 18 / 5 + (64 * count).min(1 << 16),
-            cells: count * 11 / 20 + (64 * count).min(1 << 16),
-        },
-        _ => GridBudget { listed: 0, cells: 0 },
-    }
+    let (listed, cells, bytes) = match structure {
+        Structure::Grid(ListLayout::Copied) => {
+            (count * 17 / 4 + (64 * count).min(1 << 20), count + (256 * count).min(1 << 21), 16)
+        }
+        Structure::Grid(ListLayout::Referenced) => (
+            count * 18 / 5 + (64 * count).min(1 << 16),
+            count * 11 / 20 + (64 * count).min(1 << 16),
+            4,
+        ),
+        _ => return GridBudget { listed: 0, cells: 0 },
+    };
+    // Larger cells cost less than a second brick.
+    let one_binding = (binding_bytes / bytes) as usize;
+    GridBudget { listed: listed.min(one_binding.max(count * 10 / 3)), cells }
 }
 
 /// How many spheres a brick may have, so that each of its buffers fits into a binding.
 fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     let most = (binding_bytes / 16).min(1 << 30) as usize;
     let fits = |count: usize| {
-        let budget = grid_budget(structure, count);
+        let budget = grid_budget(structure, count, binding_bytes);
         let bytes = match structure {
             Structure::Grid(ListLayout::Copied) => 16 * budget.listed,
             Structure::BinaryTree => 32 * count,

@@ -77,7 +77,7 @@ pub(super) struct Part {
 impl Frame {
     /// A frame that renders into the given targets.
     ///
-    /// A picture whose hits (eight bytes a pixel) would not fit into one binding is rendered in bands.
+    /// A picture whose hits (16 bytes a pixel) would not fit into one binding is rendered in bands.
     ///
     /// # Errors
     /// If a target is not of the format, size or usage that the renderer needs, or if the device has no

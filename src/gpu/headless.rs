@@ -15,7 +15,6 @@ use super::error::{GpuError, scoped};
 use super::faults::Faults;
 use super::frame::Frame;
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
-use super::pace::Pace;
 use super::readback::ReadableTexture;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::{SceneBuffers, binding_limit};
@@ -205,7 +204,7 @@ impl Headless {
             TileTextures::new(&self.device, tile_size, renderer.data_layers)
         })?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
-        let mut pace = Pace::new(scene.tests_per_ray());
+        let mut pace = scene.pace();
         let total = film.pixel_count() * scene.bricks().len() as u64;
         let mut done = 0;
         for tile in tiles(film, tile_size) {
@@ -227,6 +226,7 @@ impl Headless {
                     let submission = self.queue.submit([encoder.finish()]);
                     self.wait(&[], submission)?;
                     pace.took(groups.count(), started.elapsed());
+                    scene.keep_pace(pace);
                     encoder = self.encoder();
                     done = (done + groups.pixels()).min(total);
                     if watch(Progress { done, total }).is_break() {
@@ -291,7 +291,7 @@ impl Headless {
         frame.record_clear(&mut encoder);
         let submission = self.queue.submit([encoder.finish()]);
         self.wait(&[], submission)?;
-        let mut pace = Pace::new(scene.tests_per_ray());
+        let mut pace = scene.pace();
         let mut time = TraceTime::default();
         for part in frame.parts(scene) {
             let mut left = vec![part.groups];
@@ -313,6 +313,7 @@ impl Headless {
                 self.wait(&timer.iter().map(PassTimer::buffer).collect::<Vec<_>>(), submission)?;
                 let elapsed = started.elapsed();
                 pace.took(groups.count(), elapsed);
+                scene.keep_pace(pace);
                 time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
             }
         }

@@ -38,7 +38,11 @@ impl Pace {
     /// Takes note of what a submission took. What looks quick may have been sky, so that it grows by steps.
     pub(super) fn took(&mut self, groups: u64, elapsed: Duration) {
         let ratio = TARGET.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
-        self.next = ((groups as f64 * ratio.min(8.0)) as u64).clamp(1, self.most);
+        let fits = (groups as f64 * ratio.min(8.0)) as u64;
+        // That a small remainder was quick is no reason to submit less.
+        let is_remainder = groups < self.next && elapsed < TARGET;
+        let next = if is_remainder { fits.max(self.next) } else { fits };
+        self.next = next.clamp(1, self.most);
     }
 }
 
@@ -58,6 +62,17 @@ mod tests {
         assert_eq!(pace.groups(), 8);
         pace.took(1000, Duration::from_millis(30));
         assert_eq!(pace.groups(), 2000);
+    }
+
+    #[test]
+    fn a_remainder_slows_nothing_unless_it_is_slow() {
+        let mut pace = Pace::new(1);
+        pace.took(1, Duration::from_millis(1));
+        assert_eq!(pace.groups(), FIRST);
+        pace.took(FIRST / 2, Duration::from_millis(10));
+        assert_eq!(pace.groups(), 3 * FIRST);
+        pace.took(FIRST, Duration::from_millis(120));
+        assert_eq!(pace.groups(), FIRST / 2);
     }
 
     /// 49,152 spheres for each of 64 rays are three million tests, a hundredth of a second.

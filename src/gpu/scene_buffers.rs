@@ -2,10 +2,12 @@
 
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
 use super::error::{GpuError, check_storage_size, scoped};
+use super::pace::Pace;
 use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
@@ -30,7 +32,8 @@ pub struct SceneBuffers {
     structure: Structure,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
-    tests_per_ray: usize,
+    /// What the last picture of the scene taught of the device.
+    pace: Mutex<Pace>,
 }
 
 /// A brick, bound for the kernels.
@@ -104,12 +107,7 @@ impl SceneBuffers {
             structure: accel.structure(),
             bricks,
             bytes: upload.bytes,
-            tests_per_ray: match accel.structure() {
-                Structure::List => {
-                    accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0)
-                }
-                _ => 0,
-            },
+            pace: Mutex::new(Pace::new(tests_per_ray(accel))),
         })
     }
 
@@ -123,9 +121,14 @@ impl SceneBuffers {
         self.id
     }
 
-    /// How many spheres a ray tries in one dispatch, if it is many.
-    pub(super) fn tests_per_ray(&self) -> usize {
-        self.tests_per_ray
+    /// How much of a picture to submit at once.
+    pub(super) fn pace(&self) -> Pace {
+        *self.pace.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Starts the next picture as this one ended: most pictures of a scene cost about the same.
+    pub(super) fn keep_pace(&self, pace: Pace) {
+        *self.pace.lock().unwrap_or_else(PoisonError::into_inner) = pace;
     }
 
     pub(super) fn space(&self) -> &SceneSpace {
@@ -282,6 +285,14 @@ impl Upload<'_> {
 /// What one storage binding can hold on a device with such limits.
 pub(super) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
+/// How many spheres a ray tries in one dispatch, if it is many.
+fn tests_per_ray(accel: &Accel) -> usize {
+    match accel.structure() {
+        Structure::List => accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0),
+        _ => 0,
+    }
 }
 
 fn or_one<T: bytemuck::Zeroable>(mut values: Vec<T>) -> Vec<T> {
