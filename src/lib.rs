@@ -38,7 +38,6 @@ pub mod accel;
 pub mod basis;
 pub mod bounds;
 pub mod camera;
-mod chunks;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
@@ -53,6 +52,7 @@ pub mod gpu;
 pub mod image;
 pub mod io;
 pub mod math;
+mod parallel;
 pub mod points;
 pub mod ray;
 pub mod scene;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::bounds::Bounds;
-use crate::chunks;
 use crate::color::LinearRgb;
+use crate::parallel;
 use crate::sphere::{self, Sphere, SphereError};
 
 /// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it.
@@ -72,7 +72,7 @@ impl Scene {
         let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         if origin != DVec3::ZERO {
-            chunks::each(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
+            parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
         }
         Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
     }
@@ -176,7 +176,7 @@ fn bounds_of_checked<T: Sync>(
         Ok(bounds)
     };
     // The chunks' answers come in input order, so that the first bad sphere is the one that is named.
-    let chunks: Result<Vec<_>, _> = chunks::map(spheres, of_chunk).into_iter().collect();
+    let chunks: Result<Vec<_>, _> = parallel::map_chunks(spheres, of_chunk).into_iter().collect();
     Ok(chunks?.into_iter().flatten().reduce(Bounds::union))
 }
 
@@ -186,7 +186,7 @@ fn narrowed<T: Sync>(
     parts: impl Fn(&T) -> [f64; 4] + Sync,
     origin: DVec3,
 ) -> Result<Vec<[f32; 4]>, SceneError> {
-    chunks::collect(spheres.len(), |i| moved(parts(&spheres[i]), origin))
+    parallel::try_map(spheres.len(), |i| moved(parts(&spheres[i]), origin))
         .map_err(|_| SceneError::Memory { count: spheres.len() })
 }
 

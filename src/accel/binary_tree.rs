@@ -7,8 +7,9 @@
 
 use glam::Vec3;
 
-use super::extent::{Extent, Item, both};
+use super::extent::{Extent, Item};
 use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
+use crate::parallel::both;
 
 /// How many spheres a leaf may hold.
 pub const BINARY_LEAF: u32 = 4;

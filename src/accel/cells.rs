@@ -5,6 +5,9 @@ use glam::Vec3;
 /// Cells along the side of a block: its spheres fit into a processor's nearest cache, or two of its pages.
 const BLOCK: u32 = 4;
 
+/// Of how many cells along x a sphere's distances are kept from row to row.
+const KNOWN: usize = 4;
+
 /// A box of equal cubes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells {
@@ -21,10 +24,16 @@ impl Cells {
         self.counts.iter().map(|count| *count as usize).product()
     }
 
-    /// The cell that holds a coordinate, or the nearest one.
-    fn place(&self, x: f32, axis: usize) -> u32 {
+    /// The cell that holds a point, or the nearest one.
+    fn place(&self, at: Vec3) -> [u32; 3] {
+        let cells = (at - self.min) / self.size;
+        let [width, height, depth] = self.counts;
         // A float is cast to the nearest u32, so what lies below becomes 0.
-        (((x - self.min[axis]) / self.size) as u32).min(self.counts[axis] - 1)
+        [
+            (cells.x as u32).min(width - 1),
+            (cells.y as u32).min(height - 1),
+            (cells.z as u32).min(depth - 1),
+        ]
     }
 
     fn index(&self, [x, y, z]: [u32; 3]) -> usize {
@@ -40,7 +49,7 @@ impl Cells {
     /// A number for the cell of a sphere's centre, such that cells near each other in space, along any axis,
     /// have numbers near each other: block by block.
     pub(super) fn index_in_blocks(&self, sphere: &[f32; 4]) -> usize {
-        let place = [0, 1, 2].map(|axis| self.place(sphere[axis], axis));
+        let place = self.place(Vec3::new(sphere[0], sphere[1], sphere[2]));
         let blocks = self.counts.map(|count| count.div_ceil(BLOCK));
         let join = |[x, y, z]: [u32; 3], [width, height]: [u32; 2]| {
             (z as usize * height as usize + y as usize) * width as usize + x as usize
@@ -69,8 +78,8 @@ impl Cells {
         let center = [x, y, z];
         let outer = radius + margin;
         let inner = (radius - margin).max(0.0);
-        let first = [0, 1, 2].map(|axis| self.place(center[axis] - outer, axis));
-        let last = [0, 1, 2].map(|axis| self.place(center[axis] + outer, axis));
+        let first = self.place(Vec3::from(center) - outer);
+        let last = self.place(Vec3::from(center) + outer);
         if is_within && first == last {
             return meet(self.index(first));
         }
@@ -83,6 +92,8 @@ impl Cells {
             (near * near, far * far)
         };
         let (outer, inner) = (outer * outer, inner * inner);
+        // Of the first cells along x, which every row has again; most spheres meet no others.
+        let known: [(f32, f32); KNOWN] = std::array::from_fn(|i| along(0, first[0] + i as u32));
         for k in first[2]..=last[2] {
             let (near_z, far_z) = along(2, k);
             for j in first[1]..=last[1] {
@@ -92,7 +103,8 @@ impl Cells {
                     continue;
                 }
                 for i in first[0]..=last[0] {
-                    let (near_x, far_x) = along(0, i);
+                    let step = (i - first[0]) as usize;
+                    let (near_x, far_x) = known.get(step).copied().unwrap_or_else(|| along(0, i));
                     if near_x + near_yz <= outer && far_x + far_yz >= inner {
                         meet(self.index([i, j, k]));
                     }

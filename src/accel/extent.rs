@@ -102,17 +102,3 @@ impl Item {
         }
     }
 }
-
-/// Runs two tasks, at the same time if `large` and the feature `parallel` is on.
-pub(super) fn both<A: Send, B: Send>(
-    large: bool,
-    first: impl FnOnce() -> A + Send,
-    second: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    #[cfg(feature = "parallel")]
-    if large {
-        return rayon::join(first, second);
-    }
-    let _ = large;
-    (first(), second())
-}

@@ -1,21 +1,17 @@
 //! Builds grids by counting sort, in time proportional to the spheres and the cells.
 
-use std::sync::atomic::{AtomicU32, Ordering};
-
 use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
 use super::grid::{Grid, LAST, ListLayout, MAX_CELLS, word};
 use super::grid_crowd::{Crowd, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
-use super::parallel::{chunks, for_each, map, split_mut};
+use super::grid_sort::{CHUNK, Lists, count, fill, map_ranges, sort_by_cell, total};
+use crate::parallel::for_each;
 
 /// What a step from cell to cell costs, in sphere tests. Measured on lavapipe with a million random
 /// spheres, where the time hardly changes between four and eight.
 pub(super) const STEP_COST: f32 = 5.0;
-
-/// How many spheres or cells one task handles.
-const CHUNK: usize = 1 << 14;
 
 /// How large a grid may become.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,14 +57,13 @@ pub fn build_grid(
         cells = coarser(&cells, max);
         counts = count(&sorted, &cells, margin);
     }
-    let lists = fill(&sorted, &cells, margin, &counts);
-    drop(counts);
+    let lists = fill(&sorted, &cells, margin, counts);
     assemble(&cells, margin, layout, budget, (sorted, sorted_ids), &lists)
 }
 
 /// The box of the spheres, inflated.
 fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
-    let parts = map_chunks(ids.len(), |range| {
+    let parts = map_ranges(ids.len(), |range| {
         ids[range].iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), id| {
             let [x, y, z, r] = spheres[*id as usize];
             let center = Vec3::new(x, y, z);
@@ -123,76 +118,6 @@ fn coarser(cells: &Cells, max: Vec3) -> Cells {
     cells_of_size(cells.min, max, cells.size * 1.1)
 }
 
-/// The spheres in the order of the cells that hold their centres, block by block, so that what is near in
-/// space is near in memory; within a cell, by id.
-fn sort_by_cell(spheres: &[[f32; 4]], ids: &[u32], cells: &Cells) -> (Vec<[f32; 4]>, Vec<u32>) {
-    let counts = zeros(cells.len_in_blocks());
-    for_chunks(ids.len(), |range| {
-        for id in &ids[range] {
-            let cell = cells.index_in_blocks(&spheres[*id as usize]);
-            counts[cell].fetch_add(1, Ordering::Relaxed);
-        }
-    });
-    let starts = starts(&counts);
-    let order = zeros(ids.len());
-    for_chunks(ids.len(), |range| {
-        for id in &ids[range] {
-            let cell = cells.index_in_blocks(&spheres[*id as usize]);
-            // Counts down, so that no second array of counts is needed.
-            let at = starts[cell] + counts[cell].fetch_sub(1, Ordering::Relaxed) - 1;
-            order[at as usize].store(*id, Ordering::Relaxed);
-        }
-    });
-    let mut order = plain(order);
-    each_list(&mut order, &starts, |_, list| list.sort_unstable());
-    let mut sorted = vec![[0.0; 4]; order.len()];
-    let parts = sorted.chunks_mut(CHUNK).zip(order.chunks(CHUNK)).collect();
-    for_each(parts, |(target, ids): (&mut [[f32; 4]], &[u32])| {
-        for (sphere, id) in target.iter_mut().zip(ids) {
-            *sphere = spheres[*id as usize];
-        }
-    });
-    (sorted, order)
-}
-
-/// How many spheres meet each cell.
-fn count(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> Vec<AtomicU32> {
-    let counts = zeros(cells.len());
-    for_chunks(spheres.len(), |range| {
-        for sphere in &spheres[range] {
-            cells.met_by(sphere, margin, |cell| {
-                counts[cell].fetch_add(1, Ordering::Relaxed);
-            });
-        }
-    });
-    counts
-}
-
-fn total(counts: &[AtomicU32]) -> u64 {
-    counts.iter().map(|count| u64::from(count.load(Ordering::Relaxed))).sum()
-}
-
-/// The places of the spheres that meet each cell, cell by cell, and where each cell's start.
-struct Lists {
-    places: Vec<u32>,
-    starts: Vec<u32>,
-}
-
-/// The second half of the counting sort. Uses up the counts.
-fn fill(spheres: &[[f32; 4]], cells: &Cells, margin: f32, counts: &[AtomicU32]) -> Lists {
-    let starts = starts(counts);
-    let places = zeros(starts[cells.len()] as usize);
-    for_chunks(spheres.len(), |range| {
-        for place in range {
-            cells.met_by(&spheres[place], margin, |cell| {
-                let at = starts[cell] + counts[cell].fetch_sub(1, Ordering::Relaxed) - 1;
-                places[at as usize].store(place as u32, Ordering::Relaxed);
-            });
-        }
-    });
-    Lists { places: plain(places), starts }
-}
-
 /// A run of cells on its way into the grid: its words, with positions that count from its own start.
 #[derive(Default)]
 struct Part {
@@ -214,12 +139,18 @@ fn assemble(
 ) -> BuiltGrid {
     let first_level_len = cells.len().next_multiple_of(8);
     let crowd = Crowd::of(cells, &sorted, margin, (&lists.places, &lists.starts), budget);
-    let parts = map_chunks(cells.len(), |range| {
-        let mut part = Part::default();
+    let parts = map_ranges(cells.len(), |range| {
+        let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
+        let mut part = Part {
+            words: Vec::with_capacity(range.len()),
+            inner: Vec::new(),
+            lists: Vec::with_capacity(listed),
+        };
+        let (mut keys, mut list) = (Vec::new(), Vec::new());
         for cell in range {
             let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
-            let mut list = lists.places[start..end].to_vec();
-            prepare(&mut list, &sorted, &sorted_ids);
+            by_id(&lists.places[start..end], &sorted_ids, &mut keys, &mut list);
+            keep_one_of_the_same(&mut list, &sorted);
             let inner = crowd.level(cell).and_then(|level| {
                 Some((level, inner_lists(cells, cell, &list, &sorted, margin, level)?))
             });
@@ -260,11 +191,21 @@ fn assemble(
     }
 }
 
-/// Sorts a list by id, so that of equal distances the first is the one that counts. In a long list, of
-/// spheres that are the same, only the one that counts remains.
-fn prepare(list: &mut Vec<u32>, sorted: &[[f32; 4]], sorted_ids: &[u32]) {
+/// Sorts a list by id, so that of equal distances the first is the one that counts.
+fn by_id(places: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec<u32>) {
+    keys.clear();
+    keys.extend(
+        places.iter().map(|&place| u64::from(ids[place as usize]) << 32 | u64::from(place)),
+    );
+    keys.sort_unstable();
+    list.clear();
+    // The lower half.
+    list.extend(keys.iter().map(|key| *key as u32));
+}
+
+/// Of the same spheres, in a long list, only the first remains: the one that counts.
+fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     const LONG: usize = 32;
-    list.sort_unstable_by_key(|place| sorted_ids[*place as usize]);
     if list.len() > LONG {
         let mut seen = std::collections::HashSet::with_capacity(list.len());
         list.retain(|place| seen.insert(sorted[*place as usize].map(f32::to_bits)));
@@ -284,25 +225,46 @@ fn append(lists: &mut Vec<u32>, list: &[u32]) -> u32 {
 
 /// Joins the parts' words into `cells`, and gives their lists.
 fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[Part]) -> Vec<u32> {
+    let listed = parts.iter().map(|part| part.lists.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
-    let mut places = Vec::with_capacity(parts.iter().map(|part| part.lists.len()).sum());
-    let mut inner = Vec::with_capacity(inner_len);
-    cells.reserve_exact(first_level_len + inner_len);
+    let mut places = vec![0; listed];
+    *cells = vec![word::EMPTY; first_level_len + inner_len];
+    let (first_level, inner) = cells.split_at_mut(first_level_len);
+    let (mut words, mut inner, mut lists) = (first_level, inner, &mut places[..]);
+    let (mut list_start, mut inner_start) = (0, (first_level_len / 8) as u32);
+    let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
-        let list_start = places.len() as u32;
-        let inner_start = ((first_level_len + inner.len()) / 8) as u32;
+        let target = (
+            cut(&mut words, part.words.len()),
+            cut(&mut inner, part.inner.len()),
+            cut(&mut lists, part.lists.len()),
+        );
+        tasks.push((part, target, list_start, inner_start));
+        list_start += part.lists.len() as u32;
+        inner_start += (part.inner.len() / 8) as u32;
+    }
+    for_each(tasks, |(part, (words, inner, lists), list_start, inner_start)| {
         let moved = |cell: &u32| match cell & word::KIND {
             word::LIST => cell + list_start,
             word::GRID => cell + inner_start,
             _ => *cell,
         };
-        cells.extend(part.words.iter().map(moved));
-        inner.extend(part.inner.iter().map(moved));
-        places.extend_from_slice(&part.lists);
-    }
-    cells.resize(first_level_len, word::EMPTY);
-    cells.extend_from_slice(&inner);
+        for (target, cell) in words.iter_mut().zip(&part.words) {
+            *target = moved(cell);
+        }
+        for (target, cell) in inner.iter_mut().zip(&part.inner) {
+            *target = moved(cell);
+        }
+        lists.copy_from_slice(&part.lists);
+    });
     places
+}
+
+/// Takes the first elements from a slice.
+fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
+    let (first, rest) = std::mem::take(slice).split_at_mut(len);
+    *slice = rest;
+    first
 }
 
 /// Every listed sphere by itself.
@@ -321,48 +283,4 @@ fn copies(places: &[u32], sorted: &[[f32; 4]], sorted_ids: &[u32]) -> (Vec<[f32;
         }
     });
     (spheres, ids)
-}
-
-fn zeros(len: usize) -> Vec<AtomicU32> {
-    std::iter::repeat_with(AtomicU32::default).take(len).collect()
-}
-
-fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
-    atomics.into_iter().map(AtomicU32::into_inner).collect()
-}
-
-/// Where each cell's list starts, and at the end where the last one ends.
-fn starts(counts: &[AtomicU32]) -> Vec<u32> {
-    let mut starts = Vec::with_capacity(counts.len() + 1);
-    let mut next = 0;
-    for count in counts {
-        starts.push(next);
-        next += count.load(Ordering::Relaxed);
-    }
-    starts.push(next);
-    starts
-}
-
-/// Calls `f` with every list and its cell.
-fn each_list(values: &mut [u32], starts: &[u32], f: impl Fn(usize, &mut [u32]) + Sync) {
-    let ranges = chunks(starts.len() - 1, CHUNK);
-    let parts = split_mut(values, ranges.iter().map(|range| starts[range.end] as usize));
-    for_each(ranges.into_iter().zip(parts).collect(), |(range, part)| {
-        let first = starts[range.start];
-        for cell in range {
-            f(
-                cell,
-                &mut part[(starts[cell] - first) as usize..(starts[cell + 1] - first) as usize],
-            );
-        }
-    });
-}
-
-fn for_chunks(count: usize, f: impl Fn(std::ops::Range<usize>) + Sync) {
-    for_each(chunks(count, CHUNK), f);
-}
-
-fn map_chunks<R: Send>(count: usize, f: impl Fn(std::ops::Range<usize>) -> R + Sync) -> Vec<R> {
-    let ranges = chunks(count, CHUNK);
-    map(ranges.len(), |i| f(ranges[i].clone()))
 }

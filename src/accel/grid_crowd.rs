@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
 use super::grid_build::{GridBudget, STEP_COST};
-use super::parallel::{chunks, map};
+use crate::parallel::{map, ranges};
 
 /// A list this long or longer may be worth a grid.
 const CROWDED: u32 = 8;
@@ -50,9 +50,9 @@ impl Crowd {
         (places, starts): (&[u32], &[u32]),
         budget: GridBudget,
     ) -> Self {
-        let ranges = chunks(cells.len(), 1 << 12);
-        let wishes = map(ranges.len(), |i| {
-            let lists = ranges[i].clone().map(|cell| (cell, starts[cell], starts[cell + 1]));
+        let chunks = ranges(cells.len(), 1 << 12);
+        let wishes = map(chunks.len(), |i| {
+            let lists = chunks[i].clone().map(|cell| (cell, starts[cell], starts[cell + 1]));
             lists
                 .filter(|(_, start, end)| end - start >= CROWDED)
                 .filter_map(|(cell, start, end)| {
@@ -123,6 +123,7 @@ pub(super) fn inner_lists(
 fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<Wish> {
     let list_cost = STEP_COST + list.len() as f32;
     let mut least = GAIN * list_cost;
+    let mut coarser = list_cost;
     let mut best = None;
     for level in 1..=MAX_LEVEL {
         let side = (1_u32 << level) as f32;
@@ -140,6 +141,11 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
             least = cost;
             best = Some(Wish { cell: 0, len: 0, level, met, saved: list_cost - cost });
         }
+        // The cost has one minimum.
+        if cost > coarser {
+            break;
+        }
+        coarser = cost;
     }
     best
 }

@@ -1,7 +1,7 @@
 //! How far ahead of an empty cell all others are empty, so that a ray may cross them in one step.
 
 use super::grid::word;
-use super::parallel::map;
+use crate::parallel::map;
 
 /// The longest step, in cells beside the first: what three bits hold.
 pub(super) const MOST_AHEAD: u8 = 7;

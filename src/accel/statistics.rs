@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::parallel::{chunks, map};
+use crate::parallel::{map, ranges};
 
 /// Sizes and places of spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +29,10 @@ impl SceneStatistics {
     /// Of spheres in the scene's frame: centre and radius.
     #[must_use]
     pub fn of(spheres: &[[f32; 4]]) -> Self {
-        let ranges = chunks(spheres.len(), 1 << 16);
-        let parts = map(ranges.len(), |i| {
+        let chunks = ranges(spheres.len(), 1 << 16);
+        let parts = map(chunks.len(), |i| {
             let nothing = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
-            spheres[ranges[i].clone()].iter().fold(
+            spheres[chunks[i].clone()].iter().fold(
                 nothing,
                 |(min, max, least, most, sum), &[x, y, z, r]| {
                     let center = Vec3::new(x, y, z);

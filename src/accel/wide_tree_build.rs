@@ -3,10 +3,11 @@
 //! A node's spheres are cut in two, and the parts again, until there are eight; parts of at most three
 //! spheres are leaves. No binary tree is made first.
 
-use super::extent::{Extent, Item, both};
+use super::extent::{Extent, Item};
 use super::split::Cluster;
 use super::wide_node::{WIDE_LEAF, WideNode, octant_slots};
 use super::wide_tree::WIDE_LEVELS;
+use crate::parallel::{both, map_parts};
 
 /// A node of at most this many spheres has leaves only.
 const LEAVES_ONLY: usize = 8 * WIDE_LEAF;
@@ -53,7 +54,7 @@ pub(super) fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
             if some.is_empty() {
                 break;
             }
-            for draft in drafts(some, levels) {
+            for draft in map_parts(some, |cluster| draft(cluster, levels)) {
                 let mut node = draft.node;
                 // Fewer than 2³² spheres, and fewer nodes than spheres.
                 node.0[4] = (first_of_next + next.len()) as u32;
@@ -78,17 +79,6 @@ struct Draft<'a> {
     leaf_spheres: usize,
     /// Its inner children, in the order of their slots.
     inner: Vec<Cluster<'a>>,
-}
-
-#[cfg(feature = "parallel")]
-fn drafts(clusters: Vec<Cluster<'_>>, level: u32) -> Vec<Draft<'_>> {
-    use rayon::prelude::*;
-    clusters.into_par_iter().map(|cluster| draft(cluster, level)).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn drafts(clusters: Vec<Cluster<'_>>, level: u32) -> Vec<Draft<'_>> {
-    clusters.into_iter().map(|cluster| draft(cluster, level)).collect()
 }
 
 fn draft(cluster: Cluster<'_>, level: u32) -> Draft<'_> {

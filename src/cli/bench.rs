@@ -91,7 +91,8 @@ fn measure(
     progress::stage(format!("{name}: building, {choice}"));
     let started = Instant::now();
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let plan = headless.plan_render(spheres, choice, film, LayerSet::COLOR, encoding);
+    let accel = headless.plan(spheres, choice);
+    let plan = headless.plan_render(spheres, accel, film, LayerSet::COLOR, encoding);
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
     let accel = plan.accel.build(spheres.spheres());
     let build = started.elapsed();

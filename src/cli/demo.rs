@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let is_there = is_there(&scene_file)?;
     threads::start()?;
     let input = Source::of_scene(&scene_file).scene_from_text(SCENE)?;
-    let image = render(&input, LayerSet::COLOR, &device)?;
+    let image = render(&input, LayerSet::COLOR, &device.open()?)?;
     outputs.write(&image, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(
         "wrote {SCENE_FILE} and {PICTURE_FILE}; change the scene and run \

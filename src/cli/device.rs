@@ -1,5 +1,8 @@
 //! What renders, as it was asked for, and opening it.
 
+use std::panic::resume_unwind;
+use std::thread::{self, ScopedJoinHandle};
+
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
@@ -58,6 +61,66 @@ impl Device {
 /// What is asked for, where that is left open.
 pub(super) fn choice(accel: Option<Structure>) -> AccelChoice {
     accel.unwrap_or(Structure::Auto).into()
+}
+
+/// What renders, ready to.
+pub(super) enum Opened {
+    /// The CPU reference.
+    Cpu,
+    /// The CPU reference, because there is no adapter.
+    CpuInstead,
+    /// An adapter's device.
+    #[cfg(feature = "gpu")]
+    Device {
+        /// The device.
+        headless: Headless,
+        /// What finds spheres.
+        choice: AccelChoice,
+    },
+}
+
+impl Device {
+    /// Opens it.
+    pub(super) fn open(&self) -> Result<Opened, Failure> {
+        match self {
+            Self::Cpu => Ok(Opened::Cpu),
+            #[cfg(feature = "gpu")]
+            Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
+                Ok(headless) => Ok(Opened::Device { headless, choice: *choice }),
+                Err(_) if *or_cpu => Ok(Opened::CpuInstead),
+                Err(error) => Err(Failure::Job(error.into())),
+            },
+            #[cfg(not(feature = "gpu"))]
+            Self::Adapter { or_cpu: true, .. } => Ok(Opened::Cpu),
+            #[cfg(not(feature = "gpu"))]
+            Self::Adapter { or_cpu: false, .. } => Err(Failure::usage(
+                "this program was built without the feature `gpu`; use --backend cpu",
+            )),
+        }
+    }
+
+    /// Opens it while other work is done, whose failure comes first.
+    pub(super) fn open_beside<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<(T, Opened), Failure> {
+        thread::scope(|scope| {
+            let opening = match self {
+                Self::Cpu => None,
+                // Without another thread, it is opened afterwards.
+                Self::Adapter { .. } => {
+                    thread::Builder::new().spawn_scoped(scope, || self.open()).ok()
+                }
+            };
+            let done = work()?;
+            let opened = match opening.map(ScopedJoinHandle::join) {
+                Some(Ok(opened)) => opened?,
+                Some(Err(panic)) => resume_unwind(panic),
+                None => self.open()?,
+            };
+            Ok((done, opened))
+        })
+    }
 }
 
 impl WantedAdapter {

@@ -97,7 +97,8 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let headless = adapter.open_any()?;
     progress::stage("planning");
     let (choice, encoding) = (choice(args.accel.accel), memory::ENCODING_BYTES_PER_PIXEL);
-    let plan = headless.plan_render(&input.scene, choice, &input.film, layers, encoding);
+    let accel = headless.plan_once(&input.scene, choice, &input.film);
+    let plan = headless.plan_render(&input.scene, accel, &input.film, layers, encoding);
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

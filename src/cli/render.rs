@@ -3,9 +3,9 @@
 use anyhow::Context;
 
 use super::args::RenderArgs;
-use super::device::Device;
 #[cfg(feature = "gpu")]
 use super::device::explained;
+use super::device::{Device, Opened};
 use super::failure::Failure;
 use super::input::{Input, Source};
 #[cfg(feature = "gpu")]
@@ -42,39 +42,31 @@ impl Job {
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let job = Job::new(args)?;
     threads::start()?;
-    let input = job.source.load()?;
+    // Loading a driver and reading a file leave each other half of the time.
+    let (input, opened) = job.device.open_beside(|| job.source.load())?;
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
     let layers = job.outputs.layers().fold(LayerSet::COLOR, LayerSet::with);
-    let image = render(&input, layers, &job.device)?;
+    let image = render(&input, layers, &opened)?;
     job.outputs.write(&image, None)?;
     Ok(())
 }
 
 /// Renders on the device, and says so if that is not what the user would expect.
-pub(super) fn render(input: &Input, layers: LayerSet, device: &Device) -> Result<Image, Failure> {
-    match device {
-        Device::Cpu => on_cpu(input, layers),
+pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+    match opened {
+        Opened::Cpu => on_cpu(input, layers),
+        Opened::CpuInstead => {
+            memory::check(&input.film, &input.size_from, layers)?;
+            tell(
+                "note: no Vulkan, Metal or DX12 adapter was found; \
+                 rendering on the CPU reference, which is slower",
+            );
+            on_cpu(input, layers)
+        }
         #[cfg(feature = "gpu")]
-        Device::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
-            Ok(headless) => on_gpu(&headless, input, layers, *choice),
-            Err(_) if *or_cpu => {
-                memory::check(&input.film, &input.size_from, layers)?;
-                tell(
-                    "note: no Vulkan, Metal or DX12 adapter was found; \
-                     rendering on the CPU reference, which is slower",
-                );
-                on_cpu(input, layers)
-            }
-            Err(error) => Err(Failure::Job(error.into())),
-        },
-        #[cfg(not(feature = "gpu"))]
-        Device::Adapter { or_cpu: true, .. } => on_cpu(input, layers),
-        #[cfg(not(feature = "gpu"))]
-        Device::Adapter { or_cpu: false, .. } => Err(Failure::usage(
-            "this program was built without the feature `gpu`; use --backend cpu",
-        )),
+        Opened::Device { headless, choice } => on_gpu(headless, input, layers, *choice),
     }
 }
 
@@ -96,7 +88,8 @@ fn on_gpu(
     let Input { scene, camera, film, settings, .. } = input;
     progress::stage("planning");
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let plan = headless.plan_render(scene, choice, film, layers, encoding);
+    let accel = headless.plan_once(scene, choice, film);
+    let plan = headless.plan_render(scene, accel, film, layers, encoding);
     let limits = headless.device().limits();
     plan.check(&limits, memory::available()).map_err(|error| explained(headless, &error))?;
     progress::stage(format!("building: {}", plan.accel.structure.name()));

@@ -9,7 +9,7 @@ mod uniform;
 
 pub use standard::Standard;
 
-use crate::chunks;
+use crate::parallel;
 use sphereflake::Sphereflake;
 use uniform::{Uniform, power_of_two};
 
@@ -111,7 +111,7 @@ fn filled(
 ) -> Result<Vec<[f32; 4]>, GenerateError> {
     let memory = |_| GenerateError::Memory { count };
     let length = usize::try_from(count).map_err(|_| GenerateError::Memory { count })?;
-    chunks::collect(length, |i| sphere(i as u64).map(|x| x as f32)).map_err(memory)
+    parallel::try_map(length, |i| sphere(i as u64).map(|x| x as f32)).map_err(memory)
 }
 
 fn random(uniform: &Uniform, i: u64, largest: f64) -> [f64; 4] {

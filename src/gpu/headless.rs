@@ -112,10 +112,17 @@ impl Headless {
         &self.queue
     }
 
-    /// What would be built of a scene for this device.
+    /// What to build of a scene for this device, and for many pictures.
     #[must_use]
     pub fn plan(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
         AccelPlan::new(scene.spheres(), choice, binding_limit(&self.device.limits()))
+    }
+
+    /// What to build of a scene for this device, and for one picture.
+    #[must_use]
+    pub fn plan_once(&self, scene: &Scene, choice: AccelChoice, film: &Film) -> AccelPlan {
+        let binding = binding_limit(&self.device.limits());
+        AccelPlan::for_rays(scene.spheres(), choice, binding, film.pixel_count())
     }
 
     /// Copies a scene to the device, brick by brick.
@@ -156,7 +163,7 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        let accel = self.plan(scene, AccelChoice::Auto).build(scene.spheres());
+        let accel = self.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
         let buffers = self.upload(scene, &accel)?;
         drop(accel);
         let go_on = &mut |_| ControlFlow::Continue(());

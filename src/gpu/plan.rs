@@ -8,7 +8,7 @@ use super::headless::Headless;
 use super::records;
 use super::tile_textures;
 use super::tiles::tile_size;
-use crate::accel::{AccelChoice, AccelPlan, PlannedBuffer};
+use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::film::Film;
 use crate::image::LayerSet;
 use crate::scene::Scene;
@@ -138,18 +138,18 @@ impl RenderPlan {
 }
 
 impl Headless {
-    /// What a picture of a scene will take on this device, with what [`Headless::plan`] plans.
-    /// `host_bytes_per_pixel` is as in [`RenderPlan::new`].
+    /// What a picture of a scene will take on this device, with what [`Headless::plan`] or
+    /// [`Headless::plan_once`] planned. `host_bytes_per_pixel` is as in [`RenderPlan::new`].
     #[must_use]
     pub fn plan_render(
         &self,
         scene: &Scene,
-        choice: AccelChoice,
+        accel: AccelPlan,
         film: &Film,
         layers: LayerSet,
         host_bytes_per_pixel: u64,
     ) -> RenderPlan {
-        let (accel, limits) = (self.plan(scene, choice), self.device().limits());
+        let limits = self.device().limits();
         let device = (&limits, self.adapter_info().device_type);
         RenderPlan::new(scene, film, layers, accel, device, host_bytes_per_pixel)
     }
@@ -212,6 +212,7 @@ fn total(buffers: &[PlannedBuffer]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::AccelChoice;
     use crate::color::LinearRgb;
     use crate::sphere::Sphere;
 

@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use crate::chunks;
+use crate::parallel;
 
 /// How the numbers of a table lie one behind the other.
 #[derive(Clone, Copy, Debug)]
@@ -30,11 +30,11 @@ pub(super) fn rows<T: Copy + Send + Sync, const WIDTH: usize>(
     }
     // One loop for each layout, so that the compiler can make it a copy.
     match (columns, by_column) {
-        (4, false) => chunks::collect(rows, |row| {
+        (4, false) => parallel::try_map(rows, |row| {
             let place = row * 4;
             [0, 1, 2, 3].map(|column| decode(numbers[place + column]))
         }),
-        _ => chunks::collect(rows, |row| {
+        _ => parallel::try_map(rows, |row| {
             [0, 1, 2, 3].map(|column| match (column < columns, by_column) {
                 (false, _) => radius,
                 (true, false) => decode(numbers[row * columns + column]),

@@ -5,6 +5,10 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::color::to_srgb8;
 use crate::image::Image;
+use crate::parallel::for_each;
+
+/// How many pixels a thread converts at a time.
+const CHUNK: usize = 1 << 14;
 
 /// The picture as a PNG file; colours beyond [0, 1] are clamped.
 ///
@@ -30,13 +34,18 @@ pub struct PngError {
     message: String,
 }
 
-#[cfg(feature = "parallel")]
 fn srgb8(color: &[[f32; 3]]) -> Vec<u8> {
-    use rayon::prelude::*;
-    color.par_iter().flat_map_iter(|rgb| to_srgb8(*rgb)).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn srgb8(color: &[[f32; 3]]) -> Vec<u8> {
-    color.iter().flat_map(|rgb| to_srgb8(*rgb)).collect()
+    let mut bytes = vec![0; 3 * color.len()];
+    let rows: Vec<_> = bytes.chunks_mut(3 * CHUNK).zip(color.chunks(CHUNK)).collect();
+    for_each(rows, |(bytes, color)| {
+        let mut before = ([0.0; 3], to_srgb8([0.0; 3]));
+        for (target, rgb) in bytes.chunks_exact_mut(3).zip(color) {
+            // Most of many pictures is background.
+            if *rgb != before.0 {
+                before = (*rgb, to_srgb8(*rgb));
+            }
+            target.copy_from_slice(&before.1);
+        }
+    });
+    bytes
 }

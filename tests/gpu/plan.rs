@@ -56,7 +56,8 @@ fn bounds(headless: &'static Headless) {
     for kind in [Kind::Random, Kind::Clusters] {
         let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
-            let plan = headless.plan_render(&scene, choice, &film, LayerSet::ALL, 0);
+            let accel = headless.plan_once(&scene, choice, &film);
+            let plan = headless.plan_render(&scene, accel, &film, LayerSet::ALL, 0);
             let accel = plan.accel.build(scene.spheres());
             let buffers = headless.upload(&scene, &accel).unwrap();
             // Not counted: a record per brick, and the one word that stands for colours.

@@ -1,0 +1,139 @@
+//! Counting sort by cell: in time proportional to spheres and cells, on all cores, with the same result
+//! whatever their number.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::cells::Cells;
+use crate::parallel::{for_each, map, ranges, split_mut};
+
+/// How many spheres or cells one task handles.
+pub(super) const CHUNK: usize = 1 << 14;
+
+/// The spheres in the order of the cells that hold their centres, block by block, so that what is near in
+/// space is near in memory; within a cell, by id.
+pub(super) fn sort_by_cell(
+    spheres: &[[f32; 4]],
+    ids: &[u32],
+    cells: &Cells,
+) -> (Vec<[f32; 4]>, Vec<u32>) {
+    let counts = zeros(cells.len_in_blocks());
+    for_ranges(ids.len(), |range| {
+        for id in &ids[range] {
+            let cell = cells.index_in_blocks(&spheres[*id as usize]);
+            counts[cell].fetch_add(1, Ordering::Relaxed);
+        }
+    });
+    let ends = add_up(counts);
+    let order = zeros(ids.len());
+    for_ranges(ids.len(), |range| {
+        for id in &ids[range] {
+            let cell = cells.index_in_blocks(&spheres[*id as usize]);
+            let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
+            order[at as usize].store(*id, Ordering::Relaxed);
+        }
+    });
+    // Counted down, ends are starts.
+    let starts = plain(ends);
+    let mut order = plain(order);
+    each_list(&mut order, &starts, |_, list| list.sort_unstable());
+    let mut sorted = vec![[0.0; 4]; order.len()];
+    let parts = sorted.chunks_mut(CHUNK).zip(order.chunks(CHUNK)).collect();
+    for_each(parts, |(target, ids): (&mut [[f32; 4]], &[u32])| {
+        for (sphere, id) in target.iter_mut().zip(ids) {
+            *sphere = spheres[*id as usize];
+        }
+    });
+    (sorted, order)
+}
+
+/// How many spheres meet each cell.
+pub(super) fn count(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> Vec<AtomicU32> {
+    let counts = zeros(cells.len());
+    for_ranges(spheres.len(), |range| {
+        for sphere in &spheres[range] {
+            cells.met_by(sphere, margin, |cell| {
+                counts[cell].fetch_add(1, Ordering::Relaxed);
+            });
+        }
+    });
+    counts
+}
+
+pub(super) fn total(counts: &[AtomicU32]) -> u64 {
+    counts.iter().map(|count| u64::from(count.load(Ordering::Relaxed))).sum()
+}
+
+/// The places of the spheres that meet each cell, cell by cell, and where each cell's start.
+pub(super) struct Lists {
+    pub(super) places: Vec<u32>,
+    pub(super) starts: Vec<u32>,
+}
+
+/// The second half of the counting sort.
+pub(super) fn fill(
+    spheres: &[[f32; 4]],
+    cells: &Cells,
+    margin: f32,
+    counts: Vec<AtomicU32>,
+) -> Lists {
+    let total = total(&counts) as usize;
+    let ends = add_up(counts);
+    let places = zeros(total);
+    for_ranges(spheres.len(), |range| {
+        for place in range {
+            cells.met_by(&spheres[place], margin, |cell| {
+                let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
+                places[at as usize].store(place as u32, Ordering::Relaxed);
+            });
+        }
+    });
+    // Counted down, ends are starts.
+    Lists { places: plain(places), starts: plain(ends) }
+}
+
+fn zeros(len: usize) -> Vec<AtomicU32> {
+    map(len, |_| AtomicU32::default())
+}
+
+fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
+    atomics.into_iter().map(AtomicU32::into_inner).collect()
+}
+
+/// Turns the count of each list into where it ends; one more at the end is where all end.
+fn add_up(mut counts: Vec<AtomicU32>) -> Vec<AtomicU32> {
+    let mut end = 0;
+    for count in &mut counts {
+        end += *count.get_mut();
+        *count.get_mut() = end;
+    }
+    counts.push(AtomicU32::new(end));
+    counts
+}
+
+/// Calls `f` with every list and its cell.
+fn each_list(values: &mut [u32], starts: &[u32], f: impl Fn(usize, &mut [u32]) + Sync + Send) {
+    let chunks = ranges(starts.len() - 1, CHUNK);
+    let parts = split_mut(values, chunks.iter().map(|range| starts[range.end] as usize));
+    for_each(chunks.into_iter().zip(parts).collect(), |(range, part)| {
+        let first = starts[range.start];
+        for cell in range {
+            f(
+                cell,
+                &mut part[(starts[cell] - first) as usize..(starts[cell + 1] - first) as usize],
+            );
+        }
+    });
+}
+
+fn for_ranges(count: usize, f: impl Fn(Range<usize>) + Sync + Send) {
+    for_each(ranges(count, CHUNK), f);
+}
+
+pub(super) fn map_ranges<R: Send>(
+    count: usize,
+    f: impl Fn(Range<usize>) -> R + Sync + Send,
+) -> Vec<R> {
+    let chunks = ranges(count, CHUNK);
+    map(chunks.len(), |i| f(chunks[i].clone()))
+}

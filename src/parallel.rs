@@ -1,0 +1,134 @@
+//! Work on all cores with the feature `parallel`, and on one without it, with the same answers.
+
+use std::collections::TryReserveError;
+use std::ops::Range;
+
+/// How many items a thread takes at a time: enough to be worth it, few enough for short lists to stay on
+/// one thread.
+const CHUNK: usize = 1 << 16;
+
+/// The results of `f` for `0..count`, in order.
+pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().map(f).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    (0..count).map(f).collect()
+}
+
+/// As [`map`], for cheap results.
+///
+/// # Errors
+/// If there is no memory for so many.
+pub(crate) fn try_map<R: Send>(
+    count: usize,
+    f: impl Fn(usize) -> R + Sync + Send,
+) -> Result<Vec<R>, TryReserveError> {
+    let mut list = Vec::new();
+    list.try_reserve_exact(count)?;
+    #[cfg(feature = "parallel")]
+    if count > CHUNK {
+        use rayon::prelude::*;
+        list.par_extend((0..count).into_par_iter().with_min_len(CHUNK / 8).map(f));
+        return Ok(list);
+    }
+    list.extend((0..count).map(f));
+    Ok(list)
+}
+
+/// What `f` makes of every chunk and the index of its first item, in order.
+pub(crate) fn map_chunks<T: Sync, R: Send>(
+    items: &[T],
+    f: impl Fn(usize, &[T]) -> R + Sync + Send,
+) -> Vec<R> {
+    let ranges = ranges(items.len(), CHUNK);
+    map(ranges.len(), |i| f(ranges[i].start, &items[ranges[i].clone()]))
+}
+
+/// What `f` makes of every element of `parts`, in order.
+pub(crate) fn map_parts<T: Send, R: Send>(
+    parts: Vec<T>,
+    f: impl Fn(T) -> R + Sync + Send,
+) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        parts.into_par_iter().map(f).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    parts.into_iter().map(f).collect()
+}
+
+/// Calls `f` with every element of `parts`.
+pub(crate) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync + Send) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        parts.into_par_iter().for_each(f);
+    }
+    #[cfg(not(feature = "parallel"))]
+    parts.into_iter().for_each(f);
+}
+
+/// Changes every item.
+pub(crate) fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync + Send) {
+    for_each(items.chunks_mut(CHUNK).collect(), |chunk| chunk.iter_mut().for_each(&f));
+}
+
+/// Runs two tasks, at the same time if they are `large`.
+pub(crate) fn both<A: Send, B: Send>(
+    large: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    if large {
+        return rayon::join(first, second);
+    }
+    let _ = large;
+    (first(), second())
+}
+
+/// The ranges of at most `size` that make up `0..count`.
+pub(crate) fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
+    (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
+}
+
+/// Cuts a slice at ascending `ends`, of which the last is its length.
+pub(crate) fn split_mut<T>(
+    mut slice: &mut [T],
+    ends: impl IntoIterator<Item = usize>,
+) -> Vec<&mut [T]> {
+    let mut start = 0;
+    ends.into_iter()
+        .map(|end| {
+            let (part, rest) = std::mem::take(&mut slice).split_at_mut(end - start);
+            (slice, start) = (rest, end);
+            part
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lists_are_as_short_ones() {
+        for count in [0, 1, CHUNK, CHUNK + 1, 5 * CHUNK + 3] {
+            let mut list = try_map(count, |i| i).unwrap();
+            assert!(list.iter().copied().eq(0..count));
+            for_each_mut(&mut list, |i| *i += 1);
+            let sums = map_chunks(&list, |first, items| (first, items.len(), items[0]));
+            assert!(sums.iter().all(|(first, _, item)| first + 1 == *item));
+            assert_eq!(sums.iter().map(|(_, length, _)| length).sum::<usize>(), count);
+        }
+    }
+
+    #[test]
+    fn what_no_memory_holds_is_an_error() {
+        assert!(try_map(usize::MAX / 8, |_| 0_u64).is_err());
+    }
+}
