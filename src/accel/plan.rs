@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use super::binary_tree::BinaryTree;
+use super::binary_tree::{BinaryNode, BinaryTree};
 use super::brick::{Accel, Brick, Index, Structure};
 use super::divide::divide;
 use super::grid::ListLayout;
 use super::grid_build::{BuiltGrid, GridBudget, build_grid};
 use super::statistics::SceneStatistics;
+use super::wide_node::WideNode;
 use super::wide_tree::WideTree;
+use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
 
 /// What a user asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -37,6 +39,9 @@ const MOST_IN_A_CUBE: f32 = 256.0;
 /// 22.3's lavapipe leaves a loop silently.
 const LIST_LEN: usize = 3 << 14;
 
+/// What a binding may have on most devices; lists of more would not be numbered by 30 bits.
+const MOST_BINDING_BYTES: u64 = i32::MAX as u64;
+
 /// Up to so many spheres, lists are runs of copies: faster by a quarter on lavapipe, for about twice the
 /// memory.
 const MOST_COPIED: usize = 2_000_000;
@@ -45,11 +50,8 @@ const MOST_COPIED: usize = 2_000_000;
 /// and 13 ns a ray of a million random spheres.
 const LEAST_RAYS_PER_COPIED: u64 = 6;
 
-/// At most so many bytes of nodes a sphere: a wide node is 80 bytes.
-const WIDE_BYTES: u64 = 14;
-
 /// At most so many bytes of nodes a sphere: a node of 64 bytes has leaves of three or four, two of them.
-const BINARY_BYTES: u64 = 32;
+const BINARY_BYTES_PER_SPHERE: usize = 32;
 
 /// Of one buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,6 +106,7 @@ impl AccelPlan {
         binding_bytes: u64,
         rays: u64,
     ) -> Self {
+        let binding_bytes = binding_bytes.min(MOST_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
         let (structure, reason) = decide(&statistics, choice, rays);
         let count = statistics.count;
@@ -129,8 +132,13 @@ impl AccelPlan {
         let structure: u64 = self.device_bytes();
         let building = match self.structure {
             Structure::List => 0,
+            // The brick's spheres, their ids twice, and what a builder makes of each of them; vectors that
+            // grow leave some unused.
+            Structure::WideTree | Structure::BinaryTree => per_brick * 72,
             // Sorted spheres with their ids; lists as places, twice.
-            _ => per_brick * 24 + 8 * self.budget.listed as u64,
+            Structure::Grid(_) | Structure::NestedGrid(_) => {
+                per_brick * 24 + 8 * self.budget.listed as u64
+            }
         };
         structure + building
     }
@@ -207,8 +215,9 @@ impl AccelPlan {
         };
         let mut buffers = vec![("spheres", 16 * places), ("ids", 4 * places)];
         match self.structure {
-            Structure::WideTree => buffers.push(("nodes", WIDE_BYTES * per_brick + 80)),
-            Structure::BinaryTree => buffers.push(("nodes", BINARY_BYTES * per_brick + 64)),
+            Structure::WideTree | Structure::BinaryTree => {
+                buffers.push(("nodes", node_bytes(self.structure, per_brick)));
+            }
             _ => {}
         }
         if let Structure::Grid(layout) = self.structure {
@@ -287,17 +296,27 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     GridBudget { listed: listed.min(one_binding.max(count * 10 / 3)), cells }
 }
 
+/// At most so many bytes of a tree's nodes, the root among them.
+fn node_bytes(structure: Structure, count: u64) -> u64 {
+    let (per_sphere, root) = match structure {
+        Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
+        Structure::BinaryTree => (BINARY_BYTES_PER_SPHERE, size_of::<BinaryNode>()),
+        _ => (0, 0),
+    };
+    per_sphere as u64 * count + root as u64
+}
+
 /// How many spheres a brick may have, so that each of its buffers fits into a binding.
 fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
-    let most = (binding_bytes / 16).min(1 << 30) as usize;
+    let most = (binding_bytes / 16) as usize;
     let fits = |count: usize| {
         let budget = grid_budget(structure, count, binding_bytes);
-        let bytes = match structure {
+        let listed = match structure {
             Structure::Grid(ListLayout::Copied) => 16 * budget.listed,
-            Structure::BinaryTree => 32 * count,
-            _ => 16 * count,
+            _ => 4 * budget.listed,
         };
-        bytes.max(4 * budget.cells).max(4 * budget.listed) as u64 <= binding_bytes
+        let grid = listed.max(4 * budget.cells).max(16 * count) as u64;
+        grid.max(node_bytes(structure, count as u64)) <= binding_bytes
     };
     if structure == Structure::List {
         return LIST_LEN.min(most).max(1);

@@ -19,6 +19,15 @@ const PARALLEL: usize = 1 << 13;
 /// How many nodes are held as drafts at a time.
 const DRAFTS: usize = 1 << 14;
 
+/// At most so many bytes of nodes a sphere, and one node more. Cuts by cost stay far below, unless spheres are
+/// placed so that most cuts take off very few; cuts in halves always stay below, which a test shows.
+pub(super) const WIDE_BYTES_PER_SPHERE: usize = 14;
+
+/// The most nodes of a tree of so many spheres.
+fn most_nodes(count: usize) -> usize {
+    1 + count * WIDE_BYTES_PER_SPHERE / size_of::<WideNode>()
+}
+
 /// How many levels a tree of `count` spheres needs if every cut is a half: the least L ≥ 1 with
 /// 3 · 8^L ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c wherever n ≤ 8 c.
 pub(super) fn levels_by_halves(count: usize) -> u32 {
@@ -38,6 +47,17 @@ pub(super) fn levels_by_halves(count: usize) -> u32 {
 /// which need 11. Where it is less, cuts are free, since a child has fewer spheres than its parent. Where
 /// it is equal, cuts are halves, and a child needs one level less than its parent.
 pub(super) fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
+    let most = most_nodes(items.len());
+    let freely = nodes_by_level(items, false, most);
+    if freely.0.len() <= most { freely } else { nodes_by_level(items, true, usize::MAX) }
+}
+
+/// Gives up once there are more than `most` nodes.
+fn nodes_by_level(
+    items: &mut [Item],
+    in_halves: bool,
+    most: usize,
+) -> (Vec<WideNode>, Vec<u32>, u32) {
     let mut ids = Vec::with_capacity(items.len());
     if items.is_empty() {
         return (vec![WideNode::empty()], ids, 1);
@@ -45,16 +65,16 @@ pub(super) fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
     let mut nodes = Vec::new();
     let mut level = vec![Cluster::new(items)];
     let mut levels = 0;
-    while !level.is_empty() {
+    while !level.is_empty() && nodes.len() <= most {
         let first_of_next = nodes.len() + level.len();
         let mut next = Vec::new();
         let mut rest = level.into_iter();
         loop {
             let some: Vec<_> = rest.by_ref().take(DRAFTS).collect();
-            if some.is_empty() {
+            if some.is_empty() || nodes.len() > most {
                 break;
             }
-            for draft in map_parts(some, |cluster| draft(cluster, levels)) {
+            for draft in map_parts(some, |cluster| draft(cluster, levels, in_halves)) {
                 let mut node = draft.node;
                 // Fewer than 2³² spheres, and fewer nodes than spheres.
                 node.0[4] = (first_of_next + next.len()) as u32;
@@ -81,15 +101,19 @@ struct Draft<'a> {
     inner: Vec<Cluster<'a>>,
 }
 
-fn draft(cluster: Cluster<'_>, level: u32) -> Draft<'_> {
+fn wanted_slots(count: usize) -> usize {
+    count.div_ceil(SPHERES_A_CHILD).min(8)
+}
+
+fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
     let mut parts = Vec::with_capacity(8);
     if cluster.len() <= LEAVES_ONLY {
         cut_into_leaves(cluster, &mut parts);
     } else if level + levels_by_halves(cluster.len()) >= WIDE_LEVELS {
         cut(cluster, 8, true, &mut parts);
     } else {
-        let slots = cluster.len().div_ceil(SPHERES_A_CHILD).min(8);
-        cut(cluster, slots, false, &mut parts);
+        let slots = wanted_slots(cluster.len());
+        cut(cluster, slots, in_halves, &mut parts);
     }
 
     let mut extents = [Extent::EMPTY; 8];
@@ -162,4 +186,48 @@ fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
     let (first, second) = cluster.split_at(leaves / 2 * WIDE_LEAF);
     cut_into_leaves(first, parts);
     cut_into_leaves(second, parts);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sizes of the parts that `cut` makes in halves.
+    fn halves(count: usize, slots: usize, parts: &mut Vec<usize>) {
+        if slots == 1 || count <= WIDE_LEAF {
+            return parts.push(count);
+        }
+        halves(count.div_ceil(2), slots / 2, parts);
+        halves(count / 2, slots - slots / 2, parts);
+    }
+
+    /// Of every number of spheres up to 2^16. From there on a node has eight children of sizes that differ by
+    /// less than its eighth, for which it holds already.
+    #[test]
+    fn halves_make_few_nodes() {
+        let mut nodes = vec![0; WIDE_LEAF + 1];
+        for count in nodes.len()..1 << 16 {
+            let mut parts = Vec::new();
+            if count > LEAVES_ONLY {
+                halves(count, wanted_slots(count), &mut parts);
+            }
+            nodes.push(1 + parts.iter().map(|part| nodes[*part]).sum::<usize>());
+            assert!(nodes[count] <= most_nodes(count), "{count}: {} nodes", nodes[count]);
+        }
+    }
+
+    /// A bunch of spheres, and others of which each is farther away than all before: cuts by cost take them
+    /// off one by one.
+    #[test]
+    fn spheres_that_are_cut_off_one_by_one_do_not_cost_more_than_planned() {
+        let bunch = (0..24).map(|_| [0.0, 0.0, 0.0, 1.0]);
+        let outliers = (0..9).map(|i| [100.0 * 17.0_f32.powi(i), 0.0, 0.0, 1.0]);
+        let spheres: Vec<_> = bunch.chain(outliers).collect();
+        let mut items = Item::all(&spheres, 0.0);
+        let (nodes, _, _) = nodes_by_level(&mut items, false, usize::MAX);
+        assert!(nodes.len() > most_nodes(spheres.len()));
+        let (nodes, ids, _) = build(&mut items);
+        assert!(nodes.len() <= most_nodes(spheres.len()));
+        assert_eq!(ids.len(), spheres.len());
+    }
 }

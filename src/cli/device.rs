@@ -73,7 +73,7 @@ pub(super) enum Opened {
     #[cfg(feature = "gpu")]
     Device {
         /// The device.
-        headless: Headless,
+        headless: Box<Headless>,
         /// What finds spheres.
         choice: AccelChoice,
     },
@@ -86,7 +86,9 @@ impl Device {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
-                Ok(headless) => Ok(Opened::Device { headless, choice: *choice }),
+                Ok(headless) => {
+                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice })
+                }
                 Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),
             },

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use wgpu::{Adapter, AdapterInfo, ComputePassDescriptor, Device, Queue};
+use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, Queue};
 
 use super::adapter;
 use super::error::{GpuError, scoped};
@@ -18,6 +18,7 @@ use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_f
 use super::readback::ReadableTexture;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::{SceneBuffers, binding_limit};
+use super::seen::traced_pixels;
 use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tile_size, tiles};
 use super::timer::{PassTimer, TraceTime};
@@ -211,15 +212,15 @@ impl Headless {
             TileTextures::new(&self.device, tile_size, renderer.data_layers)
         })?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
-        let mut pace = scene.pace();
-        let total = film.pixel_count() * scene.bricks().len() as u64;
-        let mut done = 0;
+        let total = traced_pixels(scene, camera, film, tile_size);
+        let mut progress = Progress { done: 0, total };
         for tile in tiles(film, tile_size) {
             frame.set_tile(&self.queue, scene, camera, film, tile, settings);
             let mut encoder = self.encoder();
+            let mut unfinished = Groups::NONE;
             for part in frame.parts(scene) {
                 let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, pace.groups()) {
+                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
                     frame.set_first_group(&self.queue, part.band, groups.first);
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
                     let place = (part.band, part.brick, groups);
@@ -227,18 +228,12 @@ impl Headless {
                     drop(pass);
                     if left.is_empty() && part.is_last {
                         // Shaded and copied in the same submission.
+                        unfinished = groups;
                         break;
                     }
-                    let started = Instant::now();
-                    let submission = self.queue.submit([encoder.finish()]);
-                    self.wait(&[], submission)?;
-                    pace.took(groups.count(), started.elapsed());
-                    scene.keep_pace(pace);
+                    self.submit_slice(encoder, groups, scene, &[])?;
+                    progress.add(groups, watch)?;
                     encoder = self.encoder();
-                    done = (done + groups.pixels()).min(total);
-                    if watch(Progress { done, total }).is_break() {
-                        return Err(GpuError::Stopped);
-                    }
                 }
                 if part.is_last_of_band {
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
@@ -249,22 +244,39 @@ impl Headless {
                 texture.record_copy(&mut encoder, tile.size);
             }
             textures.status().record_copy(&mut encoder, frame.status());
-            let submission = self.queue.submit([encoder.finish()]);
             let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
             mapped.push(textures.status().buffer());
-            self.wait(&mapped, submission)?;
+            self.submit_slice(encoder, unfinished, scene, &mapped)?;
             if textures.status().read()? != 0 {
                 return Err(GpuError::Steps);
             }
             textures.read_into(image, tile)?;
+            progress.add(unfinished, watch)?;
         }
         Ok(())
+    }
+
+    /// Submits the tracing of some workgroups, and what comes with it, waits until it is done and the buffers
+    /// are mapped, and takes note of how long it took.
+    fn submit_slice(
+        &self,
+        encoder: CommandEncoder,
+        groups: Groups,
+        scene: &SceneBuffers,
+        mapped: &[&wgpu::Buffer],
+    ) -> Result<Duration, GpuError> {
+        let started = Instant::now();
+        let submission = self.queue.submit([encoder.finish()]);
+        self.wait(mapped, submission)?;
+        let elapsed = started.elapsed();
+        scene.took(groups, elapsed);
+        Ok(elapsed)
     }
 
     /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
     ///
     /// # Errors
-    /// As [`Headless::render`]; if the film does not fit into one texture.
+    /// As [`Headless::render`].
     pub fn measure(
         &self,
         scene: &SceneBuffers,
@@ -288,46 +300,50 @@ impl Headless {
         camera: &dyn Camera,
         film: &Film,
     ) -> Result<TraceTime, GpuError> {
-        let size = [film.width(), film.height()];
-        let textures = scoped(&self.device, || TileTextures::new(&self.device, size, false))?;
+        let tile_size = tile_size(film, self.device.limits().max_texture_dimension_2d);
+        let textures = scoped(&self.device, || TileTextures::new(&self.device, tile_size, false))?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
-        frame.set_view(&self.queue, scene, camera, film, &Settings::default())?;
         let timer = scoped(&self.device, || PassTimer::new(&self.device, &self.queue))?;
+        let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
         // wgpu clears a buffer when it is first used, which is none of the tracing.
         let mut encoder = self.encoder();
         frame.record_clear(&mut encoder);
         let submission = self.queue.submit([encoder.finish()]);
         self.wait(&[], submission)?;
-        let mut pace = scene.pace();
         let mut time = TraceTime::default();
-        for part in frame.parts(scene) {
-            let mut left = vec![part.groups];
-            while let Some(groups) = Groups::take(&mut left, pace.groups()) {
-                frame.set_first_group(&self.queue, part.band, groups.first);
-                let mut encoder = self.encoder();
-                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                    label: Some("pinhole"),
-                    timestamp_writes: timer.as_ref().map(PassTimer::writes),
-                });
-                let place = (part.band, part.brick, groups);
-                renderer.record_trace(&mut pass, scene, &frame, place)?;
-                drop(pass);
-                let started = Instant::now();
-                if let Some(timer) = &timer {
-                    timer.record_copy(&mut encoder);
+        for tile in tiles(film, tile_size) {
+            frame.set_tile(&self.queue, scene, camera, film, tile, &Settings::default());
+            for part in frame.parts(scene) {
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
+                    frame.set_first_group(&self.queue, part.band, groups.first);
+                    let mut encoder = self.encoder();
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                        label: Some("pinhole"),
+                        timestamp_writes: timer.as_ref().map(PassTimer::writes),
+                    });
+                    let place = (part.band, part.brick, groups);
+                    renderer.record_trace(&mut pass, scene, &frame, place)?;
+                    drop(pass);
+                    if let Some(timer) = &timer {
+                        timer.record_copy(&mut encoder);
+                    }
+                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
+                    time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
                 }
-                let submission = self.queue.submit([encoder.finish()]);
-                self.wait(&timer.iter().map(PassTimer::buffer).collect::<Vec<_>>(), submission)?;
-                let elapsed = started.elapsed();
-                pace.took(groups.count(), elapsed);
-                scene.keep_pace(pace);
-                time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
             }
         }
-        Ok(time)
+        let mut encoder = self.encoder();
+        textures.status().record_copy(&mut encoder, frame.status());
+        let submission = self.queue.submit([encoder.finish()]);
+        self.wait(&[textures.status().buffer()], submission)?;
+        match textures.status().read()? {
+            0 => Ok(time),
+            _ => Err(GpuError::Steps),
+        }
     }
 
-    fn encoder(&self) -> wgpu::CommandEncoder {
+    fn encoder(&self) -> CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 

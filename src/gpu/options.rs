@@ -5,6 +5,9 @@ use std::time::Duration;
 
 use wgpu::Limits;
 
+use super::error::GpuError;
+use super::tiles::Groups;
+
 /// How a device is opened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
@@ -38,10 +41,21 @@ impl Default for HeadlessOptions {
 /// What a render is doing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Pixels of one brick that were traced; a pixel counts once for every brick.
+    /// Pixels that were traced, in whole workgroups; a pixel counts once for every brick.
     pub done: u64,
-    /// How many there are in all.
+    /// How many are to be traced: those in which the scene's box may be seen.
     pub total: u64,
+}
+
+impl Progress {
+    /// Tells `watch` that some more are done.
+    pub(super) fn add(&mut self, groups: Groups, watch: &mut Watch<'_>) -> Result<(), GpuError> {
+        self.done = (self.done + groups.pixels()).min(self.total);
+        match watch(*self) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(GpuError::Stopped),
+        }
+    }
 }
 
 /// Told of progress after every submission; decides whether the render goes on.

@@ -37,6 +37,9 @@ impl Pace {
 
     /// Takes note of what a submission took. What looks quick may have been sky, so that it grows by steps.
     pub(super) fn took(&mut self, groups: u64, elapsed: Duration) {
+        if groups == 0 {
+            return;
+        }
         let ratio = TARGET.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
         let fits = (groups as f64 * ratio.min(8.0)) as u64;
         // That a small remainder was quick is no reason to submit less.

@@ -3,6 +3,7 @@
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
@@ -10,6 +11,7 @@ use super::error::{GpuError, check_storage_size, scoped};
 use super::pace::Pace;
 use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
+use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use crate::scene::Scene;
 
@@ -126,9 +128,10 @@ impl SceneBuffers {
         *self.pace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Starts the next picture as this one ended: most pictures of a scene cost about the same.
-    pub(super) fn keep_pace(&self, pace: Pace) {
-        *self.pace.lock().unwrap_or_else(PoisonError::into_inner) = pace;
+    /// Takes note of what a submission took. The next picture starts as this one ends, because most pictures
+    /// of a scene cost about the same.
+    pub(super) fn took(&self, groups: Groups, elapsed: Duration) {
+        self.pace.lock().unwrap_or_else(PoisonError::into_inner).took(groups.count(), elapsed);
     }
 
     pub(super) fn space(&self) -> &SceneSpace {

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::records::SceneSpace;
-use super::tiles::{Groups, Tile, WORKGROUP_SIDE};
+use super::scene_buffers::SceneBuffers;
+use super::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::camera::Camera;
 use crate::film::{Film, YAxis};
 
@@ -62,6 +63,18 @@ impl Seen {
         }
         groups
     }
+}
+
+/// How many pixels of a film are traced in tiles of a size, in whole workgroups, once for every brick.
+pub(super) fn traced_pixels(
+    scene: &SceneBuffers,
+    camera: &dyn Camera,
+    film: &Film,
+    tile_size: [u32; 2],
+) -> u64 {
+    let seen = Seen::of(camera, scene.space(), film);
+    let pixels: u64 = tiles(film, tile_size).map(|tile| seen.groups_of(tile).pixels()).sum();
+    pixels * scene.bricks().len() as u64
 }
 
 #[cfg(test)]

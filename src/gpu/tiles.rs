@@ -29,6 +29,9 @@ pub(super) struct Groups {
 }
 
 impl Groups {
+    /// None at all.
+    pub(super) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
+
     /// Those that cover so many pixels.
     pub(super) fn of_size(pixels: [u32; 2]) -> Self {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }

@@ -38,13 +38,14 @@ fn srgb8(color: &[[f32; 3]]) -> Vec<u8> {
     let mut bytes = vec![0; 3 * color.len()];
     let rows: Vec<_> = bytes.chunks_mut(3 * CHUNK).zip(color.chunks(CHUNK)).collect();
     for_each(rows, |(bytes, color)| {
-        let mut before = ([0.0; 3], to_srgb8([0.0; 3]));
+        let (mut before, mut encoded) = ([0; 3], to_srgb8([0.0; 3]));
         for (target, rgb) in bytes.chunks_exact_mut(3).zip(color) {
             // Most of many pictures is background.
-            if *rgb != before.0 {
-                before = (*rgb, to_srgb8(*rgb));
+            let bits = rgb.map(f32::to_bits);
+            if bits != before {
+                (before, encoded) = (bits, to_srgb8(*rgb));
             }
-            target.copy_from_slice(&before.1);
+            target.copy_from_slice(&encoded);
         }
     });
     bytes
