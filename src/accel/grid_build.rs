@@ -33,9 +33,9 @@ pub struct BuiltGrid {
     pub ids: Vec<u32>,
 }
 
-/// Builds a grid over spheres, `ids` of all of which there are at least one.
+/// Builds a grid over those of the spheres that have these ids.
 ///
-/// A sphere is listed in every cell that lies within `margin` of its surface.
+/// The grid has at least eight cells, whatever the budget. A sphere is listed in every cell that lies within `margin` of its surface.
 #[must_use]
 pub fn build_grid(
     spheres: &[[f32; 4]],
@@ -47,7 +47,8 @@ pub fn build_grid(
     let (min, max) = bounds(spheres, ids, margin);
     let mut cells = first_level(spheres, ids, (min, max), budget);
     // The size was chosen by volume, and a flat box has more cells than its volume says.
-    while cells.len() > budget.cells.min(MAX_CELLS) {
+    // A whole number of eights is kept of them.
+    while cells.len() > 1 && cells.len().next_multiple_of(8) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
     }
     let (sorted, sorted_ids) = sort_by_cell(spheres, ids, &cells);
@@ -70,6 +71,9 @@ fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
             (min.min(center - r), max.max(center + r))
         })
     });
+    if parts.is_empty() {
+        return (Vec3::ZERO, Vec3::ONE);
+    }
     let (min, max) = parts
         .into_iter()
         .fold((Vec3::MAX, Vec3::MIN), |(min, max), part| (min.min(part.0), max.max(part.1)));
@@ -85,7 +89,7 @@ fn first_level(
     budget: GridBudget,
 ) -> Cells {
     const SAMPLES: usize = 4096;
-    let stride = ids.len().div_ceil(SAMPLES);
+    let stride = ids.len().div_ceil(SAMPLES).max(1);
     let radii: Vec<f32> = ids.iter().step_by(stride).map(|id| spheres[*id as usize][3]).collect();
     let extent = max - min;
     let longest = extent.max_element();

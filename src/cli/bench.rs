@@ -11,7 +11,7 @@ use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
 use super::input::parse_size;
-use super::speak::answer;
+use super::speak::{answer, tell};
 use super::{interrupt, memory, process, progress, threads};
 use crate::accel::{AccelChoice, Structure};
 use crate::gpu::{GpuError, Headless, Query, SceneBuffers, TraceTime};
@@ -94,6 +94,12 @@ fn measure(
     let accel = headless.plan(spheres, choice);
     let plan = headless.plan_render(spheres, accel, film, LayerSet::COLOR, encoding);
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
+    tell(format_args!(
+        "{name}: {}, at most {} on the device, and {} of the host's memory beside the scene and the driver",
+        plan.accel.structure.name(),
+        memory::readable(plan.device_bytes),
+        memory::readable(plan.host_bytes),
+    ));
     let accel = plan.accel.build(spheres.spheres());
     let build = started.elapsed();
     let structure = accel.structure();

@@ -20,12 +20,6 @@ use crate::scene_file::DEFAULT_COLOR;
 /// What is measured where nothing is named: what any machine has memory for.
 pub(super) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
 
-/// Bytes of a sphere while its scene is made and built: twice itself, and the largest structure's copies.
-const BYTES_WHILE_BUILT: u64 = 2 * BYTES_PER_SPHERE + 128;
-
-/// Bytes of a pixel: of the image, and of the hits, texture and read-back of a software device.
-const BYTES_PER_PIXEL: u64 = 12 + 48;
-
 /// A scene that was named.
 pub(super) enum BenchSource {
     Standard(Standard),
@@ -76,13 +70,10 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
         Some((width, height)) => film(width, height)?,
         None => standard.film().context(name)?,
     };
-    let bytes = count * BYTES_WHILE_BUILT + film.pixel_count().saturating_mul(BYTES_PER_PIXEL);
+    let bytes = count * BYTES_PER_SPHERE;
     memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
         .map_err(Failure::usage)?;
-    tell(format_args!(
-        "{name}: {count} spheres, at most {} of memory beside the driver's",
-        memory::readable(bytes)
-    ));
+    tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
     progress::stage(format!("making {name}"));
     let started = Instant::now();
     let spheres = standard.spheres().context(name)?;

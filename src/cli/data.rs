@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use clap::ValueEnum;
 
 use super::failure::Failure;
 use super::input::extension;
+use super::memory;
 use crate::color::LinearRgb;
 use crate::io::npy::SpheresError;
 use crate::io::npz::NpzError;
@@ -115,7 +116,12 @@ impl Data {
                 return Ok((Self::Spheres(atoms.spheres), notes));
             }
             DataFormat::Npy => npy::read_spheres(bytes, options.radius).with_context(place),
-            DataFormat::Npz => npz::read_spheres(bytes, options.radius).with_context(place),
+            DataFormat::Npz => {
+                let size = npz::array_bytes(bytes).with_context(place)?;
+                let what = format!("{}: to read an array of {size} bytes takes", path.display());
+                memory::check_reading(&what, size).map_err(Error::msg)?;
+                npz::read_spheres(bytes, options.radius).with_context(place)
+            }
             DataFormat::RawF32x4 => raw::read_spheres(bytes).with_context(place),
         }
         .map(|points| (Self::Points(points), Vec::new()))

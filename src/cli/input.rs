@@ -220,9 +220,6 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     )
 }
 
-/// Files up to this many bytes are read without asking for the machine's memory, which takes time.
-const SMALL: u64 = 1 << 24;
-
 /// All of a file, in one piece of memory of its size.
 fn read(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
@@ -231,11 +228,8 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     let cannot_read = || format!("{}: cannot be read", path.display());
     let mut file = std::fs::File::open(path).with_context(cannot_read)?;
     let size = file.metadata().map_or(0, |metadata| metadata.len());
-    if size > SMALL {
-        // The file, and the spheres that are made of it while it is still there.
-        let what = format!("{}: to read {size} bytes takes", path.display());
-        memory::check_bytes(&what, size.saturating_mul(2), "a smaller file").map_err(Error::msg)?;
-    }
+    let what = format!("{}: to read {size} bytes takes", path.display());
+    memory::check_reading(&what, size).map_err(Error::msg)?;
     let mut bytes = Vec::new();
     usize::try_from(size)
         .ok()

@@ -12,6 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use anyhow::Context;
 
 use super::failure::{Failure, NOTHING_WRITTEN, STOPPED};
+#[cfg(unix)]
 use super::process::ignores_hang_up;
 use super::progress;
 use super::speak::tell;
@@ -46,13 +47,27 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Listens for SIGINT, SIGTERM and SIGHUP, or what the system has for them.
+/// Listens for Ctrl-C, or whatever else the system ends programs with.
 pub(super) fn install() -> Result<(), Failure> {
+    Ok(listen().context("signals cannot be listened for")?)
+}
+
+#[cfg(unix)]
+fn listen() -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let mut signals = vec![SIGINT, SIGTERM];
     // Listening would take back what `nohup` did.
     if !ignores_hang_up() {
-        ctrlc::set_handler(on_signal).context("signals cannot be listened for")?;
+        signals.push(SIGHUP);
     }
+    let mut signals = signal_hook::iterator::Signals::new(signals)?;
+    std::thread::Builder::new().spawn(move || signals.forever().for_each(|_| on_signal()))?;
     Ok(())
+}
+
+#[cfg(not(unix))]
+fn listen() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(on_signal)
 }
 
 /// On a thread of its own.

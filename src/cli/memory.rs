@@ -33,6 +33,19 @@ pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), 
     Ok(())
 }
 
+/// Arrays up to this many bytes are read without asking for the machine's memory, which takes time.
+const SMALL: u64 = 1 << 24;
+
+/// Refuses an array of so many bytes that this machine cannot hold together with the spheres that are made of
+/// it; `what` is a sentence up to the number of bytes.
+pub(super) fn check_reading(what: &str, size: u64) -> Result<(), String> {
+    if size <= SMALL {
+        return Ok(());
+    }
+    // Of three numbers, four are made.
+    check_bytes(what, size.saturating_mul(7) / 3, "a smaller file")
+}
+
 /// Bytes that are free for this program; `None` is not known, and then the allocation itself decides.
 pub(super) fn available() -> Option<u64> {
     let what = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());

@@ -8,6 +8,7 @@ pub(super) fn peak_bytes() -> Option<u64> {
 }
 
 /// Whether the process was started so that it outlives its terminal, as by `nohup`.
+#[cfg(unix)]
 pub(super) fn ignores_hang_up() -> bool {
     /// SIGHUP is 1, the lowest bit of the mask.
     const HANG_UP: u64 = 1;

@@ -102,7 +102,9 @@ impl Frame {
             let status = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole status"),
                 size: size_of::<u32>() as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
             let records = device.create_buffer(&wgpu::BufferDescriptor {
@@ -257,8 +259,13 @@ impl Frame {
         encoder.clear_buffer(&self.hits, 0, None);
     }
 
-    /// What kernels report: not 0 once one ran into its limit of iterations.
-    pub(super) fn status(&self) -> &Buffer {
+    /// One u32 that kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
+    /// 0 after creation, and not set back; read it once a submission is done, and clear it then.
+    ///
+    /// Usage: `COPY_SRC`, `COPY_DST`. Software devices give up after 8,000 spheres and cells, because old ones
+    /// leave long loops silently.
+    #[must_use]
+    pub fn status(&self) -> &Buffer {
         &self.status
     }
 

@@ -8,12 +8,13 @@ use super::headless::Headless;
 use super::records;
 use super::tile_textures;
 use super::tiles::tile_size;
-use crate::accel::{AccelPlan, PlannedBuffer};
+use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::film::Film;
 use crate::image::LayerSet;
 use crate::scene::Scene;
 
-/// What a render by [`Headless`] takes. Bytes are upper bounds.
+/// What a render by [`Headless`] takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
+/// records for each brick come on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
     /// The structure, and why.
@@ -130,7 +131,7 @@ impl RenderPlan {
                 what: self.host_peak.what(),
                 needed: self.host_bytes,
                 available,
-                instead: self.host_peak.instead(),
+                instead: self.host_peak.instead(self.accel.structure),
             }),
             _ => Ok(()),
         }
@@ -167,10 +168,11 @@ impl HostPeak {
     }
 
     /// What to choose if there is not enough.
-    const fn instead(self) -> &'static str {
-        match self {
-            Self::Building | Self::Uploading => "fewer spheres, or the structure `tree`",
-            Self::Picture => "a smaller size",
+    const fn instead(self, structure: Structure) -> &'static str {
+        match (self, structure) {
+            (Self::Picture, _) => "a smaller size",
+            (_, Structure::Grid(_)) => "fewer spheres, or the structure `tree`",
+            _ => "fewer spheres",
         }
     }
 }

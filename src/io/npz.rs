@@ -63,6 +63,31 @@ pub enum NpzError {
 /// If there is no such array, it is not whole, or it is no list of spheres.
 pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<Points, NpzError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
+    let (name, entry) = entry_with_spheres(&archive)?;
+    let contents = contents(&archive, entry.wayfinder, entry.method);
+    let array = contents
+        .map_err(|message| NpzError::Entry { name: name.clone(), message: one_line(&message) })?;
+    npy::read_spheres(&array, radius).map_err(|error| NpzError::Spheres { name, error })
+}
+
+/// How many bytes the array that [`read_spheres`] reads is said to have once it is taken out of the archive.
+///
+/// # Errors
+/// If there is no such array.
+pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
+    let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
+    let (_, entry) = entry_with_spheres(&archive)?;
+    Ok(entry.wayfinder.uncompressed_size_hint())
+}
+
+/// Where an array is in its archive.
+struct Entry {
+    wayfinder: rawzip::ZipArchiveEntryWayfinder,
+    method: CompressionMethod,
+}
+
+/// The array to read, and its name.
+fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry), NpzError> {
     let mut entries = Vec::new();
     for entry in archive.entries() {
         let entry = entry.map_err(|error| broken(&error))?;
@@ -82,11 +107,8 @@ pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<Points, NpzErro
         }
     };
     let (name, entry) = entries.swap_remove(place);
-    let name = shortened(&one_line(&name));
-    let method = entry.compression_method();
-    let array = contents(&archive, entry.wayfinder(), method)
-        .map_err(|message| NpzError::Entry { name: name.clone(), message: one_line(&message) })?;
-    npy::read_spheres(&array, radius).map_err(|error| NpzError::Spheres { name, error })
+    let entry = Entry { wayfinder: entry.wayfinder(), method: entry.compression_method() };
+    Ok((shortened(&one_line(&name)), entry))
 }
 
 /// The bytes of an entry: those of the archive if they are stored, else new ones.

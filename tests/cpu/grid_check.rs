@@ -405,3 +405,17 @@ fn the_margin_is_what_rounding_needs() {
         assert!(margin >= f64::from(farthest) / 4_194_305.0, "{margin}");
     }
 }
+
+/// A budget that no grid fits into gives the least grid, and no spheres give one without lists.
+#[test]
+fn the_least_grid_is_built_whatever_the_budget() {
+    let none = GridBudget { listed: 0, cells: 0 };
+    let spheres: Vec<[f32; 4]> = (0..100).map(|i| [i as f32, 0.0, 0.0, 0.6]).collect();
+    for ids in [&[][..], &[7], &[1, 5, 99]] {
+        for layout in [ListLayout::Copied, ListLayout::Referenced] {
+            let built = build_grid(&spheres, ids, 0.01, layout, none);
+            assert_eq!(built.grid.cell_counts, [1; 3]);
+            assert_eq!(built.ids.len(), ids.len());
+        }
+    }
+}

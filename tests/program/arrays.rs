@@ -54,7 +54,7 @@ fn a_file_that_does_not_fit_into_memory() {
     let run = folder.run("render large.npy -o out.png --backend cpu");
     assert_eq!(run.code, 1, "{}", run.stderr);
     let expected =
-        "error: large.npy: to read 8796093022208 bytes takes 16384.0 GiB of memory, and ";
+        "error: large.npy: to read 8796093022208 bytes takes 19114.7 GiB of memory, and ";
     assert!(run.stderr.starts_with(expected), "{}", run.stderr);
     assert_eq!(folder.files(), ["large.npy"]);
 }
