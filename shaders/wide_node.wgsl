@@ -17,14 +17,14 @@ fn planes(cells: u32, step: f32, start: f32) -> vec4f {
     return vec4f((vec4u(cells) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)) * step + start;
 }
 
-struct GridRay {
+struct QuantizedRay {
     step: vec3f,
     start: vec3f,
     t_max: f32,
 }
 
 // Hits of four slots, from a word of cells for each side and axis.
-fn four_hits(ray: GridRay, near: vec3u, far: vec3u) -> u32 {
+fn four_hits(ray: QuantizedRay, near: vec3u, far: vec3u) -> u32 {
     let entry = max(
         max(planes(near.x, ray.step.x, ray.start.x), planes(near.y, ray.step.y, ray.start.y)),
         max(planes(near.z, ray.step.z, ray.start.z), vec4f(0.0)),
@@ -47,7 +47,7 @@ fn wide_node(ray: SlabRay, index: u32, t_max: f32) -> WideNode {
     let exponents = (vec3u(grid.w) >> vec3u(0u, 8u, 16u)) & vec3u(0xffu);
     let cell = bitcast<vec3f>(exponents << vec3u(23u));
     let start = (bitcast<vec3f>(grid.xyz) - ray.origin) * ray.inverse;
-    let in_grid = GridRay(cell * ray.inverse, start, t_max);
+    let in_grid = QuantizedRay(cell * ray.inverse, start, t_max);
 
     let backward = ray.inverse < vec3f(0.0);
     let low_0 = vec3u(a.x, a.z, b.x);

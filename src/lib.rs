@@ -23,8 +23,8 @@
 //! ```
 //!
 //! # Features
-//! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs the CPU reference on all
-//! cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `cli` (default) is the program.
+//! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
+//! and the CPU reference on all cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `cli` (default) is the program.
 //! An embedder wants `default-features = false, features = ["gpu"]`.
 //!
 //! # Units

@@ -68,7 +68,7 @@ impl Cells {
     /// Calls `meet` with every cell that lies within `margin` of the sphere's surface.
     ///
     /// A cell wholly inside is left out: a ray meets nothing of the sphere there. So a large sphere
-    /// costs as many cells as its surface crosses, not as many as it holds.
+    /// is listed in as many cells as its surface crosses, not in as many as it holds; all of them are looked at.
     pub(super) fn met_by(&self, sphere: &[f32; 4], margin: f32, meet: impl FnMut(usize)) {
         self.meet(sphere, margin, true, meet);
     }

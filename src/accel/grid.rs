@@ -65,7 +65,7 @@ pub struct GridStatistics {
 }
 
 impl Grid {
-    /// How many words the first level takes.
+    /// How many cells the first level has; its words are followed by up to seven unused ones.
     #[must_use]
     pub fn first_level_len(&self) -> usize {
         self.cell_counts.iter().map(|count| *count as usize).product()

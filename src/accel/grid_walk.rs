@@ -1,4 +1,5 @@
-//! Walks a grid in f32. Twin of `shaders/grid.wgsl`, line by line.
+//! Walks a grid in f32. Twin of `shaders/nested_grid.wgsl`, in the same order of cells and spheres; `grid.wgsl`
+//! is that for one level, without the loops inside.
 
 use glam::{BVec3, Vec3};
 

@@ -140,11 +140,11 @@ pub(super) struct AccelArgs {
 pub(super) enum Structure {
     /// What suits the spheres
     Auto,
-    /// Cells, nested where it is crowded
+    /// A grid of cells, nested where it is crowded
     Grid,
-    /// A tree with eight children a node
+    /// A tree with eight children a node (BVH8)
     Tree,
-    /// A tree with two children a node: slower, a second opinion
+    /// A tree with two children a node (BVH2): slower, a second opinion
     BinaryTree,
     /// Every sphere for every ray: slow, a second opinion
     List,
@@ -167,7 +167,7 @@ impl From<Structure> for AccelChoice {
 #[command(
     after_help = "Nothing is allocated on the device. Exit codes: 0 it fits; 1 it does not, \
     with the line that `render` would end with; 2 wrong usage.\n\n\
-    JSON: `scene` (spheres, bounds, radius), `structure` (name, reason, bricks), `picture` (width, height, \
+    JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, reason, bricks), `picture` (width, height, \
     tile_width, tile_height, tiles, submissions_at_least), `buffers` (name, bytes, bytes_per_binding, \
     bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, `host_peak`, \
     `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
@@ -191,11 +191,14 @@ pub(super) struct PlanArgs {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Each scene is measured with what --accel auto chooses and with the other of grid \
-    and tree. Rays go through the centres of all pixels; `any` asks only whether there is a hit. Times are \
-    medians; the peak of the process's memory only grows. JSON: `version`, `adapter`, `reps`, `scenes` \
-    (name, spheres, width, height, load_seconds, runs, note); a run has seconds, rays per second and bytes \
-    under the names that the table has. Keys may be added, not changed."
+    after_help = "Each scene is measured with what --accel auto chooses for many pictures and with the other \
+    of grid and tree. Rays go through the centres of all pixels; `any` asks only whether there is a hit. \
+    Times are medians; the peak of the process's memory only grows. Exit codes: as of `render`.\n\n\
+    JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
+    run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
+    trace_device, any_wall, any_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
+    any_rays_per_second, submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
+    peak_memory_bytes. Keys may be added, not changed."
 )]
 pub(super) struct BenchArgs {
     /// R1M, R10M, L1M, C200k, or a scene or data file; R10M takes most of a GiB [default: R1M L1M C200k]

@@ -6,7 +6,7 @@ use anyhow::Context;
 
 use super::adapter::AdapterReport;
 use super::args::BenchArgs;
-use super::bench_report::{BenchReport, RunReport, SceneReport, Spread};
+use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
@@ -125,6 +125,14 @@ fn measure(
     // The scene as it was built; the frame as it was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
+    let clock = AdapterReport::of(headless).clock();
+    let rays = film.pixel_count();
+    let rate = |times: &[TraceTime]| {
+        let wall = || Spread::of(times.iter().map(|time| Some(time.wall)));
+        let device = || Spread::of(times.iter().map(|time| time.device));
+        let spread = if clock == DEVICE_CLOCK { device().or_else(wall) } else { wall() };
+        spread.map(|spread| rays as f64 / spread.median_seconds)
+    };
     Ok(RunReport {
         choice: choice.to_string(),
         structure: structure.name(),
@@ -136,8 +144,10 @@ fn measure(
         trace_device: Spread::of(nearest.iter().map(|time| time.device)),
         any_wall: Spread::of(any.iter().map(|time| Some(time.wall))),
         any_device: Spread::of(any.iter().map(|time| time.device)),
-        clock: AdapterReport::of(headless).clock(),
-        rays: film.pixel_count(),
+        clock,
+        rays,
+        rays_per_second: rate(&nearest),
+        any_rays_per_second: rate(&any),
         submissions: nearest.iter().map(|time| time.submissions).max().unwrap_or(0),
         longest_submission_seconds: longest.as_secs_f64(),
         device_bytes,

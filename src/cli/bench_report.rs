@@ -56,6 +56,10 @@ pub(super) struct RunReport {
     /// Whose clock rates and comparisons go by: `device`, or `host`.
     pub(super) clock: &'static str,
     pub(super) rays: u64,
+    /// Of nearest hits, from the median by that clock.
+    pub(super) rays_per_second: Option<f64>,
+    /// The same of any hits.
+    pub(super) any_rays_per_second: Option<f64>,
     pub(super) submissions: u32,
     pub(super) longest_submission_seconds: f64,
     /// Of scene and frame.
@@ -143,19 +147,6 @@ impl SceneReport {
 }
 
 impl RunReport {
-    fn trace_seconds(&self) -> Option<f64> {
-        self.median(self.trace_wall, self.trace_device)
-    }
-
-    fn any_seconds(&self) -> Option<f64> {
-        self.median(self.any_wall, self.any_device)
-    }
-
-    fn median(&self, wall: Option<Spread>, device: Option<Spread>) -> Option<f64> {
-        let spread = if self.clock == DEVICE_CLOCK { device.or(wall) } else { wall };
-        spread.map(|spread| spread.median_seconds)
-    }
-
     fn row(&self) -> [String; 14] {
         let dash = || "-".to_owned();
         let milliseconds = |seconds: f64| format!("{:.1}", seconds * 1e3);
@@ -164,9 +155,7 @@ impl RunReport {
                 [spread.median_seconds, spread.best_seconds].map(milliseconds)
             })
         };
-        let rate = |seconds: Option<f64>| {
-            seconds.map_or_else(dash, |seconds| format!("{:.2}", self.rays as f64 / seconds / 1e6))
-        };
+        let rate = |rate: Option<f64>| rate.map_or_else(dash, |rate| format!("{:.2}", rate / 1e6));
         let [wall, wall_best] = spread(self.trace_wall);
         let [device, device_best] = spread(self.trace_device);
         [
@@ -178,8 +167,8 @@ impl RunReport {
             wall_best,
             device,
             device_best,
-            rate(self.trace_seconds()),
-            rate(self.any_seconds()),
+            rate(self.rays_per_second),
+            rate(self.any_rays_per_second),
             self.device_bytes_per_sphere.map_or_else(dash, |bytes| format!("{bytes:.1}")),
             self.peak_memory_bytes.map_or_else(dash, readable),
             self.submissions.to_string(),
@@ -191,16 +180,17 @@ impl RunReport {
 /// Compares the first run with the fastest of the others.
 fn compared(runs: &[RunReport]) -> Option<String> {
     let (first, others) = runs.split_first()?;
-    let timed = others.iter().filter_map(|run| Some((run, run.trace_seconds()?)));
-    let (other, theirs) = timed.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    let own = first.trace_seconds()?;
+    let timed = others.iter().filter_map(|run| Some((run, run.rays_per_second?)));
+    let (other, theirs) = timed.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let own = first.rays_per_second?;
     let (name, other) = (first.structure, other.structure);
     let chose = format!("{} chose {name}; {other} is", first.choice);
-    let percent = |slow: f64, fast: f64| (slow / fast - 1.0) * 100.0;
-    Some(if theirs < own {
-        format!("{chose} {:.0} % faster", percent(own, theirs))
+    let percent = |fast: f64, slow: f64| (fast / slow - 1.0) * 100.0;
+    // By time, as people speak of it.
+    Some(if theirs > own {
+        format!("{chose} {:.0} % faster", percent(theirs, own))
     } else {
-        format!("{chose} {:.0} % slower", percent(theirs, own))
+        format!("{chose} {:.0} % slower", percent(own, theirs))
     })
 }
 

@@ -265,8 +265,11 @@ fn shader_module(
         force_loop_bounding: false,
         ..wgpu::ShaderRuntimeChecks::checked()
     };
-    // SAFETY: what a loop without wgpu's counter must not do is run for ever. Our loops either count up to
-    // a number from a uniform, or ask `spend` in every iteration and leave when it says so.
+    // SAFETY: what a loop without wgpu's counter must not do is run for ever. Loops over a tree's or a grid's
+    // levels and cells ask `spend` in every iteration and leave when it says so. The others end by data: a
+    // loop over all spheres at a number from a uniform, a loop over a list or a leaf at a mark in buffers that
+    // only `SceneBuffers` writes, from structures whose builders end every list; and reads beyond a buffer
+    // are bounded all the same.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 

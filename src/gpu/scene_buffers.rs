@@ -265,7 +265,7 @@ impl Upload<'_> {
         };
         // Where the device's memory is the host's, contents are written where they stay.
         let is_shared = self.device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        if is_shared && size.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
+        if is_shared {
             let buffer =
                 self.device.create_buffer(&descriptor(usage | BufferUsages::MAP_WRITE, true));
             if let Ok(mut target) = buffer.get_mapped_range_mut(..) {

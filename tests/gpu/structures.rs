@@ -55,7 +55,7 @@ fn all_scenes() -> Vec<Named> {
         ("outlier", || spheres::outlier(1_500)),
         ("times_2_to_the_50", || spheres::scaled(&spheres::four_decades(500), 2_f32.powi(50))),
         ("times_2_to_the_minus_50", || {
-            // A scene's radii are not below 2⁻⁶⁰.
+            // A scene's radii are not below 2⁻⁵⁶.
             spheres::scaled(&spheres::random(500, 25, |_| 0.03), 2_f32.powi(-50))
         }),
     ]
