@@ -237,6 +237,19 @@ impl AccelPlan {
     }
 }
 
+impl Structure {
+    /// What to choose where rays take too many steps in this one, as among very many spheres in one place; a
+    /// list always ends.
+    #[must_use]
+    pub const fn instead(self) -> Option<AccelChoice> {
+        match self {
+            Self::List => None,
+            Self::Grid(_) | Self::NestedGrid(_) => Some(AccelChoice::Tree),
+            Self::WideTree | Self::BinaryTree => Some(AccelChoice::List),
+        }
+    }
+}
+
 impl fmt::Display for AccelChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

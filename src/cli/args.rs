@@ -57,7 +57,8 @@ pub(super) struct RenderArgs {
 /// What is shown, and from where. [`super::input::Source`] checks it.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.toml), or a data file (.xyz, .extxyz, .npy, .npz, .bin), which is framed by itself
+    /// A scene file (.toml), or a data file (.xyz, .extxyz, .npy, .npz; .bin with --format), which is framed by
+    /// itself
     #[arg(value_name = "SCENE_OR_DATA")]
     pub(super) input: PathBuf,
     /// What a data file is, whatever its extension says
@@ -207,6 +208,12 @@ pub(super) struct BenchArgs {
     /// Size in pixels [default: 1024x1024, or the file's]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
+    /// What the data files are, whatever their extensions say
+    #[arg(long)]
+    pub(super) format: Option<DataFormat>,
+    /// The radius of all spheres of arrays of shape (n, 3)
+    #[arg(long, value_name = "R")]
+    pub(super) radius: Option<f64>,
     /// Only these structures, with commas between them
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(super) accel: Vec<Structure>,

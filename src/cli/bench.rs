@@ -23,7 +23,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let sources = if args.scenes.is_empty() {
         DEFAULT.into_iter().map(BenchSource::Standard).collect()
     } else {
-        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, size));
+        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args, size));
         sources.collect::<Result<Vec<_>, _>>()?
     };
     let adapter = WantedAdapter::new(&args.adapter);

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
+use super::args::BenchArgs;
 use super::failure::Failure;
 use super::input::{Input, Source};
 use super::memory;
@@ -16,6 +17,7 @@ use crate::film::Film;
 use crate::generate::{BYTES_PER_SPHERE, Standard};
 use crate::scene::Scene;
 use crate::scene_file::DEFAULT_COLOR;
+use crate::text::one_line;
 
 /// What is measured where nothing is named: what any machine has memory for.
 pub(super) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
@@ -37,11 +39,25 @@ pub(super) struct BenchScene {
 
 impl BenchSource {
     /// A standard scene of this name, or a file.
-    pub(super) fn new(named: &Path, size: Option<(u32, u32)>) -> Result<Self, Failure> {
+    pub(super) fn new(
+        named: &Path,
+        args: &BenchArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
         let standard = Standard::ALL.iter().find(|standard| named == Path::new(standard.name()));
         match standard {
             Some(standard) => Ok(Self::Standard(*standard)),
-            None => Ok(Self::File(named.to_path_buf(), Box::new(Source::of_file(named, size)?))),
+            None if named.extension().is_none() => {
+                let names: Vec<_> = Standard::ALL.iter().map(|standard| standard.name()).collect();
+                Err(Failure::usage(format!(
+                    "{}: this is neither a standard scene ({}) nor a file with an extension",
+                    named.display(),
+                    names.join(", ")
+                )))
+            }
+            None => {
+                Ok(Self::File(named.to_path_buf(), Box::new(Source::of_bench(named, args, size)?)))
+            }
         }
     }
 
@@ -56,7 +72,7 @@ impl BenchSource {
                 for note in &input.notes {
                     tell(format_args!("note: {note}"));
                 }
-                let name = path.display().to_string();
+                let name = one_line(&path.display().to_string());
                 let Input { scene, camera, film, .. } = input;
                 Ok(BenchScene { name, scene, camera, film, load })
             }
@@ -72,7 +88,7 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     };
     let bytes = count * BYTES_PER_SPHERE;
     memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
-        .map_err(Failure::usage)?;
+        .map_err(anyhow::Error::msg)?;
     tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
     progress::stage(format!("making {name}"));
     let started = Instant::now();

@@ -22,7 +22,7 @@ pub(super) struct CameraArgs {
     /// The point it looks at
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of --look-at [default: 0,0,-1]
+    /// The direction it looks in, instead of --look-at [default without --eye: 0,0,-1]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
     /// Which way is up [default: 0,1,0]

@@ -25,7 +25,7 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let format = SpheresFormat::of(path)?;
     let bytes = count * BYTES_PER_SPHERE;
     memory::check_bytes(&format!("-n {count}: {count} spheres need"), bytes, "fewer spheres")
-        .map_err(Failure::usage)?;
+        .map_err(anyhow::Error::msg)?;
     tell(format_args!("{}: {count} spheres, {bytes} bytes", path.display()));
     threads::start()?;
     progress::stage("making spheres");

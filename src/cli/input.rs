@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result, anyhow, bail};
 
+#[cfg(feature = "gpu")]
+use super::args::BenchArgs;
 use super::args::InputArgs;
 use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
@@ -27,6 +29,8 @@ pub(super) struct Input {
     pub(super) size_from: String,
     /// What the user should know although it is no error.
     pub(super) notes: Vec<String>,
+    /// The files that were read.
+    pub(super) files: Vec<PathBuf>,
 }
 
 /// What a file is.
@@ -56,6 +60,20 @@ impl Format {
     }
 }
 
+fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
+    if let Some(radius) = options.radius
+        && !(radius.is_finite() && radius > 0.0)
+    {
+        return Err(Failure::usage(format!(
+            "--radius {radius}: a radius must be finite and greater than 0"
+        )));
+    }
+    match format {
+        Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
+        Format::Scene => Ok(()),
+    }
+}
+
 /// What stands behind the last dot of a file's name, in small letters.
 pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
@@ -76,19 +94,10 @@ impl Source {
             Some(format) => Format::Data(format),
             None => Format::of(&args.input).map_err(Failure::Usage)?,
         };
-        if let Some(radius) = args.radius
-            && !(radius.is_finite() && radius > 0.0)
-        {
-            return Err(Failure::usage(format!(
-                "--radius {radius}: a radius must be finite and greater than 0"
-            )));
-        }
         let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
         let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
         let options = DataOptions { frame: args.frame, radius: args.radius, color };
-        if let Format::Data(format) = format {
-            options.check(format, "--").map_err(Failure::usage)?;
-        }
+        check_flags(format, &options)?;
         Ok(Self {
             path: args.input.clone(),
             format,
@@ -104,11 +113,20 @@ impl Source {
         Self { path: path.to_path_buf(), format: Format::Scene, size: None, options, camera: None }
     }
 
-    /// A file whose extension says what it is, with no flag but a size.
+    /// A file to measure.
     #[cfg(feature = "gpu")]
-    pub(super) fn of_file(path: &Path, size: Option<(u32, u32)>) -> Result<Self, Failure> {
-        let format = Format::of(path).map_err(Failure::Usage)?;
-        Ok(Self { format, size, ..Self::of_scene(path) })
+    pub(super) fn of_bench(
+        path: &Path,
+        args: &BenchArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
+        let format = match args.format {
+            Some(format) if Format::of(path).ok() != Some(Format::Scene) => Format::Data(format),
+            _ => Format::of(path).map_err(Failure::Usage)?,
+        };
+        let options = DataOptions { radius: args.radius, ..DataOptions::default() };
+        check_flags(format, &options)?;
+        Ok(Self { format, size, options, ..Self::of_scene(path) })
     }
 
     /// Reads the file, and the data that it names.
@@ -122,16 +140,21 @@ impl Source {
             return self.scene_from_text(&text);
         };
         let bytes = read(path)?;
-        let (data, notes) = Data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        let (data, mut notes) =
+            Data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
         drop(bytes);
         let place = || path.display().to_string();
         let (film, size_from) = self.film(Film::default())?;
         let scene = data.scene(self.options.color.unwrap_or_else(default_color));
         let scene = scene.with_context(place)?;
+        if scene.is_empty() {
+            notes.push(format!("{}: there are no spheres in it", path.display()));
+        }
         let parameters = self.camera.unwrap_or_default();
         let camera =
             parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?;
-        Ok(Input { scene, camera, film, settings: Settings::default(), size_from, notes })
+        let (settings, files) = (Settings::default(), vec![path.clone()]);
+        Ok(Input { scene, camera, film, settings, size_from, notes, files })
     }
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
@@ -139,6 +162,8 @@ impl Source {
         let place = || self.path.display().to_string();
         let file = SceneFile::parse(text).with_context(place)?;
         let (data, color, notes) = self.data_of(&file)?;
+        let data_file = file.data().map(|data| self.beside(&data.file));
+        let files = std::iter::once(self.path.clone()).chain(data_file).collect();
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
             Data::Spheres(spheres) => file.scene(&spheres),
@@ -151,7 +176,12 @@ impl Source {
             }
             None => file.camera(&film, &scene).with_context(place)?,
         };
-        Ok(Input { scene, camera, film, settings: file.settings, size_from, notes })
+        Ok(Input { scene, camera, film, settings: file.settings, size_from, notes, files })
+    }
+
+    /// A path that is relative to the scene file's folder.
+    fn beside(&self, path: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
     /// The data of a scene file, its colour if it has none, and notes.
@@ -171,7 +201,7 @@ impl Source {
                 None => Ok((Data::Spheres(Vec::new()), default_color(), Vec::new())),
             };
         };
-        let path = self.path.parent().unwrap_or(Path::new("")).join(&data.file);
+        let path = self.beside(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let Some(format) = DataFormat::of(&path) else {
             let problem = if extension(&path).as_deref() == Some("toml") {
@@ -220,6 +250,9 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     )
 }
 
+/// How much is read at first of what does not say how large it is.
+const FIRST_PIECE: u64 = 1 << 20;
+
 /// All of a file, in one piece of memory of its size.
 fn read(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
@@ -235,6 +268,14 @@ fn read(path: &Path) -> Result<Vec<u8>> {
         .ok()
         .and_then(|size| bytes.try_reserve_exact(size).ok())
         .with_context(|| format!("{}: there is no memory for {size} bytes", path.display()))?;
-    file.read_to_end(&mut bytes).with_context(cannot_read)?;
+    // A pipe and a device say 0; what is behind them is weighed piece by piece.
+    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
+    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
+        == piece
+    {
+        piece = bytes.len() as u64;
+        let what = format!("{}: to read on after {piece} bytes takes", path.display());
+        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
+    }
     Ok(bytes)
 }

@@ -54,7 +54,9 @@ pub(super) fn install() -> Result<(), Failure> {
 
 #[cfg(unix)]
 fn listen() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    // A file that may not grow is then an error like others, and not the end.
+    signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
     let mut signals = vec![SIGINT, SIGTERM];
     // Listening would take back what `nohup` did.
     if !ignores_hang_up() {

@@ -16,7 +16,7 @@ pub(super) fn check(film: &Film, size_from: &str, layers: LayerSet) -> Result<()
     let needed = film.pixel_count().saturating_mul(per_pixel);
     let (width, height) = (film.width(), film.height());
     let what = format!("{size_from}: a picture of {width}x{height} needs");
-    check_bytes(&what, needed, "a smaller size").map_err(Failure::usage)
+    Ok(check_bytes(&what, needed, "a smaller size").map_err(anyhow::Error::msg)?)
 }
 
 /// Refuses what needs more memory than there is; `what` is a sentence up to the number of bytes.

@@ -36,7 +36,7 @@ impl Outputs {
         let layers = layers.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>, _>>()?;
         let mut seen = HashSet::new();
         for path in picture.iter().chain(layers.iter().map(|(_, path)| path)) {
-            if !seen.insert(canonical(path)) {
+            if !seen.insert(real(path)) {
                 return Err(Failure::usage(format!(
                     "{}: two outputs are this file",
                     path.display()
@@ -44,6 +44,19 @@ impl Outputs {
             }
         }
         Ok(Self { picture, layers })
+    }
+
+    /// Refuses to overwrite what was read.
+    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        let inputs: Vec<PathBuf> = inputs.iter().map(|path| real(path)).collect();
+        let mut outputs = self.picture.iter().chain(self.layers.iter().map(|(_, path)| path));
+        match outputs.find(|path| inputs.contains(&real(path))) {
+            None => Ok(()),
+            Some(path) => Err(Failure::usage(format!(
+                "{}: this output is an input as well; give it another name",
+                path.display()
+            ))),
+        }
     }
 
     /// The layers to render.
@@ -127,13 +140,16 @@ fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     builder
-        .tempfile_in(folder(path))
-        .map_err(|error| match error.get_ref().and_then(std::error::Error::source) {
-            // Without the temporary file's name, which means nothing to the user.
-            Some(reason) => anyhow!("{reason}"),
-            None => anyhow!(error),
-        })
+        .tempfile_in(folder(&real(path)))
+        .map_err(|error| without_name(&error))
         .with_context(|| format!("{}: cannot be written", path.display()))
+}
+
+/// The reason without the temporary file's name, which means nothing to the user.
+fn without_name(error: &io::Error) -> anyhow::Error {
+    let text = error.to_string();
+    let reason = text.split_once(" at path ").map_or(&*text, |(reason, _)| reason);
+    anyhow!("{reason}")
 }
 
 fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
@@ -146,7 +162,7 @@ fn unnamed_with(
 ) -> Result<NamedTempFile> {
     let cannot_write = || format!("{}: cannot be written", path.display());
     let mut file = temporary(path)?;
-    write(&mut file).with_context(cannot_write)?;
+    write(&mut file).map_err(|error| without_name(&error)).with_context(cannot_write)?;
     file.as_file().sync_all().with_context(cannot_write)?;
     if let Ok(old) = path.metadata() {
         file.as_file().set_permissions(old.permissions()).with_context(cannot_write)?;
@@ -164,9 +180,7 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let mut new = Vec::new();
     for (path, file) in files {
         let existed = path.exists();
-        // What a link points to is replaced, not the link.
-        let target = path.canonicalize().unwrap_or_else(|_| path.clone());
-        if let Err(error) = file.persist(target) {
+        if let Err(error) = file.persist(real(path)) {
             for path in new {
                 // What cannot be removed either is still a complete file.
                 let _ = std::fs::remove_file(path);
@@ -181,8 +195,12 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     Ok(())
 }
 
-/// One spelling for all that a path can be called.
-fn canonical(path: &Path) -> PathBuf {
+/// One spelling for all that a file can be called, whether it is there or not. What a link points to is
+/// replaced, not the link.
+fn real(path: &Path) -> PathBuf {
+    if let Ok(target) = path.canonicalize() {
+        return target;
+    }
     let folder = folder(path);
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     path.file_name().map_or_else(|| path.to_path_buf(), |name| folder.join(name))
@@ -220,6 +238,12 @@ fn check_place(path: &Path) -> Result<(), Failure> {
         .is_some_and(|b| std::path::is_separator(*b as char));
     if path.is_dir() || ends_with_separator {
         return Err(Failure::usage(format!("{}: this is a folder; name a file", path.display())));
+    }
+    if path.metadata().is_ok_and(|old| !old.is_file()) {
+        return Err(Failure::usage(format!(
+            "{}: this is no regular file, and would be replaced by one; choose another name",
+            path.display()
+        )));
     }
     let folder = folder(path);
     if !folder.is_dir() {

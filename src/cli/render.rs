@@ -16,10 +16,10 @@ use super::progress;
 use super::speak::tell;
 use super::threads;
 #[cfg(feature = "gpu")]
-use crate::accel::AccelChoice;
+use crate::accel::{AccelChoice, AccelPlan};
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::{Headless, Progress};
+use crate::gpu::{GpuError, Headless, Progress};
 use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
@@ -44,6 +44,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     threads::start()?;
     // Loading a driver and reading a file leave each other half of the time.
     let (input, opened) = job.device.open_beside(|| job.source.load())?;
+    job.outputs.spare(&input.files)?;
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
@@ -85,17 +86,42 @@ fn on_gpu(
     layers: LayerSet,
     choice: AccelChoice,
 ) -> Result<Image, Failure> {
+    let mut tried = choice;
+    loop {
+        let accel = headless.plan_once(&input.scene, tried, &input.film);
+        let structure = accel.structure;
+        match (with_structure(headless, input, layers, accel)?, structure.instead()) {
+            (Err(GpuError::Steps), Some(other)) if choice == AccelChoice::Auto => {
+                tell(format_args!(
+                    "note: rays take more steps in the {} than this device may loop for; \
+                     trying the structure `{other}`, which takes longer",
+                    structure.name()
+                ));
+                tried = other;
+            }
+            (image, _) => return image.map_err(|error| explained(headless, &error)),
+        }
+    }
+}
+
+/// Renders by a structure. The errors within are the device's.
+#[cfg(feature = "gpu")]
+fn with_structure(
+    headless: &Headless,
+    input: &Input,
+    layers: LayerSet,
+    accel: AccelPlan,
+) -> Result<Result<Image, GpuError>, Failure> {
     let Input { scene, camera, film, settings, .. } = input;
     progress::stage("planning");
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let accel = headless.plan_once(scene, choice, film);
     let plan = headless.plan_render(scene, accel, film, layers, encoding);
     let limits = headless.device().limits();
     plan.check(&limits, memory::available()).map_err(|error| explained(headless, &error))?;
     progress::stage(format!("building: {}", plan.accel.structure.name()));
     let accel = plan.accel.build(scene.spheres());
     progress::stage("copying to the device");
-    let image = interrupt::on_device(|| {
+    interrupt::on_device(|| {
         let buffers = headless.upload(scene, &accel)?;
         drop(accel);
         progress::stage("preparing");
@@ -104,6 +130,5 @@ fn on_gpu(
             interrupt::decide()
         };
         headless.render_uploaded(&buffers, camera.as_ref(), film, settings, layers, &mut watch)
-    })?;
-    image.map_err(|error| explained(headless, &error))
+    })
 }

@@ -91,7 +91,10 @@ pub enum GpuError {
         structure: Structure,
     },
     /// A ray took more steps than a kernel may.
-    #[error("a ray takes more steps than this device may loop for; choose another structure")]
+    #[error(
+        "a ray takes more steps than this device may loop for; choose the structure `list`, which is slow \
+         and always ends"
+    )]
     Steps,
     /// The host asked to stop.
     #[error("stopped before the picture was finished")]

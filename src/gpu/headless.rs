@@ -152,7 +152,8 @@ impl Headless {
     /// Renders a picture with one ray through the centre of every pixel.
     ///
     /// A picture beyond the device's limits is rendered in tiles, and a scene beyond them in bricks; the
-    /// picture does not depend on them. A device renders one picture at a time; other threads wait.
+    /// picture does not depend on them. Where rays take too many steps in the structure that suits the data,
+    /// another is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
     /// If scene or picture do not fit the device or the host's memory, or if the device fails.
@@ -164,11 +165,19 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        let accel = self.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
-        let buffers = self.upload(scene, &accel)?;
-        drop(accel);
-        let go_on = &mut |_| ControlFlow::Continue(());
-        self.render_uploaded(&buffers, camera, film, settings, layers, go_on)
+        let mut choice = AccelChoice::Auto;
+        loop {
+            let accel = self.plan_once(scene, choice, film).build(scene.spheres());
+            let structure = accel.structure();
+            let buffers = self.upload(scene, &accel)?;
+            drop(accel);
+            let go_on = &mut |_| ControlFlow::Continue(());
+            let image = self.render_uploaded(&buffers, camera, film, settings, layers, go_on);
+            match (image, structure.instead()) {
+                (Err(GpuError::Steps), Some(other)) => choice = other,
+                (image, _) => return image,
+            }
+        }
     }
 
     /// As [`Headless::render`], of a scene that is on this device already. `watch` is told of progress.

@@ -96,7 +96,8 @@ fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry
             entries.push((name.to_owned(), entry));
         }
     }
-    let named = |wanted: &&str| entries.iter().position(|(name, _)| name == wanted);
+    // Of two of one name the later one holds, as for NumPy.
+    let named = |wanted: &&str| entries.iter().rposition(|(name, _)| name == wanted);
     let place = match (entries.len(), NAMES.iter().find_map(named)) {
         (0, _) => return Err(NpzError::Empty),
         (_, Some(place)) => place,
@@ -149,7 +150,9 @@ fn contents<'a>(
             }
         }
         method => {
-            Err(format!("it is compressed by {method:?}; stored and deflated arrays can be read"))
+            let method = format!("{method:?}");
+            let method = method.rsplit("::").next().unwrap_or_default();
+            Err(format!("it is compressed by {method}; stored and deflated arrays can be read"))
         }
     }
 }

@@ -85,10 +85,10 @@ fn sizes() {
     }
     // Ten million million pixels.
     let arguments = "render scene.toml -o out.png --backend cpu --size 4000000x4000000";
-    refused(&[], arguments, 2, &["--size", "4000000x4000000", "memory", "smaller"]);
+    refused(&[], arguments, 1, &["--size", "4000000x4000000", "memory", "smaller"]);
     let large = [("large.toml", "[film]\nwidth = 4000000\nheight = 4000000\n")];
     let arguments = "render large.toml -o out.png --backend cpu";
-    refused(&large, arguments, 2, &["large.toml", "memory", "smaller"]);
+    refused(&large, arguments, 1, &["large.toml", "memory", "smaller"]);
 }
 
 #[test]
@@ -155,6 +155,47 @@ fn one_file_by_two_names() {
     let output = "--layer depth=d.npy --layer id=./d.npy";
     let arguments = format!("render scene.toml --backend cpu -o out.png {output}");
     refused(&[], &arguments, 2, &["./d.npy", "two outputs"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn one_file_by_a_link() {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    std::os::unix::fs::symlink("d.npy", folder.path("link.npy")).unwrap();
+    std::fs::write(folder.path("d.npy"), "old").unwrap();
+    let output = "--layer depth=d.npy --layer id=link.npy";
+    let run = folder.run(&format!("render scene.toml --backend cpu -o out.png {output}"));
+    assert_eq!((run.code, folder.read("d.npy")), (2, b"old".to_vec()));
+    assert!(run.stderr.contains("two outputs"), "{}", run.stderr);
+}
+
+#[test]
+fn what_is_read_is_not_overwritten() {
+    let folder = Folder::with(&[("scene.toml", "data = 'in.npy'\n")]);
+    folder.run("generate random -n 10 -o in.npy").succeeded();
+    let spheres = folder.read("in.npy");
+    for arguments in [
+        "render in.npy -o out.png --layer depth=in.npy",
+        "render scene.toml -o out.png --layer id=./in.npy",
+    ] {
+        let run = folder.run(&format!("{arguments} --backend cpu"));
+        assert_eq!(run.code, 2, "{}", run.stderr);
+        assert!(run.stderr.contains("in.npy: this output is an input"), "{}", run.stderr);
+        assert_eq!(folder.read("in.npy"), spheres);
+        assert_eq!(folder.files(), ["in.npy", "scene.toml"]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_not_replaced_by_a_file() {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    let made = std::process::Command::new("mkfifo").arg(folder.path("out.png")).status();
+    assert!(made.unwrap().success());
+    let run = folder.run("render scene.toml --backend cpu -o out.png");
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("no regular file"), "{}", run.stderr);
+    assert!(!folder.path("out.png").is_file());
 }
 
 #[test]
