@@ -201,6 +201,9 @@ fn real(path: &Path) -> PathBuf {
     if let Ok(target) = path.canonicalize() {
         return target;
     }
+    // A link to a file that is yet to be made.
+    let linked = path.read_link().map(|link| folder(path).join(link));
+    let path = linked.as_deref().unwrap_or(path);
     let folder = folder(path);
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     path.file_name().map_or_else(|| path.to_path_buf(), |name| folder.join(name))

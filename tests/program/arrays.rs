@@ -84,7 +84,10 @@ fn the_same_spheres_in_every_format() {
         assert_eq!(picture(&folder, arguments), expected, "{arguments}");
     }
     assert_ne!(picture(&folder, "a.npy --color red"), expected);
-    assert!(picture(&folder, "none.npy").chunks(3).all(|rgb| rgb == [255; 3]));
+    let none = folder.run("render none.npy -o none.png --backend cpu --size 24x16").succeeded();
+    assert_eq!(none.stderr, "note: none.npy: there are no spheres in it\n");
+    let (_, _, rgb) = decode(&folder.read("none.png"));
+    assert!(rgb.chunks(3).all(|rgb| rgb == [255; 3]));
     for (name, scene) in [
         ("1.toml", "data = 'a.npy'\n"),
         ("2.toml", "data = 'xyz.npy'\nradius = 1\n"),
