@@ -23,7 +23,8 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (hit.id == NO_ID) {
         if (brick.is_first != 0u) {
             write_color(pixel, frame.background);
-            write_layers(pixel, NO_HIT, vec3f(0.0), NO_ID);
+            // Of a miss NO_HIT; after `occluded`, which names no spheres, its answer.
+            write_layers(pixel, hit.t, vec3f(0.0), NO_ID);
         }
         return;
     }
