@@ -8,13 +8,13 @@
 // Linear colours; the fourth component is unused.
 @group(1) @binding(3) var<storage, read> palette: array<vec4f>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (any(invocation.xy >= frame.tile_size)) {
         return;
     }
     var hit = load_hit(hit_index(invocation.xy));
-    let group = invocation.xy / 8u - frame.traced_first;
+    let group = invocation.xy / WORKGROUP_SIDE - frame.traced_first;
     // What lies before the first has become a large number.
     if (any(group >= frame.traced_size)) {
         hit = Hit(NO_HIT, NO_ID, 0u);
