@@ -9,7 +9,7 @@ fn spend_on_node(leaves: u32) -> bool {
     return spend(1u + 4u * countOneBits(leaves));
 }
 
-// The byte of a leaf, in whose slot the node has one.
+// The byte of the leaf in a slot.
 fn leaf_byte(node: WideNode, slot: u32) -> u32 {
     return (select(node.leaves.x, node.leaves.y, slot >= 4u) >> (8u * (slot & 3u))) & 0xffu;
 }
