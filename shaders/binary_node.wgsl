@@ -1,7 +1,10 @@
 // One node of the two-child tree. Twin: `BinaryNode` in src/accel/binary_tree.rs.
 
-// Two vec4u a child: its box's low corner and its link; its high corner and its count.
 @group(1) @binding(3) var<storage, read> nodes: array<vec4u>;
+
+// Two a child: its box's low corner and its link; its high corner and its count.
+const BINARY_NODE_VECTORS: u32 = 4u;
+const BINARY_CHILD_VECTORS: u32 = 2u;
 
 // The count of a child that is a node.
 const BINARY_INNER: u32 = 0xffffffffu;
@@ -17,8 +20,9 @@ struct BinaryChild {
 }
 
 fn binary_child(ray: SlabRay, node: u32, side: u32) -> BinaryChild {
-    let low = nodes[4u * node + 2u * side];
-    let high = nodes[4u * node + 2u * side + 1u];
+    let first = BINARY_NODE_VECTORS * node + BINARY_CHILD_VECTORS * side;
+    let low = nodes[first];
+    let high = nodes[first + 1u];
     let a = (bitcast<vec3f>(low.xyz) - ray.origin) * ray.inverse;
     let b = (bitcast<vec3f>(high.xyz) - ray.origin) * ray.inverse;
     let near = min(a, b);

@@ -4,6 +4,9 @@
 const NO_HIT: f32 = 1e30;
 const NO_ID: u32 = 0xffffffffu;
 
+// The side of a workgroup, in pixels.
+const WORKGROUP_SIDE: u32 = 8u;
+
 struct Hit {
     // From where the ray enters the scene's box.
     t: f32,

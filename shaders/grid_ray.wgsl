@@ -8,6 +8,15 @@ const EMPTY: u32 = 0u;
 const LIST: u32 = 1u << 30u;
 const GRID: u32 = 2u << 30u;
 
+// Of an empty cell, in so many bits for each octant: how many cells ahead are empty.
+const REACH: u32 = 7u;
+const REACH_BITS: u32 = 3u;
+// Of a cell with a grid inside: the logarithm of its cells along an axis, and where its words start, in units.
+const LEVEL: u32 = 7u;
+const LEVEL_SHIFT: u32 = 27u;
+const INNER_START: u32 = 0x7ffffffu;
+const INNER_UNIT: u32 = 8u;
+
 struct GridRay {
     // Per axis: 1 for a ray that ascends, or 0.
     ahead: vec3f,

@@ -6,13 +6,16 @@
 
 @group(1) @binding(4) var<storage, read> references: array<u32>;
 
+// The bits of a reference that are a place.
+const PLACE: u32 = 0x7fffffffu;
+
 fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     var t = NO_HIT;
     var place = NO_PLACE;
     var at = start;
     loop {
         let reference = references[at];
-        let candidate = reference & 0x7fffffffu;
+        let candidate = reference & PLACE;
         let here = intersect_sphere(ray, spheres[candidate]).t;
         if (here < t) {
             t = here;

@@ -12,9 +12,9 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
     }
     let counts = vec3f(brick.cell_counts);
     let strides = vec3f(1.0, counts.x, counts.x * counts.y);
-    // Three bits of a word for each: bit i of the octant is set for a ray that descends along axis i.
+    // Bit i of the octant is set for a ray that descends along axis i.
     let behind = vec3u(1.0 - along.ahead);
-    let octant = 3u * (behind.x + 2u * behind.y + 4u * behind.z);
+    let octant = REACH_BITS * (behind.x + 2u * behind.y + 4u * behind.z);
     var cell = first_cell(along);
     var word = EMPTY;
     var t_leave = 0.0;
@@ -24,7 +24,7 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
         loop {
             word = cells[u32(dot(cell, strides))];
             // An empty cell's word is, for each octant, how many cells ahead are empty.
-            let reach = select(0.0, f32((word >> octant) & 7u), (word & KIND) == EMPTY);
+            let reach = select(0.0, f32((word >> octant) & REACH), (word & KIND) == EMPTY);
             t_leave = least(leaving(along, cell, reach));
             if ((word & KIND) != EMPTY || t_leave >= along.t_leave || !spend(1u)) {
                 break;
@@ -72,14 +72,14 @@ fn walk_cell(
     stop_at_first: bool,
 ) {
     let is_grid = (word & KIND) == GRID;
-    let side = f32(1u << select(0u, (word >> 27u) & 7u, is_grid));
+    let side = f32(1u << select(0u, (word >> LEVEL_SHIFT) & LEVEL, is_grid));
     let strides = vec3f(1.0, side, side * side);
     let there = floor((along.start + t_enter * along.speed - cell) * side);
     var inner = clamp(there, vec3f(0.0), vec3f(side - 1.0));
     loop {
         var inner_word = word;
         if (is_grid) {
-            inner_word = cells[(word & 0x7ffffffu) * 8u + u32(dot(inner, strides))];
+            inner_word = cells[(word & INNER_START) * INNER_UNIT + u32(dot(inner, strides))];
         }
         let planes = along.base + (cell + (inner + along.ahead) / side) * along.delta;
         let t_inner = least(planes);

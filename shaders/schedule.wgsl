@@ -11,7 +11,7 @@ fn pixel_in_tile(group: vec2u, lane: u32) -> vec2u {
     let row = remainder(ordinal, frame.traced_size.y);
     let in_group = vec2u(every_second_bit(lane), every_second_bit(lane >> 1u));
     let group_in_tile = frame.traced_first + vec2u(frame.first_group.x + group.x, row);
-    return group_in_tile * 8u + in_group;
+    return group_in_tile * WORKGROUP_SIDE + in_group;
 }
 
 // a % b, for a below 2^24: software devices divide integers lane by lane.

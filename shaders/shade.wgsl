@@ -8,13 +8,13 @@
 // Linear colours; the fourth component is unused.
 @group(1) @binding(3) var<storage, read> palette: array<vec4f>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (any(invocation.xy >= frame.tile_size)) {
         return;
     }
     var hit = load_hit(hit_index(invocation.xy));
-    let group = invocation.xy / 8u - frame.traced_first;
+    let group = invocation.xy / WORKGROUP_SIDE - frame.traced_first;
     // What lies before the first has become a large number.
     if (any(group >= frame.traced_size)) {
         hit = Hit(NO_HIT, NO_ID, 0u);
@@ -23,7 +23,8 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (hit.id == NO_ID) {
         if (brick.is_first != 0u) {
             write_color(pixel, frame.background);
-            write_layers(pixel, NO_HIT, vec3f(0.0), NO_ID);
+            // Of a miss NO_HIT; after `occluded`, which names no spheres, its answer.
+            write_layers(pixel, hit.t, vec3f(0.0), NO_ID);
         }
         return;
     }

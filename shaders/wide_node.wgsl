@@ -2,6 +2,11 @@
 
 @group(1) @binding(3) var<storage, read> nodes: array<vec4u>;
 
+const WIDE_NODE_VECTORS: u32 = 5u;
+// The byte of a leaf: its first sphere, counted from the node's, and above it how many.
+const LEAF_FIRST: u32 = 31u;
+const LEAF_COUNT_SHIFT: u32 = 5u;
+
 struct WideNode {
     inner_mask: u32,
     first_child: u32,
@@ -38,11 +43,12 @@ fn four_hits(ray: QuantizedRay, near: vec3u, far: vec3u) -> u32 {
 
 // Reads a node and tests all its boxes. Twin: `WideNode::hits`.
 fn wide_node(ray: SlabRay, index: u32, t_max: f32) -> WideNode {
-    let grid = nodes[5u * index];
-    let links = nodes[5u * index + 1u];
-    let a = nodes[5u * index + 2u];
-    let b = nodes[5u * index + 3u];
-    let c = nodes[5u * index + 4u];
+    let first = WIDE_NODE_VECTORS * index;
+    let grid = nodes[first];
+    let links = nodes[first + 1u];
+    let a = nodes[first + 2u];
+    let b = nodes[first + 3u];
+    let c = nodes[first + 4u];
 
     let exponents = (vec3u(grid.w) >> vec3u(0u, 8u, 16u)) & vec3u(0xffu);
     let cell = bitcast<vec3f>(exponents << vec3u(23u));

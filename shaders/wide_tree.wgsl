@@ -9,7 +9,7 @@ fn spend_on_node(leaves: u32) -> bool {
     return spend(1u + 4u * countOneBits(leaves));
 }
 
-// The byte of a leaf: its first sphere, counted from the node's, and how many.
+// The byte of the leaf in a slot.
 fn leaf_byte(node: WideNode, slot: u32) -> u32 {
     return (select(node.leaves.x, node.leaves.y, slot >= 4u) >> (8u * (slot & 3u))) & 0xffu;
 }
@@ -36,7 +36,7 @@ fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
         while (leaves != 0u) {
             let leaf = leaf_byte(node, firstTrailingBit(leaves));
             leaves &= leaves - 1u;
-            offer_leaf(ray, node.first_sphere + (leaf & 31u), leaf >> 5u, nearest);
+            offer_leaf(ray, node.first_sphere + (leaf & LEAF_FIRST), leaf >> LEAF_COUNT_SHIFT, nearest);
         }
         let order = octant_order(node.hits & node.inner_mask, octant);
         group = vec2u(node.first_child, node.inner_mask | (order << 24u));
@@ -71,7 +71,7 @@ fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
         while (leaves != 0u) {
             let leaf = leaf_byte(node, firstTrailingBit(leaves));
             leaves &= leaves - 1u;
-            if (any_in_leaf(ray, node.first_sphere + (leaf & 31u), leaf >> 5u, t_max)) {
+            if (any_in_leaf(ray, node.first_sphere + (leaf & LEAF_FIRST), leaf >> LEAF_COUNT_SHIFT, t_max)) {
                 return true;
             }
         }

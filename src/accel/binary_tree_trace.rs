@@ -8,7 +8,7 @@ use super::query::{Nearest, RayF32};
 use super::slab::SlabRay;
 
 /// The entry of a box that is not entered; greater than any distance.
-const NO_ENTRY: f32 = 2e30;
+pub(crate) const NO_ENTRY: f32 = 2e30;
 
 impl BinaryTree {
     /// Improves `nearest` by the nearest sphere along the ray. `spheres` are in the order of

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 /// What a word of [`Grid::cells`] stands for, in its two highest bits.
-pub(super) mod word {
+pub(crate) mod word {
     /// No sphere meets the cell. Bits 3 o to 3 o + 2: how many cells ahead of it, for a ray in octant o and
     /// along all three axes, are empty as well; bit i of o is set for a ray that descends along axis i.
     pub(crate) const EMPTY: u32 = 0;
@@ -14,12 +14,21 @@ pub(super) mod word {
     pub(crate) const GRID: u32 = 2 << 30;
     /// The bits that tell them apart.
     pub(crate) const KIND: u32 = 3 << 30;
+    /// How many cells an octant's bits of an empty word can count.
+    pub(crate) const REACH: u32 = 7;
+    /// How many bits of an empty word an octant has.
+    pub(crate) const REACH_BITS: u32 = 3;
+    /// Where the logarithm in a word with a grid starts, and its bits once it is shifted down.
     pub(crate) const LEVEL_SHIFT: u32 = 27;
+    pub(crate) const LEVEL: u32 = 7;
+    /// The bits of a word with a grid that say where its cells start, and how many cells that counts by.
+    pub(crate) const INNER_START: u32 = (1 << LEVEL_SHIFT) - 1;
+    pub(crate) const INNER_UNIT: u32 = 8;
 }
 
 /// Marks the last element of a list: in `Referenced`, the highest bit of a reference; in `Copied`, the sign
 /// of the radius.
-pub(super) const LAST: u32 = 1 << 31;
+pub(crate) const LAST: u32 = 1 << 31;
 
 /// The most cells of one brick: their numbers are computed in f32, where they are exact.
 pub(super) const MAX_CELLS: usize = 1 << 24;

@@ -3,8 +3,8 @@
 use super::grid::word;
 use crate::parallel::map;
 
-/// The longest step, in cells beside the first: what three bits hold.
-pub(super) const MOST_AHEAD: u8 = 7;
+/// The longest step, in cells beside the first.
+pub(super) const MOST_AHEAD: u8 = word::REACH as u8;
 
 /// Below this part of empty cells, there is little to skip.
 const WORTH_IT: f32 = 0.25;
@@ -27,7 +27,9 @@ pub(super) fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     let octants = map(8, |octant| cubes_ahead(&is_empty, counts, octant));
     for (cell, word) in words[..len].iter_mut().enumerate() {
         if is_empty[cell] {
-            let bits = |octant: usize| u32::from(octants[octant][cell]) << (3 * octant);
+            let bits = |octant: usize| {
+                u32::from(octants[octant][cell]) << (word::REACH_BITS as usize * octant)
+            };
             *word = word::EMPTY | (0..8).map(bits).sum::<u32>();
         }
     }

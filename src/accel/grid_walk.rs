@@ -61,16 +61,18 @@ impl Grid {
         let strides = Vec3::new(1.0, counts.x, counts.x * counts.y);
         let is_done =
             |found: &Found, t: f32| found.t <= t || (stop_at_first && found.place.is_some());
-        let octant = 3 * (!forward).bitmask();
+        let octant = word::REACH_BITS * (!forward).bitmask();
         let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
         loop {
             let outer = self.word(cell.dot(strides) as usize);
             let kind = outer & word::KIND;
-            let reach = if kind == word::EMPTY { (outer >> octant & 7) as f32 } else { 0.0 };
+            let reach =
+                if kind == word::EMPTY { (outer >> octant & word::REACH) as f32 } else { 0.0 };
             let planes = base + (cell + step * reach + ahead) * delta;
             let t_leave = planes.min_element();
             if kind != word::EMPTY {
-                let level = if kind == word::GRID { (outer >> word::LEVEL_SHIFT) & 7 } else { 0 };
+                let level =
+                    if kind == word::GRID { (outer >> word::LEVEL_SHIFT) & word::LEVEL } else { 0 };
                 let side = (1_u32 << level) as f32;
                 let inner_strides = Vec3::new(1.0, side, side * side);
                 let last = Vec3::splat(side - 1.0);
@@ -78,7 +80,7 @@ impl Grid {
                 loop {
                     let mut inner_word = outer;
                     if kind == word::GRID {
-                        let first = (outer & 0x07ff_ffff) as usize * 8;
+                        let first = ((outer & word::INNER_START) * word::INNER_UNIT) as usize;
                         inner_word = self.word(first + inner.dot(inner_strides) as usize);
                     }
                     let inner_planes = base + (cell + (inner + ahead) / side) * delta;

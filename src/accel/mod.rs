@@ -51,3 +51,12 @@ pub use statistics::SceneStatistics;
 pub use tree_check::{TreeError, TreeStatistics};
 pub use wide_node::{WIDE_LEAF, WideNode};
 pub use wide_tree::{WIDE_LEVELS, WideTree};
+
+/// What else kernels know, for the test that compares both.
+#[cfg(all(test, feature = "gpu"))]
+pub(crate) mod shared {
+    pub(crate) use super::binary_tree_trace::NO_ENTRY;
+    pub(crate) use super::grid::{LAST, word};
+    pub(crate) use super::wide_group::PACKED_ROOT;
+    pub(crate) use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST};
+}

@@ -1,7 +1,6 @@
-//! Damage that `validate` must find, and the WGSL twins: their constants, and that they compose.
+//! Damage that `validate` must find, and how deep trees may be.
 
 use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
-use super::slab::SMALLEST_COMPONENT;
 use super::tree_check::TreeError;
 use super::wide_tree::{WIDE_LEVELS, WideTree};
 use super::wide_tree_build::levels_by_halves;
@@ -164,30 +163,4 @@ fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert!(levels_by_halves(u32::MAX as usize) <= 11);
     const { assert!(WIDE_LEVELS >= 11) };
     assert!((u32::MAX as usize).div_ceil(1 << BINARY_LEVELS) <= 4);
-}
-
-fn wgsl(file: &str) -> &'static str {
-    match file {
-        "ray.wgsl" => include_str!("../../shaders/ray.wgsl"),
-        "sphere.wgsl" => include_str!("../../shaders/sphere.wgsl"),
-        "slab.wgsl" => include_str!("../../shaders/slab.wgsl"),
-        "enter.wgsl" => include_str!("../../shaders/enter.wgsl"),
-        "leaf.wgsl" => include_str!("../../shaders/leaf.wgsl"),
-        "wide_node.wgsl" => include_str!("../../shaders/wide_node.wgsl"),
-        "wide_group.wgsl" => include_str!("../../shaders/wide_group.wgsl"),
-        "wide_tree.wgsl" => include_str!("../../shaders/wide_tree.wgsl"),
-        "binary_node.wgsl" => include_str!("../../shaders/binary_node.wgsl"),
-        "binary_tree.wgsl" => include_str!("../../shaders/binary_tree.wgsl"),
-        other => panic!("{other} is no part of a walk"),
-    }
-}
-
-#[test]
-fn constants_are_those_of_the_kernels() {
-    let declares = |file: &str, line: &str| assert!(wgsl(file).contains(line), "{file}: {line}");
-    declares("wide_tree.wgsl", &format!("const WIDE_LEVELS: u32 = {WIDE_LEVELS}u;"));
-    declares("binary_tree.wgsl", &format!("const BINARY_LEVELS: u32 = {BINARY_LEVELS}u;"));
-    declares("binary_node.wgsl", &format!("const BINARY_INNER: u32 = {BINARY_INNER:#x}u;"));
-    let exponent = SMALLEST_COMPONENT.log2();
-    declares("enter.wgsl", &format!("const SMALLEST_COMPONENT: f32 = 0x1p{exponent};"));
 }

@@ -58,6 +58,11 @@ fn octant_order(mask: u32, octant: u32) -> u32 {
     mask
 }
 
+/// The root as the kernel packs groups.
+#[cfg(all(test, feature = "gpu"))]
+pub(crate) const PACKED_ROOT: [u32; 2] =
+    [Group::ROOT.first_child, Group::ROOT.left << 24 | Group::ROOT.inner_mask];
+
 #[cfg(test)]
 mod tests {
     use super::*;

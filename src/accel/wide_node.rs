@@ -14,6 +14,10 @@ use super::slab::SlabRay;
 /// How many spheres a leaf may hold.
 pub const WIDE_LEAF: usize = 3;
 
+/// Of the byte of a leaf, the bits of its first sphere, and where its count starts.
+pub(crate) const LEAF_FIRST: u32 = 31;
+pub(crate) const LEAF_COUNT_SHIFT: u32 = 5;
+
 /// A node of 80 bytes: twenty words, or five `vec4u`.
 ///
 /// | words | hold |
@@ -91,7 +95,7 @@ impl WideNode {
 
     /// `offset` counts from the node's first sphere.
     pub(super) fn set_leaf(&mut self, slot: usize, offset: usize, count: usize) {
-        self.set_byte(6, slot, (count << 5 | offset) as u8);
+        self.set_byte(6, slot, (count << LEAF_COUNT_SHIFT | offset) as u8);
     }
 
     pub(super) fn inner_mask(&self) -> u32 {
@@ -106,7 +110,11 @@ impl WideNode {
         }
         match self.byte(6, slot) {
             0 => Slot::Empty,
-            byte => Slot::Leaf(self.0[5].wrapping_add(u32::from(byte & 31)), u32::from(byte >> 5)),
+            byte => {
+                let byte = u32::from(byte);
+                let first = self.0[5].wrapping_add(byte & LEAF_FIRST);
+                Slot::Leaf(first, byte >> LEAF_COUNT_SHIFT)
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use super::leaf::{any_in_leaf, offer_leaf};
 use super::query::{Nearest, RayF32};
 use super::slab::SlabRay;
 use super::wide_group::Group;
-use super::wide_node::WideNode;
+use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
 use super::wide_tree::{WIDE_LEVELS, WideTree};
 
 impl WideTree {
@@ -90,6 +90,6 @@ fn leaves(node: &WideNode, hits: u32) -> impl Iterator<Item = (u32, u32)> {
         let slot = (left != 0).then_some(left.trailing_zeros() as usize)?;
         left &= left - 1;
         let leaf = u32::from(node.byte(6, slot));
-        Some((node.0[5] + (leaf & 31), leaf >> 5))
+        Some((node.0[5] + (leaf & LEAF_FIRST), leaf >> LEAF_COUNT_SHIFT))
     })
 }

@@ -8,6 +8,8 @@
 pub use wgpu;
 
 pub mod adapter;
+#[cfg(test)]
+mod constant_tests;
 mod error;
 mod faults;
 mod frame;

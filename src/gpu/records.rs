@@ -252,13 +252,6 @@ mod tests {
     }
 
     #[test]
-    fn a_miss_is_the_same_in_rust_and_wgsl() {
-        let source = include_str!("../../shaders/frame.wgsl");
-        assert!(source.contains(&format!("const NO_HIT: f32 = {NO_HIT:e};")));
-        assert!(source.contains(&format!("const NO_ID: u32 = {:#x}u;", crate::image::NO_ID)));
-    }
-
-    #[test]
     fn shading_numbers_are_the_same_in_rust_and_wgsl() {
         let film = Film::new(1, 1).unwrap();
         let tile = Tile { origin: [0, 0], size: [1, 1], in_target: [0, 0] };

@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use pinhole::accel::{
-    Accel, AccelChoice, AccelPlan, Brick, Index, ListLayout, NO_HIT, RayF32, Structure,
+    Accel, AccelChoice, AccelPlan, Brick, Index, NO_HIT, RayF32, Structure, intersect_sphere,
 };
 use pinhole::glam::Vec3;
 
@@ -16,33 +16,43 @@ const ROOMY: u64 = 1 << 30;
 /// 256 spheres a brick, for what needs 16 bytes a sphere.
 const TINY: u64 = 4096;
 
-/// What a grid may take beside its spheres, and 68 bytes for each of 300 spheres.
-const TINY_FOR_GRIDS: u64 = (1 << 20) + 300 * 68;
+/// What a grid of copies may take beside its spheres, and 68 bytes for each of 300 spheres.
+const TINY_FOR_COPIES: u64 = (1 << 20) + 300 * 68;
+
+/// 68 elements of lists for each of 300 spheres: what a small scene may have.
+const TINY_FOR_REFERENCES: u64 = 300 * 68 * 4;
 
 /// Every structure of the spheres, with its plan.
 fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
-    let choices =
-        [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];
+    let kinds = [
+        (AccelChoice::List, u64::MAX, TINY),
+        (AccelChoice::Grid, u64::MAX, TINY_FOR_COPIES),
+        // For so few rays, no copies are made.
+        (AccelChoice::Grid, 1, TINY_FOR_REFERENCES),
+        (AccelChoice::Tree, u64::MAX, TINY),
+        (AccelChoice::BinaryTree, u64::MAX, TINY),
+    ];
     let mut all = Vec::new();
-    for choice in choices {
-        let tiny = if choice == AccelChoice::Grid { TINY_FOR_GRIDS } else { TINY };
+    for (choice, rays, tiny) in kinds {
         for binding_bytes in [ROOMY, tiny] {
-            let plan = AccelPlan::new(spheres, choice, binding_bytes);
-            let mut plans = vec![plan.clone()];
-            if choice == AccelChoice::Grid && !spheres.is_empty() {
-                // Chosen for millions only.
-                let mut referenced = plan;
-                referenced.structure = Structure::Grid(ListLayout::Referenced);
-                plans.push(referenced);
-            }
-            for plan in plans {
-                let accel = plan.build(spheres);
-                let name = format!("{} in {}", accel.structure().name(), accel.bricks().len());
-                all.push((name, plan, accel));
-            }
+            let plan = AccelPlan::for_rays(spheres, choice, binding_bytes, rays);
+            check_bindings(&plan, binding_bytes);
+            let accel = plan.build(spheres);
+            let name = format!("{} in {}", accel.structure().name(), accel.bricks().len());
+            all.push((name, plan, accel));
         }
     }
     all
+}
+
+/// A plan binds nothing larger than the device can, if it can hold more than one sphere at all.
+fn check_bindings(plan: &AccelPlan, binding_bytes: u64) {
+    if plan.statistics.count.div_ceil(plan.brick_count) <= 1 {
+        return;
+    }
+    for buffer in &plan.buffers {
+        assert!(buffer.bytes_per_binding <= binding_bytes, "{plan:?}, {binding_bytes}");
+    }
 }
 
 /// Bytes of each buffer of a brick, by the names that plans give them.
@@ -65,13 +75,11 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     buffers
 }
 
-/// No buffer is larger than planned, in any brick and in all together.
+/// No buffer is larger than planned, in any brick and in all together; what was not planned is not there.
 fn check_memory(name: &str, plan: &AccelPlan, accel: &Accel) {
     assert!(accel.bricks().len() <= plan.brick_count, "{name}");
     let planned = |buffer: &str| {
-        // The plan of copies, with the structure of references, names no references.
-        let name = if buffer == "references" { "spheres" } else { buffer };
-        let planned = plan.buffers.iter().find(|planned| planned.name == name);
+        let planned = plan.buffers.iter().find(|planned| planned.name == buffer);
         planned.map_or((0, 0), |planned| (planned.bytes, planned.bytes_per_binding))
     };
     let mut sums = std::collections::BTreeMap::new();
@@ -203,6 +211,32 @@ fn spheres_that_nothing_tells_apart() {
     check("concentric", &spheres::concentric(500), 300);
 }
 
+/// Where two meet, the smaller id wins, though the other is met in a cell before.
+#[test]
+fn mirror_images() {
+    let spheres = spheres::mirrored(1_000);
+    check("mirrored", &spheres, 400);
+    let mut rng = Rng::with_seed(27);
+    for (name, _, accel) in all(&spheres) {
+        let mut ties = 0;
+        for _ in 0..800 {
+            let mut in_plane = |size: f32, offset: f32| {
+                Vec3::new(rng.f32() * size + offset, 0.0, rng.f32() * size + offset)
+            };
+            let direction = in_plane(2.0, -1.0).normalize_or(Vec3::X);
+            let ray = RayF32 { origin: in_plane(1.0, 0.0), direction };
+            let expected = brute(&spheres, &ray);
+            assert_same(accel.find_nearest(&ray), expected, &name, &ray);
+            let partner = expected.id ^ 1;
+            ties += u32::from(
+                expected.t < NO_HIT
+                    && intersect_sphere(&ray, spheres[partner as usize]) <= expected.t,
+            );
+        }
+        assert!(ties > 400, "{name}: {ties} rays meet two at once");
+    }
+}
+
 #[test]
 fn spheres_in_order() {
     check("line", &spheres::line(1_000), 400);
@@ -217,6 +251,7 @@ fn spheres_of_uneven_size_and_density() {
     check("clusters", &spheres::clusters(10, 300), 600);
     check("outlier", &spheres::outlier(2_000), 600);
     check("flat", &spheres::flat(2_000), 600);
+    check("distant sheet", &spheres::distant_sheet(2_000), 600);
     check("needle", &spheres::needle(2_000), 600);
 }
 
@@ -234,13 +269,16 @@ fn far_and_very_long_and_very_short() {
 #[test]
 fn many_small_bricks() {
     let spheres = spheres::random(60, 22, |_| 0.1);
-    let plan = AccelPlan::new(&spheres, AccelChoice::Grid, TINY);
-    let accel = plan.build(&spheres);
-    assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
-    check_memory("many bricks", &plan, &accel);
-    let mut rng = Rng::with_seed(22);
-    for ray in rays(&mut rng, &spheres, 800) {
-        assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
+    for (rays_planned, binding_bytes) in [(u64::MAX, TINY), (1, TINY / 4)] {
+        let plan = AccelPlan::for_rays(&spheres, AccelChoice::Grid, binding_bytes, rays_planned);
+        check_bindings(&plan, binding_bytes);
+        let accel = plan.build(&spheres);
+        assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
+        check_memory("many bricks", &plan, &accel);
+        let mut rng = Rng::with_seed(22);
+        for ray in rays(&mut rng, &spheres, 800) {
+            assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
+        }
     }
 }
 
@@ -261,13 +299,15 @@ fn coincident(count: usize) {
     let spheres = spheres::coincident(count);
     let few = spheres::coincident(1);
     for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
-        let plan = AccelPlan::new(&spheres, choice, ROOMY);
-        let accel = plan.build(&spheres);
-        let name = format!("{count} coincident, {choice}");
-        check_memory(&name, &plan, &accel);
-        let mut rng = Rng::with_seed(23);
-        for ray in rays(&mut rng, &few, 24) {
-            assert_same(accel.find_nearest(&ray), brute(&few, &ray), &name, &ray);
+        for rays_planned in [u64::MAX, 1] {
+            let plan = AccelPlan::for_rays(&spheres, choice, ROOMY, rays_planned);
+            let accel = plan.build(&spheres);
+            let name = format!("{count} coincident, {}", accel.structure().name());
+            check_memory(&name, &plan, &accel);
+            let mut rng = Rng::with_seed(23);
+            for ray in rays(&mut rng, &few, 24) {
+                assert_same(accel.find_nearest(&ray), brute(&few, &ray), &name, &ray);
+            }
         }
     }
 }

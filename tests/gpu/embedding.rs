@@ -27,20 +27,20 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 /// A host program with a device of its own, with no more than WebGPU's default limits.
-struct Host {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+pub(crate) struct Host {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
 }
 
 impl Host {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let adapter = adapter::choose(None).unwrap();
         let descriptor = wgpu::DeviceDescriptor::default();
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
         Self { device, queue }
     }
 
-    fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
+    pub(crate) fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("host"),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -55,12 +55,12 @@ impl Host {
         })
     }
 
-    fn encoder(&self) -> wgpu::CommandEncoder {
+    pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
     /// The bytes of a texture, after running the encoder.
-    fn submit_and_read(
+    pub(crate) fn submit_and_read(
         &self,
         mut encoder: wgpu::CommandEncoder,
         texture: &wgpu::Texture,
@@ -93,7 +93,7 @@ impl Host {
     }
 }
 
-fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(crate) fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
@@ -101,7 +101,7 @@ fn three_spheres() -> View {
     View::three_spheres()
 }
 
-fn size_of_film(film: &Film) -> [u32; 2] {
+pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
     [film.width(), film.height()]
 }
 

@@ -10,19 +10,27 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use libtest_mimic::Trial;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, ListLayout, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, NO_HIT, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::gpu::{Headless, HeadlessOptions, LimitChoice, Query};
+use pinhole::gpu::{
+    ColorTarget, DataTargets, Frame, GpuError, Headless, HeadlessOptions, LimitChoice, Query,
+    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+};
+use pinhole::image::NO_ID;
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, glam};
 
+use crate::embedding::{Host, size_of_film, view_of};
 use crate::headless;
+use crate::support::View;
+use crate::support::compare::{Picture, compare};
 use crate::support::spheres::{self, Spheres};
 use crate::trial;
 
 /// Bytes of a binding, for one brick and for several.
 const ROOMY: u64 = 1 << 27;
 const TINY: u64 = 16 * 600;
-const TINY_FOR_GRIDS: u64 = (1 << 20) + 68 * 600;
+const TINY_FOR_COPIES: u64 = (1 << 20) + 68 * 600;
+const TINY_FOR_REFERENCES: u64 = 4 * 68 * 600;
 
 /// A device with WebGPU's limits.
 static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
@@ -39,6 +47,7 @@ fn all_scenes() -> Vec<Named> {
         ("four_decades", || spheres::four_decades(1_000)),
         ("equal", || vec![[1.0, 2.0, 3.0, 0.5]; 300]),
         ("twice", || spheres::twice(700)),
+        ("mirrored", || spheres::mirrored(1_000)),
         ("line", || spheres::line(800)),
         ("nested", || spheres::nested(200)),
         ("lattice", || spheres::lattice(14)),
@@ -52,6 +61,7 @@ fn all_scenes() -> Vec<Named> {
             spheres
         }),
         ("flat", || spheres::flat(1_500)),
+        ("distant_sheet", || spheres::distant_sheet(6_000)),
         ("outlier", || spheres::outlier(1_500)),
         ("times_2_to_the_50", || spheres::scaled(&spheres::four_decades(500), 2_f32.powi(50))),
         ("times_2_to_the_minus_50", || {
@@ -73,26 +83,26 @@ pub(crate) fn trials() -> Vec<Trial> {
         .collect();
     trials.push(trial("structures::a_million_coincident_centres", coincident));
     trials.push(trial("structures::slices_do_not_show", slices));
-    trials.push(trial("structures::whether_there_is_any_is_answered_in_time", any));
+    trials.push(trial("structures::whether_there_is_any_is_what_the_nearest_says", any));
+    trials.push(trial("structures::a_list_of_several_slices", long_list));
+    trials.push(trial("structures::too_many_steps_are_an_error_and_no_picture", too_many_steps));
     trials
 }
 
-/// Every structure but the list, in one brick and in several.
+/// Every structure, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
-    let mut all = Vec::new();
-    for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree, AccelChoice::List]
-    {
-        let tiny = if choice == AccelChoice::Grid { TINY_FOR_GRIDS } else { TINY };
-        for binding_bytes in [ROOMY, tiny] {
-            let mut plan = AccelPlan::new(spheres, choice, binding_bytes);
-            all.push(plan.build(spheres));
-            if choice == AccelChoice::Grid {
-                plan.structure = Structure::Grid(ListLayout::Referenced);
-                all.push(plan.build(spheres));
-            }
-        }
-    }
-    all
+    let kinds = [
+        (AccelChoice::Grid, u64::MAX, TINY_FOR_COPIES),
+        // For so few rays, no copies are made.
+        (AccelChoice::Grid, 1, TINY_FOR_REFERENCES),
+        (AccelChoice::Tree, u64::MAX, TINY),
+        (AccelChoice::BinaryTree, u64::MAX, TINY),
+        (AccelChoice::List, u64::MAX, TINY),
+    ];
+    let build = |(choice, rays, tiny)| {
+        [ROOMY, tiny].map(|bytes| AccelPlan::for_rays(spheres, choice, bytes, rays).build(spheres))
+    };
+    kinds.into_iter().flat_map(build).collect()
 }
 
 /// From the front, from within, and in parallel along an axis, with odd films.
@@ -113,15 +123,23 @@ fn views(scene: &Scene) -> Vec<(Box<dyn Camera>, Film)> {
 }
 
 fn render(headless: &Headless, scene: &Scene, accel: &Accel) -> Vec<Image> {
-    let buffers = headless.upload(scene, accel).unwrap();
+    let render = |(camera, film): &(Box<dyn Camera>, Film)| {
+        render_view(headless, scene, accel, camera.as_ref(), film).unwrap()
+    };
+    views(scene).iter().map(render).collect()
+}
+
+fn render_view(
+    headless: &Headless,
+    scene: &Scene,
+    accel: &Accel,
+    camera: &dyn Camera,
+    film: &Film,
+) -> Result<Image, GpuError> {
+    let buffers = headless.upload(scene, accel)?;
     let settings = Settings::default();
     let go_on = &mut |_| ControlFlow::Continue(());
-    let render = |(camera, film): &(Box<dyn Camera>, Film), go_on: &mut _| {
-        headless
-            .render_uploaded(&buffers, camera.as_ref(), film, &settings, LayerSet::ALL, go_on)
-            .unwrap()
-    };
-    views(scene).iter().map(|view| render(view, go_on)).collect()
+    headless.render_uploaded(&buffers, camera, film, &settings, LayerSet::ALL, go_on)
 }
 
 /// Distances and ids are the same, to the bit.
@@ -193,15 +211,118 @@ fn slices(headless: &'static Headless) {
     }
 }
 
-/// What the second kind of query answers cannot be read back: `measure` throws it away. That it ends, for every
-/// structure, can be seen; what it answers, `tests/cpu/structures.rs` checks of its twin.
+/// The second kind of query, of every structure, in one brick and in several: a ray hits something exactly where
+/// the list's picture has a sphere, and that picture is the reference's.
 fn any(headless: &'static Headless) {
-    let scene = Scene::from_f32(spheres::clusters(10, 200), LinearRgb::WHITE).unwrap();
-    let bounds = scene.bounds_to_frame();
-    let camera = PinholeCamera::framing_from_the_front(&bounds, 1.0).unwrap();
-    let film = Film::new(61, 43).unwrap();
-    for accel in all(scene.spheres()) {
-        let buffers = headless.upload(&scene, &accel).unwrap();
-        headless.measure(&buffers, &camera, &film, Query::Any).unwrap();
+    let host = Host::new();
+    let mut met = Vec::new();
+    for spheres in [spheres::random(2_000, 2, |_| 0.02), spheres::clusters(10, 200)] {
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+        let built = all(scene.spheres());
+        let mut answers = Vec::new();
+        for (camera, film) in views(&scene) {
+            let list = AccelPlan::new(scene.spheres(), AccelChoice::List, ROOMY);
+            let list = list.build(scene.spheres());
+            let nearest = render_view(headless, &scene, &list, camera.as_ref(), &film).unwrap();
+            let hits: Vec<bool> = nearest.id().unwrap().iter().map(|id| *id != NO_ID).collect();
+            answers.extend(&hits);
+            let view = View { scene: scene.clone(), camera, film, settings: Settings::default() };
+            assert_is_reference(&view, &nearest);
+            for accel in &built {
+                let found = any_hits(&host, &view, accel);
+                let wrong = (0..hits.len()).filter(|i| found[*i] != hits[*i]).count();
+                let (name, bricks) = (accel.structure().name(), accel.bricks().len());
+                assert_eq!(wrong, 0, "{name} in {bricks}: pixels that are wrong");
+            }
+        }
+        assert!(answers.contains(&true) && answers.contains(&false), "nothing to tell apart");
+        met.extend(built.iter().map(Accel::structure));
+    }
+    assert!(Structure::ALL.iter().all(|structure| met.contains(structure)), "{met:?}");
+}
+
+/// For each pixel, whether its ray hits anything: where the depth layer of such a renderer has no miss.
+fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
+    let View { scene, camera, film, settings } = view;
+    let options = RendererOptions {
+        color: ColorTarget::Linear32,
+        data_layers: true,
+        cameras: vec![camera.kind()],
+        structures: vec![accel.structure()],
+        several_bricks: accel.bricks().len() > 1,
+        query: Query::Any,
+    };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let scene =
+        SceneBuffers::with_accel(&renderer, &host.device, &host.queue, scene, accel).unwrap();
+    let texture = |format| host.texture(size_of_film(film), format);
+    let (color, normal) = (
+        texture(ColorTarget::Linear32.texture_format()),
+        texture(wgpu::TextureFormat::Rgba32Float),
+    );
+    let (depth, id) =
+        (texture(wgpu::TextureFormat::R32Float), texture(wgpu::TextureFormat::R32Uint));
+    let data =
+        DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
+    let targets = Targets { color: &view_of(&color), data: Some(data) };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    let mut encoder = host.encoder();
+    renderer.record(&mut encoder, &scene, &frame).unwrap();
+    let depths = host.submit_and_read(encoder, &depth);
+    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    let is_hit = |depth: &f32| match depth.to_bits() {
+        0 => true,
+        bits if bits == NO_HIT.to_bits() => false,
+        _ => panic!("the answer {depth}"),
+    };
+    depths.iter().map(is_hit).collect()
+}
+
+fn assert_is_reference(view: &View, image: &Image) {
+    let comparison = compare(view, &Picture::from(&view.reference()), &Picture::from(image));
+    let Some(first) = comparison.violations.first() else { return };
+    panic!("{} violations, the first is {first:?}", comparison.violations.len());
+}
+
+/// More spheres than one dispatch of the list tries, and nearest ones in each of its slices.
+fn long_list(headless: &'static Headless) {
+    let spheres = spheres::random(120_000, 26, |_| 0.005);
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+    let film = Film::new(24, 16).unwrap();
+    let list = headless.plan(&scene, AccelChoice::List).build(scene.spheres());
+    assert_eq!((list.structure(), list.bricks().len()), (Structure::List, 3));
+    let found = render_view(headless, &scene, &list, &camera, &film).unwrap();
+    let seen = |brick: &Brick| {
+        let ids = brick.ids[0]..=brick.ids[brick.ids.len() - 1];
+        found.id().unwrap().iter().any(|id| ids.contains(id))
+    };
+    assert!(list.bricks().iter().all(seen), "a slice without a nearest sphere");
+    let grid = headless.plan(&scene, AccelChoice::Grid).build(scene.spheres());
+    let expected = render_view(headless, &scene, &grid, &camera, &film).unwrap();
+    assert_same("list", std::slice::from_ref(&found), &[expected]);
+    let camera = Box::new(camera);
+    let view = View { scene, camera, film, settings: Settings::default() };
+    assert_is_reference(&view, &found);
+}
+
+/// A ray must try 30,000 spheres that lie in one cell, and in all nodes. A software device may not loop so long;
+/// any other shows what the list does.
+fn too_many_steps(headless: &'static Headless) {
+    let scene = Scene::from_f32(spheres::nearly_coincident(30_000), LinearRgb::WHITE).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+    let film = Film::new(24, 16).unwrap();
+    let list = headless.plan(&scene, AccelChoice::List).build(scene.spheres());
+    let expected = render_view(headless, &scene, &list, &camera, &film).unwrap();
+    let is_software = headless.adapter_info().device_type == wgpu::DeviceType::Cpu;
+    for accel in all(scene.spheres()).iter().filter(|accel| accel.bricks().len() == 1) {
+        let name = accel.structure().name();
+        let result = render_view(headless, &scene, accel, &camera, &film);
+        if is_software && accel.structure() != Structure::List {
+            assert_eq!(result.err(), Some(GpuError::Steps), "{name}");
+        } else {
+            assert_same(name, &[result.unwrap()], std::slice::from_ref(&expected));
+        }
     }
 }

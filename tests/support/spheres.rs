@@ -38,6 +38,32 @@ pub(crate) fn twice(count: usize) -> Spheres {
     spheres
 }
 
+/// Pairs, each other's mirror images in the plane y = 0. A ray in it meets both at one distance, but of the large
+/// ones on its way through cells that only one of them is listed in. Either has the smaller id.
+pub(crate) fn mirrored(pairs: usize) -> Spheres {
+    let mut rng = Rng::with_seed(16);
+    let pairs = (0..pairs).flat_map(|i| {
+        let (x, z, side) = (rng.f32(), rng.f32(), if rng.bool() { 1.0 } else { -1.0 });
+        // Small ones beside the plane make the cells small.
+        let (y, radius) = if i % 32 == 0 { (0.08, 0.1) } else { (0.2 + 0.2 * rng.f32(), 0.005) };
+        [[x, side * y, z, radius], [x, -side * y, z, radius]]
+    });
+    pairs.collect()
+}
+
+/// A sheet far behind a single sphere: boxes that are thin beside the way to them.
+pub(crate) fn distant_sheet(count: usize) -> Spheres {
+    let sheet = random(count, 17, |_| 0.05).into_iter();
+    let mut spheres: Spheres = sheet.map(|[x, y, _, r]| [x * 40.0, y * 40.0, 0.0, r]).collect();
+    spheres.push([20.0, 20.0, 120.0, 1.0]);
+    spheres
+}
+
+/// One centre, and radii so close together that no structure tells them apart.
+pub(crate) fn nearly_coincident(count: usize) -> Spheres {
+    (0..count).map(|i| [0.0, 0.0, 0.0, 1.0 + i as f32 * f32::EPSILON]).collect()
+}
+
 /// Each touches the next.
 pub(crate) fn line(count: usize) -> Spheres {
     (0..count).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect()
@@ -51,6 +77,16 @@ pub(crate) fn nested(count: usize) -> Spheres {
 /// Along a line, each larger and farther by the same factor.
 pub(crate) fn geometric(count: i32) -> Spheres {
     (0..count).map(|i| [1.03_f32.powi(i), 0.0, 0.0, 0.01 * 1.03_f32.powi(i)]).collect()
+}
+
+/// A cubic lattice of small spheres, four in each place.
+pub(crate) fn cubic(side: usize) -> Spheres {
+    let sphere = |i: usize| {
+        let [x, y, z] = [i % side, i / side % side, i / (side * side) % side].map(|i| i as f32);
+        let which = i / (side * side * side);
+        [x, y, z, 0.1 + which as f32 * 1e-3]
+    };
+    (0..4 * side * side * side).map(sphere).collect()
 }
 
 /// Face-centred cubic, touching neighbours, with integer centres.
