@@ -3,15 +3,17 @@
 use std::sync::{Arc, Mutex};
 
 use libtest_mimic::Trial;
-use pinhole::camera::CameraKind;
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::film::Film;
 use pinhole::gpu::{
     ColorTarget, DataTargets, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers,
     Targets, adapter, wgpu,
 };
 use pinhole::image::NO_ID;
+use pinhole::{LinearRgb, Scene, Settings};
 
-use crate::support::View;
+use crate::support::{View, spheres};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -21,6 +23,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("embedding::one_encoder_holds_several_views", several_views),
         trial("embedding::linear_colors_and_data_layers_in_the_hosts_textures", data_layers),
         trial("embedding::what_wgpu_refuses_never_reaches_the_hosts_handler", hosts_handler),
+        trial("embedding::a_host_learns_that_rays_were_given_up", given_up),
         trial("embedding::unfit_targets_are_refused", unfit_targets),
         trial("embedding::what_is_not_ready_is_refused", not_ready),
     ]
@@ -57,6 +60,22 @@ impl Host {
 
     pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// The word in a buffer, after running the encoder.
+    fn submit_and_read_word(&self, mut encoder: wgpu::CommandEncoder, word: &wgpu::Buffer) -> u32 {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_buffer_to_buffer(word, 0, &buffer, 0, 4);
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
+        self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let bytes = buffer.get_mapped_range(..).unwrap();
+        u32::from_ne_bytes(bytes[..].try_into().unwrap())
     }
 
     /// The bytes of a texture, after running the encoder.
@@ -203,6 +222,31 @@ fn several_views(_: &'static Headless) {
     let second = host.submit_and_read(host.encoder(), &textures[1]);
     assert!(first == expected_bytes(&views[0]), "pinhole");
     assert!(second == expected_bytes(&views[1]), "orthographic");
+}
+
+/// A kernel that ran out of steps says so in the frame's status, until the host clears it.
+fn given_up(_: &'static Headless) {
+    let host = Host::new();
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let target = host.texture([24, 16], wgpu::TextureFormat::Rgba8Unorm);
+    let targets = Targets { color: &view_of(&target), data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let is_software = host.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+    for (count, expected) in [(10, 0), (30_000, u32::from(is_software)), (10, 0)] {
+        let spheres = spheres::nearly_coincident(count);
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+        let film = Film::new(24, 16).unwrap();
+        let accel = AccelPlan::new(scene.spheres(), AccelChoice::Grid, 1 << 27);
+        let accel = accel.build(scene.spheres());
+        let buffers =
+            SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &scene, &accel).unwrap();
+        frame.set_view(&host.queue, &buffers, &camera, &film, &Settings::default()).unwrap();
+        let mut encoder = host.encoder();
+        encoder.clear_buffer(frame.status(), 0, None);
+        renderer.record(&mut encoder, &buffers, &frame).unwrap();
+        assert_eq!(host.submit_and_read_word(encoder, frame.status()), expected, "{count}");
+    }
 }
 
 fn unfit_targets(_: &'static Headless) {
