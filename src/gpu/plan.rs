@@ -231,14 +231,14 @@ mod tests {
     #[test]
     fn a_tile_takes_hits_texture_and_what_is_read_back() {
         let plan = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
-        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 512], 2));
+        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 1024], 1));
         let hit = size_of::<records::Hit>() as u64;
-        assert_eq!(total(&plan.tile_buffers), hit << 19);
-        assert_eq!(total(&plan.tile_textures), 32 << 19);
+        assert_eq!(total(&plan.tile_buffers), hit << 20);
+        assert_eq!(total(&plan.tile_textures), 32 << 20);
 
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
         let all = super::tests::plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
-        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 19);
+        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use crate::film::Film;
 
-/// The most pixels of a tile of a headless render: its buffers then take 24 MiB, little beside a large scene,
-/// and little for a software device to clear.
-pub(super) const MAX_TILE_PIXELS: u64 = 1 << 19;
+/// The most pixels of a tile of a headless render: its buffers and textures then take 48 MiB, little beside a large
+/// scene, and a picture of 1024² is one.
+pub(super) const MAX_TILE_PIXELS: u64 = 1 << 20;
 
 /// The most pixels of a band of a host's picture, whose hits are kept together.
 pub(super) const MAX_PIXELS: u64 = 1 << 22;

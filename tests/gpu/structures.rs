@@ -188,7 +188,7 @@ fn slices(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres::clusters(10, 200), LinearRgb::WHITE).unwrap();
     let bounds = scene.bounds_to_frame();
     let camera = PinholeCamera::framing_from_the_front(&bounds, 1.0).unwrap();
-    let film = Film::new(1003, 997).unwrap();
+    let film = Film::new(1103, 997).unwrap();
     let mut rng = Rng::with_seed(1);
     let mut first = None;
     for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List, AccelChoice::Grid] {
