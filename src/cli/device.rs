@@ -68,6 +68,7 @@ pub(super) enum Opened {
     /// The CPU reference.
     Cpu,
     /// The CPU reference, because there is no adapter.
+    #[cfg(feature = "gpu")]
     CpuInstead,
     /// An adapter's device.
     #[cfg(feature = "gpu")]

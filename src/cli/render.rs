@@ -58,6 +58,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
     match opened {
         Opened::Cpu => on_cpu(input, layers),
+        #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             memory::check(&input.film, &input.size_from, layers)?;
             tell(
