@@ -35,7 +35,8 @@ pub struct BuiltGrid {
 
 /// Builds a grid over those of the spheres that have these ids.
 ///
-/// The grid has at least eight cells, whatever the budget. A sphere is listed in every cell that lies within `margin` of its surface.
+/// The grid has at least eight cells, whatever the budget. A sphere is listed in every cell that lies
+/// within `margin` of its surface.
 #[must_use]
 pub fn build_grid(
     spheres: &[[f32; 4]],

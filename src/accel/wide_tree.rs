@@ -26,7 +26,8 @@ impl WideTree {
     /// by `margin`.
     ///
     /// Takes time in proportion to n log n whatever the spheres are, and 28 bytes a sphere besides the
-    /// tree, which has at most one node and 14 bytes of nodes for each sphere. The same spheres make the same tree, to the bit, whatever the number of threads.
+    /// tree, which has at most one node and 14 bytes of nodes for each sphere. The same spheres
+    /// make the same tree, to the bit, whatever the number of threads.
     #[must_use]
     pub fn build(spheres: &[[f32; 4]], margin: f32) -> Self {
         let mut items = Item::all(spheres, margin);

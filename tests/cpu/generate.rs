@@ -16,7 +16,8 @@ fn hash(spheres: &[[f32; 4]]) -> u64 {
     })
 }
 
-/// Those of chance were found again, to the bit, by a program in another language. Whoever changes these changes every timing that was ever reported.
+/// Those of chance were found again, to the bit, by a program in another language. Whoever
+/// changes these changes every timing that was ever reported.
 #[test]
 fn the_same_bytes_everywhere() {
     for (kind, eighth, expected) in [
