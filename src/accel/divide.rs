@@ -1,45 +1,147 @@
-//! Divides spheres among bricks.
+//! Divides spheres among bricks, on all cores.
+
+use crate::parallel::{both, map_chunks};
 
 /// Parts of about the same number of spheres, each in a box of its own but for what sticks out, in an
 /// order of ids: at the median of the longest side, again and again.
 pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Vec<Vec<u32>> {
-    let mut ids: Vec<u32> = (0..spheres.len() as u32).collect();
-    let mut bricks = Vec::with_capacity(parts);
-    cut(spheres, &mut ids, parts, &mut bricks);
+    cut(spheres, (0..spheres.len() as u32).collect(), parts)
+}
+
+/// `ids` ascend, and so do those of each part.
+fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Vec<Vec<u32>> {
+    if parts <= 1 {
+        return vec![ids];
+    }
+    let axis = longest_side(spheres, &ids);
+    let left_parts = parts / 2;
+    let middle = ids.len() * left_parts / parts;
+    let key = |id: u32| (ascending(spheres[id as usize][axis]), id);
+    let (left, right) = split(ids, middle, key);
+    let (mut bricks, others) =
+        both(true, || cut(spheres, left, left_parts), || cut(spheres, right, parts - left_parts));
+    bricks.extend(others);
     bricks
 }
 
-fn cut(spheres: &[[f32; 4]], ids: &mut [u32], parts: usize, bricks: &mut Vec<Vec<u32>>) {
-    if parts <= 1 {
-        let mut brick = ids.to_vec();
-        brick.sort_unstable();
-        bricks.push(brick);
-        return;
+/// The first `count` in order of their keys, and the others.
+fn split(
+    ids: Vec<u32>,
+    count: usize,
+    key: impl Fn(u32) -> (u32, u32) + Sync,
+) -> (Vec<u32>, Vec<u32>) {
+    if count == ids.len() {
+        return (ids, Vec::new());
     }
-    let axis = longest_side(spheres, ids);
-    let left_parts = parts / 2;
-    let middle = ids.len() * left_parts / parts;
-    let by_place = |a: &u32, b: &u32| {
-        let along = |id: &u32| spheres[*id as usize][axis];
-        along(a).total_cmp(&along(b)).then(a.cmp(b))
-    };
-    if middle < ids.len() {
-        ids.select_nth_unstable_by(middle, by_place);
+    let first_right = select(&ids, count, &key);
+    let is_left = |id: &u32| key(*id) < first_right;
+    let chunks = map_chunks(&ids, |_, ids| ids.iter().partition::<Vec<u32>, _>(|id| is_left(id)));
+    let (mut left, mut right) = (Vec::with_capacity(count), Vec::with_capacity(ids.len() - count));
+    drop(ids);
+    for (more_left, more_right) in chunks {
+        left.extend(more_left);
+        right.extend(more_right);
     }
-    let (left, right) = ids.split_at_mut(middle);
-    cut(spheres, left, left_parts, bricks);
-    cut(spheres, right, parts - left_parts, bricks);
+    (left, right)
+}
+
+/// The key that `rank` others precede, by counting keys that have the same digits so far. Takes time in
+/// proportion to the number of ids, and reads them in order.
+fn select(ids: &[u32], mut rank: usize, key: impl Fn(u32) -> (u32, u32) + Sync) -> (u32, u32) {
+    const DIGIT: u32 = 1 << DIGIT_BITS;
+    const DIGIT_BITS: u32 = 8;
+    // The digits that are known, the highest first, and the bits below them.
+    let (mut known, mut below) = (0, u32::BITS);
+    while below > 0 {
+        let next = below - DIGIT_BITS;
+        let counts = map_chunks(ids, |_, ids| {
+            let mut counts = [0_usize; DIGIT as usize];
+            for id in ids {
+                let place = key(*id).0;
+                if u64::from(place) >> below == known {
+                    counts[(place >> next & (DIGIT - 1)) as usize] += 1;
+                }
+            }
+            counts
+        });
+        let mut digit = 0;
+        loop {
+            let here: usize = counts.iter().map(|counts| counts[digit]).sum();
+            if rank < here || digit + 1 == DIGIT as usize {
+                break;
+            }
+            rank -= here;
+            digit += 1;
+        }
+        known = known << DIGIT_BITS | digit as u64;
+        below = next;
+    }
+    let known = known as u32;
+    let same = map_chunks(ids, |_, ids| -> Vec<u32> {
+        ids.iter().copied().filter(|id| key(*id).0 == known).collect()
+    });
+    (known, same.concat()[rank])
+}
+
+/// A number that ascends as `x` does in its total order.
+fn ascending(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 fn longest_side(spheres: &[[f32; 4]], ids: &[u32]) -> usize {
-    let mut low = [f32::MAX; 3];
-    let mut high = [f32::MIN; 3];
-    for id in ids {
-        for axis in 0..3 {
-            let x = spheres[*id as usize][axis];
-            low[axis] = low[axis].min(x);
-            high[axis] = high[axis].max(x);
+    let boxes = map_chunks(ids, |_, ids| {
+        let mut sides = [(f32::MAX, f32::MIN); 3];
+        for id in ids {
+            for (side, x) in sides.iter_mut().zip(spheres[*id as usize]) {
+                *side = (side.0.min(x), side.1.max(x));
+            }
+        }
+        sides
+    });
+    let length = |axis: usize| {
+        let low = boxes.iter().map(|sides| sides[axis].0).fold(f32::MAX, f32::min);
+        let high = boxes.iter().map(|sides| sides[axis].1).fold(f32::MIN, f32::max);
+        high - low
+    };
+    (0..3).max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What sorting says, with many that share a place, and zeros of both signs.
+    #[test]
+    fn parts_are_those_of_a_sort() {
+        let places = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];
+        let mut rng = fastrand::Rng::with_seed(1);
+        for count in [0, 1, 2, 3, 1000, 150_000] {
+            let spheres: Vec<[f32; 4]> = (0..count)
+                .map(|_| {
+                    let x = if rng.bool() { places[rng.usize(..7)] } else { rng.f32() - 0.5 };
+                    [x, 0.1 * rng.f32(), 0.0, 1.0]
+                })
+                .collect();
+            let mut sorted: Vec<u32> = (0..count).collect();
+            let place = |id: &u32| spheres[*id as usize][0];
+            sorted.sort_by(|a, b| place(a).total_cmp(&place(b)));
+            for parts in [1, 2, 3] {
+                let bricks = divide(&spheres, parts);
+                assert_eq!(bricks.len(), parts);
+                // The first cut is along x.
+                let middle = count as usize * (parts / 2) / parts;
+                let (left, _) = sorted.split_at(middle);
+                let mut left = left.to_vec();
+                left.sort_unstable();
+                if parts > 1 {
+                    assert_eq!(bricks[0], left);
+                }
+                assert!(bricks.iter().all(|ids| ids.is_sorted()));
+                let mut all = bricks.concat();
+                all.sort_unstable();
+                assert!(all.into_iter().eq(0..count));
+            }
         }
     }
-    (0..3).max_by(|a, b| (high[*a] - low[*a]).total_cmp(&(high[*b] - low[*b]))).unwrap_or(0)
 }
