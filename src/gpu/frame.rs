@@ -3,6 +3,7 @@
 use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
 use super::error::{GpuError, check_storage_size, scoped};
+use super::order::nearest_first;
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
 use super::scene_buffers::{SceneBuffers, SceneId, binding_limit, part};
@@ -62,6 +63,8 @@ pub(super) struct View {
     /// The sizes of the bands that are rendered, in their order.
     pub(super) bands: Vec<[u32; 2]>,
     records: Vec<records::Frame>,
+    /// The bricks in the order in which they are traced.
+    order: Vec<usize>,
 }
 
 /// One brick, for one band.
@@ -70,6 +73,7 @@ pub(super) struct Part {
     pub(super) band: usize,
     pub(super) brick: usize,
     pub(super) groups: Groups,
+    pub(super) is_first_of_band: bool,
     pub(super) is_last_of_band: bool,
     pub(super) is_last: bool,
 }
@@ -219,11 +223,13 @@ impl Frame {
             target[..size_of::<records::Frame>()].copy_from_slice(bytemuck::bytes_of(record));
         }
         queue.write_buffer(&self.records, 0, &bytes);
+        let boxes = scene.bricks().iter().map(|brick| brick.center_box);
         self.view = Some(View {
             camera: camera.kind(),
             scene: scene.id(),
             bands: bands.into_iter().map(|band| band.size).collect(),
             records,
+            order: nearest_first(boxes, camera, space),
         });
     }
 
@@ -240,18 +246,25 @@ impl Frame {
     }
 
     /// What is to be traced for the view, in order.
-    pub(super) fn parts(&self, scene: &SceneBuffers) -> Vec<Part> {
-        let bands = self.view.as_ref().map_or(&[][..], |view| &view.records);
-        let (band_count, brick_count) = (bands.len(), scene.bricks().len());
-        let all = (0..band_count).flat_map(|band| (0..brick_count).map(move |brick| (band, brick)));
-        all.map(|(band, brick)| Part {
-            band,
-            brick,
-            groups: Groups { first: [0, 0], size: bands[band].traced_size },
-            is_last_of_band: brick + 1 == brick_count,
-            is_last: brick + 1 == brick_count && band + 1 == band_count,
-        })
-        .collect()
+    pub(super) fn parts(&self) -> Vec<Part> {
+        let Some(view) = &self.view else {
+            return Vec::new();
+        };
+        let turns = view.order.len();
+        let mut parts = Vec::new();
+        for (band, record) in view.records.iter().enumerate() {
+            for (turn, brick) in view.order.iter().enumerate() {
+                parts.push(Part {
+                    band,
+                    brick: *brick,
+                    groups: Groups { first: [0, 0], size: record.traced_size },
+                    is_first_of_band: turn == 0,
+                    is_last_of_band: turn + 1 == turns,
+                    is_last: turn + 1 == turns && band + 1 == view.records.len(),
+                });
+            }
+        }
+        parts
     }
 
     /// Records the clearing of the hits.

@@ -13,7 +13,7 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, 
 use super::adapter;
 use super::error::{GpuError, scoped};
 use super::faults::Faults;
-use super::frame::Frame;
+use super::frame::{Frame, Part};
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
 use super::readback::ReadableTexture;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
@@ -227,13 +227,13 @@ impl Headless {
             frame.set_tile(&self.queue, scene, camera, film, tile, settings);
             let mut encoder = self.encoder();
             let mut unfinished = Groups::NONE;
-            for part in frame.parts(scene) {
+            for part in frame.parts() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
                     frame.set_first_group(&self.queue, part.band, groups.first);
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                    let place = (part.band, part.brick, groups);
-                    renderer.record_trace(&mut pass, scene, &frame, place)?;
+                    let slice = Part { groups, ..part };
+                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
                     if left.is_empty() && part.is_last {
                         // Shaded and copied in the same submission.
@@ -322,7 +322,7 @@ impl Headless {
         let mut time = TraceTime::default();
         for tile in tiles(film, tile_size) {
             frame.set_tile(&self.queue, scene, camera, film, tile, &Settings::default());
-            for part in frame.parts(scene) {
+            for part in frame.parts() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
                     frame.set_first_group(&self.queue, part.band, groups.first);
@@ -331,8 +331,8 @@ impl Headless {
                         label: Some("pinhole"),
                         timestamp_writes: timer.as_ref().map(PassTimer::writes),
                     });
-                    let place = (part.band, part.brick, groups);
-                    renderer.record_trace(&mut pass, scene, &frame, place)?;
+                    let slice = Part { groups, ..part };
+                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
                     if let Some(timer) = &timer {
                         timer.record_copy(&mut encoder);

@@ -16,6 +16,7 @@ mod frame;
 mod headless;
 mod layouts;
 mod options;
+mod order;
 mod pace;
 mod plan;
 mod readback;

@@ -3,7 +3,7 @@
 use wgpu::{ComputePass, ComputePipeline, Device, TextureFormat};
 
 use super::error::{GpuError, scoped};
-use super::frame::Frame;
+use super::frame::{Frame, Part};
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
 use super::shaders::{self, Kernel, Turn};
@@ -151,8 +151,8 @@ impl Renderer {
             label: Some("pinhole"),
             timestamp_writes: None,
         });
-        for part in frame.parts(scene) {
-            self.record_trace(&mut pass, scene, frame, (part.band, part.brick, part.groups))?;
+        for part in frame.parts() {
+            self.record_trace(&mut pass, scene, frame, part)?;
             if part.is_last_of_band {
                 self.record_shade(&mut pass, scene, frame, part.band)?;
             }
@@ -160,16 +160,16 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the tracing of a brick for a slice of a band; the band's record must name its first group.
+    /// Records the tracing of a brick for a band, or a slice of it; the band's record must name its first group.
     pub(super) fn record_trace(
         &self,
         pass: &mut ComputePass<'_>,
         scene: &SceneBuffers,
         frame: &Frame,
-        (band, brick, groups): (usize, usize, Groups),
+        part: Part,
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
-        if groups.count() == 0 {
+        if part.groups.count() == 0 {
             return Ok(());
         }
         let structure = scene.structure();
@@ -177,15 +177,15 @@ impl Renderer {
             .trace
             .iter()
             .find(|(kind, of, _)| *kind == camera && *of == structure)
-            .and_then(|(_, _, pipelines)| match brick {
-                0 => Some(&pipelines.first),
-                _ => pipelines.later.as_ref(),
+            .and_then(|(_, _, pipelines)| match part.is_first_of_band {
+                true => Some(&pipelines.first),
+                false => pipelines.later.as_ref(),
             })
             .ok_or(GpuError::NoPipeline { camera, structure })?;
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
-        pass.set_bind_group(1, &scene.bricks()[brick].trace_group, &[]);
-        pass.dispatch_workgroups(groups.size[0], groups.size[1], 1);
+        pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
+        pass.set_bind_group(1, &scene.bricks()[part.brick].trace_group, &[]);
+        pass.dispatch_workgroups(part.groups.size[0], part.groups.size[1], 1);
         Ok(())
     }
 

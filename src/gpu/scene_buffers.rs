@@ -8,6 +8,7 @@ use std::time::Duration;
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
 use super::error::{GpuError, check_storage_size, scoped};
+use super::order::CenterBox;
 use super::pace::Pace;
 use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
@@ -41,6 +42,8 @@ pub struct SceneBuffers {
 /// A brick, bound for the kernels.
 #[derive(Debug)]
 pub(super) struct BrickBuffers {
+    /// Where it is, to tell which is nearer.
+    pub(super) center_box: CenterBox,
     /// Group 1 of `trace` and `occluded`.
     pub(super) trace_group: BindGroup,
     /// Group 1 of `shade`.
@@ -142,7 +145,7 @@ impl SceneBuffers {
         self.structure
     }
 
-    /// In the order in which they are traced. At least one, so that an empty scene's rays are marked as
+    /// In the order in which they were copied. At least one, so that an empty scene's rays are marked as
     /// misses.
     pub(super) fn bricks(&self) -> &[BrickBuffers] {
         &self.bricks
@@ -166,6 +169,7 @@ impl Upload<'_> {
         structure: Structure,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
+        let center_box = CenterBox::of(brick);
         let Brick { index, spheres, ids } = brick;
         let layouts = &self.renderer.layouts;
         let trace_layout = layouts
@@ -235,6 +239,7 @@ impl Upload<'_> {
             let mut traced = vec![&record, &spheres, &ids];
             traced.extend(&words);
             BrickBuffers {
+                center_box,
                 trace_group: group("pinhole brick", trace_layout, &traced),
                 surface_group: group(
                     "pinhole surface",
