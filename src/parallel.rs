@@ -43,8 +43,7 @@ pub(crate) fn map_chunks<T: Sync, R: Send>(
     items: &[T],
     f: impl Fn(usize, &[T]) -> R + Sync + Send,
 ) -> Vec<R> {
-    let ranges = ranges(items.len(), CHUNK);
-    map(ranges.len(), |i| f(ranges[i].start, &items[ranges[i].clone()]))
+    map_parts(ranges(items.len(), CHUNK), |range| f(range.start, &items[range]))
 }
 
 /// What `f` makes of every element of `parts`, in order.

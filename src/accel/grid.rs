@@ -24,6 +24,26 @@ pub(crate) mod word {
     /// The bits of a word with a grid that say where its cells start, and how many cells that counts by.
     pub(crate) const INNER_START: u32 = (1 << LEVEL_SHIFT) - 1;
     pub(crate) const INNER_UNIT: u32 = 8;
+
+    /// Of a word with a grid, the logarithm of its cells along an axis.
+    pub(crate) const fn level(word: u32) -> u32 {
+        word >> LEVEL_SHIFT & LEVEL
+    }
+
+    /// Of a word with a grid, the index of its first cell's word.
+    pub(crate) const fn first_inner(word: u32) -> usize {
+        ((word & INNER_START) * INNER_UNIT) as usize
+    }
+
+    /// How many units so many words fill.
+    pub(crate) const fn units(words: usize) -> u32 {
+        (words / INNER_UNIT as usize) as u32
+    }
+
+    /// So many words, and what is missing to whole units.
+    pub(crate) const fn in_whole_units(words: usize) -> usize {
+        words.next_multiple_of(INNER_UNIT as usize)
+    }
 }
 
 /// Marks the last element of a list: in `Referenced`, the highest bit of a reference; in `Copied`, the sign

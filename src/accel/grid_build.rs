@@ -48,8 +48,7 @@ pub fn build_grid(
     let (min, max) = bounds(spheres, ids, margin);
     let mut cells = first_level(spheres, ids, (min, max), budget);
     // The size was chosen by volume, and a flat box has more cells than its volume says.
-    // A whole number of eights is kept of them.
-    while cells.len() > 1 && cells.len().next_multiple_of(8) > budget.cells.min(MAX_CELLS) {
+    while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
     }
     let (sorted, sorted_ids) = sort_by_cell(spheres, ids, &cells);
@@ -142,7 +141,7 @@ fn assemble(
     (sorted, sorted_ids): (Vec<[f32; 4]>, Vec<u32>),
     lists: &Lists,
 ) -> BuiltGrid {
-    let first_level_len = cells.len().next_multiple_of(8);
+    let first_level_len = word::in_whole_units(cells.len());
     let crowd = Crowd::of(cells, &sorted, margin, (&lists.places, &lists.starts), budget);
     let parts = map_ranges(cells.len(), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
@@ -161,7 +160,7 @@ fn assemble(
             });
             let word = match inner {
                 Some((level, inner)) => {
-                    let start = (part.inner.len() / 8) as u32;
+                    let start = word::units(part.inner.len());
                     for list in inner {
                         let word = append(&mut part.lists, &list);
                         part.inner.push(word);
@@ -236,7 +235,7 @@ fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[Part]) -> Vec<u32
     *cells = vec![word::EMPTY; first_level_len + inner_len];
     let (first_level, inner) = cells.split_at_mut(first_level_len);
     let (mut words, mut inner, mut lists) = (first_level, inner, &mut places[..]);
-    let (mut list_start, mut inner_start) = (0, (first_level_len / 8) as u32);
+    let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
     let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
         let target = (
@@ -246,7 +245,7 @@ fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[Part]) -> Vec<u32
         );
         tasks.push((part, target, list_start, inner_start));
         list_start += part.lists.len() as u32;
-        inner_start += (part.inner.len() / 8) as u32;
+        inner_start += word::units(part.inner.len());
     }
     for_each(tasks, |(part, (words, inner, lists), list_start, inner_start)| {
         let moved = |cell: &u32| match cell & word::KIND {

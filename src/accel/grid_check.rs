@@ -6,7 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::grid::{Grid, LAST, MAX_CELLS, word};
-use super::grid_geometry::{Cell, Level, first_inner};
+use super::grid_geometry::{Cell, Level};
 
 /// The levels that a grid inside a cell may have: 2 to 32 cells along an axis.
 const LEVELS: RangeInclusive<u32> = 1..=5;
@@ -127,8 +127,8 @@ impl Grid {
         if !is_length || !self.min.is_finite() || !is_box {
             return Err(GridError::Shape);
         }
-        let padded = self.first_level_len().next_multiple_of(8);
-        if self.cells.len() < padded || !self.cells.len().is_multiple_of(8) {
+        let padded = word::in_whole_units(self.first_level_len());
+        if self.cells.len() < padded || word::in_whole_units(self.cells.len()) != self.cells.len() {
             return Err(GridError::Shape);
         }
         // A walk may, by rounding, read one cell too far.
@@ -184,7 +184,7 @@ impl Check<'_> {
     fn lists(&self, spheres: &[[f32; 4]]) -> Result<Vec<Range>, GridError> {
         let words = &self.grid.cells;
         let first_level_len = self.grid.first_level_len();
-        let padded = first_level_len.next_multiple_of(8);
+        let padded = word::in_whole_units(first_level_len);
         let listed = self.grid.references.as_ref().map_or(spheres.len(), Vec::len);
         // Each word behind the first level and each element of a list is some one cell's own.
         let mut is_inner = vec![false; words.len()];
@@ -224,12 +224,12 @@ impl Check<'_> {
         is_inner: &mut [bool],
     ) -> Result<(), GridError> {
         let value = self.grid.cells[cell];
-        let level = value >> word::LEVEL_SHIFT & 7;
+        let level = word::level(value);
         let cell = cell as u32;
         if !LEVELS.contains(&level) {
             return Err(GridError::Level { cell, level });
         }
-        let first = first_inner(value);
+        let first = word::first_inner(value);
         let link = GridError::Link { cell };
         let own = is_inner.get_mut(first..first + (1 << (3 * level))).ok_or(link)?;
         if first < padded || own.contains(&true) {

@@ -3,8 +3,9 @@
 use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
+use super::grid::word;
 use super::grid_build::{GridBudget, STEP_COST};
-use crate::parallel::{map, ranges};
+use crate::parallel::{map_parts, ranges};
 
 /// A list this long or longer may be worth a grid.
 const CROWDED: u32 = 8;
@@ -50,9 +51,8 @@ impl Crowd {
         (places, starts): (&[u32], &[u32]),
         budget: GridBudget,
     ) -> Self {
-        let chunks = ranges(cells.len(), 1 << 12);
-        let wishes = map(chunks.len(), |i| {
-            let lists = chunks[i].clone().map(|cell| (cell, starts[cell], starts[cell + 1]));
+        let wishes = map_parts(ranges(cells.len(), 1 << 12), |range| {
+            let lists = range.map(|cell| (cell, starts[cell], starts[cell + 1]));
             lists
                 .filter(|(_, start, end)| end - start >= CROWDED)
                 .filter_map(|(cell, start, end)| {
@@ -70,7 +70,7 @@ impl Crowd {
             return Self { levels };
         }
         wishes.sort_unstable_by_key(|wish| (std::cmp::Reverse(wish.len), wish.cell));
-        let mut cells_left = budget.cells.saturating_sub(cells.len().next_multiple_of(8));
+        let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
         let mut listed_left = budget.listed.saturating_sub(places.len());
         for Wish { cell, len, level, met, .. } in wishes {
             let needed = (1_usize << (3 * level), most_listed(met).saturating_sub(len as usize));

@@ -30,10 +30,6 @@ impl Cell {
     }
 }
 
-pub(super) fn first_inner(value: u32) -> usize {
-    (value & ((1 << word::LEVEL_SHIFT) - 1)) as usize * 8
-}
-
 /// A box of cells whose words follow each other.
 pub(super) struct Level {
     pub(super) first: usize,
@@ -54,9 +50,9 @@ impl Level {
 
     /// The grid inside a cell, whose word is `value`.
     pub(super) fn inside(cell: &Cell, value: u32) -> Self {
-        let side = 1_usize << (value >> word::LEVEL_SHIFT & 7);
+        let side = 1_usize << word::level(value);
         let size = cell.size / side as f64;
-        Self { first: first_inner(value), low: cell.low, size, counts: [side; 3] }
+        Self { first: word::first_inner(value), low: cell.low, size, counts: [side; 3] }
     }
 
     pub(super) fn cells(&self) -> impl Iterator<Item = Cell> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
-use crate::parallel::{for_each, map, ranges, split_mut};
+use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
 /// How many spheres or cells one task handles.
 pub(super) const CHUNK: usize = 1 << 14;
@@ -134,6 +134,5 @@ pub(super) fn map_ranges<R: Send>(
     count: usize,
     f: impl Fn(Range<usize>) -> R + Sync + Send,
 ) -> Vec<R> {
-    let chunks = ranges(count, CHUNK);
-    map(chunks.len(), |i| f(chunks[i].clone()))
+    map_parts(ranges(count, CHUNK), f)
 }

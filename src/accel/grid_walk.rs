@@ -71,8 +71,7 @@ impl Grid {
             let planes = base + (cell + step * reach + ahead) * delta;
             let t_leave = planes.min_element();
             if kind != word::EMPTY {
-                let level =
-                    if kind == word::GRID { (outer >> word::LEVEL_SHIFT) & word::LEVEL } else { 0 };
+                let level = if kind == word::GRID { word::level(outer) } else { 0 };
                 let side = (1_u32 << level) as f32;
                 let inner_strides = Vec3::new(1.0, side, side * side);
                 let last = Vec3::splat(side - 1.0);
@@ -80,7 +79,7 @@ impl Grid {
                 loop {
                     let mut inner_word = outer;
                     if kind == word::GRID {
-                        let first = ((outer & word::INNER_START) * word::INNER_UNIT) as usize;
+                        let first = word::first_inner(outer);
                         inner_word = self.word(first + inner.dot(inner_strides) as usize);
                     }
                     let inner_planes = base + (cell + (inner + ahead) / side) * delta;

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::parallel::{map, ranges};
+use crate::parallel::map_chunks;
 
 /// Sizes and places of spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,22 +29,18 @@ impl SceneStatistics {
     /// Of spheres in the scene's frame: centre and radius.
     #[must_use]
     pub fn of(spheres: &[[f32; 4]]) -> Self {
-        let chunks = ranges(spheres.len(), 1 << 16);
-        let parts = map(chunks.len(), |i| {
+        let parts = map_chunks(spheres, |_, spheres| {
             let nothing = (Vec3::MAX, Vec3::MIN, f32::MAX, 0.0_f32, 0.0_f64);
-            spheres[chunks[i].clone()].iter().fold(
-                nothing,
-                |(min, max, least, most, sum), &[x, y, z, r]| {
-                    let center = Vec3::new(x, y, z);
-                    (
-                        min.min(center - r),
-                        max.max(center + r),
-                        least.min(r),
-                        most.max(r),
-                        sum + f64::from(r),
-                    )
-                },
-            )
+            spheres.iter().fold(nothing, |(min, max, least, most, sum), &[x, y, z, r]| {
+                let center = Vec3::new(x, y, z);
+                (
+                    min.min(center - r),
+                    max.max(center + r),
+                    least.min(r),
+                    most.max(r),
+                    sum + f64::from(r),
+                )
+            })
         });
         if parts.is_empty() {
             let (min, max) = (Vec3::ZERO, Vec3::ZERO);

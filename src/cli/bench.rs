@@ -127,10 +127,12 @@ fn measure(
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
     let clock = AdapterReport::of(headless).clock();
     let rays = film.pixel_count();
-    let rate = |times: &[TraceTime]| {
-        let wall = || Spread::of(times.iter().map(|time| Some(time.wall)));
-        let device = || Spread::of(times.iter().map(|time| time.device));
-        let spread = if clock == DEVICE_CLOCK { device().or_else(wall) } else { wall() };
+    let wall = |times: &[TraceTime]| Spread::of(times.iter().map(|time| Some(time.wall)));
+    let device = |times: &[TraceTime]| Spread::of(times.iter().map(|time| time.device));
+    let (trace_wall, trace_device) = (wall(&nearest), device(&nearest));
+    let (any_wall, any_device) = (wall(&any), device(&any));
+    let rate = |wall: Option<Spread>, device: Option<Spread>| {
+        let spread = if clock == DEVICE_CLOCK { device.or(wall) } else { wall };
         spread.map(|spread| rays as f64 / spread.median_seconds)
     };
     Ok(RunReport {
@@ -140,14 +142,14 @@ fn measure(
         build_seconds: build.as_secs_f64(),
         upload_seconds: upload.as_secs_f64(),
         first_render_seconds: first_render.as_secs_f64(),
-        trace_wall: Spread::of(nearest.iter().map(|time| Some(time.wall))),
-        trace_device: Spread::of(nearest.iter().map(|time| time.device)),
-        any_wall: Spread::of(any.iter().map(|time| Some(time.wall))),
-        any_device: Spread::of(any.iter().map(|time| time.device)),
+        trace_wall,
+        trace_device,
+        any_wall,
+        any_device,
         clock,
         rays,
-        rays_per_second: rate(&nearest),
-        any_rays_per_second: rate(&any),
+        rays_per_second: rate(trace_wall, trace_device),
+        any_rays_per_second: rate(any_wall, any_device),
         submissions: nearest.iter().map(|time| time.submissions).max().unwrap_or(0),
         longest_submission_seconds: longest.as_secs_f64(),
         device_bytes,

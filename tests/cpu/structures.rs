@@ -318,7 +318,6 @@ fn a_hundred_thousand_coincident_centres() {
 }
 
 #[test]
-#[ignore = "minutes without optimisation"]
 fn a_million_coincident_centres() {
     coincident(1_000_000);
 }
