@@ -6,6 +6,6 @@ fn camera_ray(location: vec2f) -> CameraRay {
     let aside = location.x * camera.right + location.y * camera.up;
     let toward = aside + camera.forward;
     let length = sqrt(dot(toward, toward));
-    let ray = Ray(camera.origin + camera.advance * aside, toward * (1.0 / length));
+    let ray = Ray(camera.origin + camera.advance * aside, fence3(toward * (1.0 / length)));
     return CameraRay(ray, camera.advance * length);
 }

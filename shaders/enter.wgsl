@@ -23,12 +23,12 @@ fn inverse_direction(direction: vec3f) -> vec3f {
 fn enter_scene(camera_ray: CameraRay) -> Entry {
     let ray = camera_ray.ray;
     let inverse = inverse_direction(ray.direction);
-    let a = (frame.scene_min - ray.origin) * inverse;
-    let b = (frame.scene_max - ray.origin) * inverse;
+    let a = fence3(frame.scene_min - ray.origin) * inverse;
+    let b = fence3(frame.scene_max - ray.origin) * inverse;
     let near = min(a, b);
     let far = max(a, b);
     let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
     let t_far = min(far.x, min(far.y, far.z));
-    let entered = Ray(ray.origin + t_near * ray.direction, ray.direction);
+    let entered = Ray(fence3(ray.origin + t_near * ray.direction), ray.direction);
     return Entry(entered, inverse, camera_ray.distance + t_near, t_near <= t_far);
 }

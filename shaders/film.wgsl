@@ -5,5 +5,5 @@ fn relative_location(pixel_in_film: vec2u) -> vec2f {
     let size = vec2i(frame.film_size);
     let doubled = vec2i(pixel_in_film) * 2 + 1 - size;
     let location = vec2f(doubled) / vec2f(size);
-    return vec2f(location.x, -frame.y_sign * location.y);
+    return vec2f(fence(location.x), fence(-frame.y_sign * location.y));
 }

@@ -21,6 +21,11 @@ struct Hit {
 // and writes a structure word by word.
 @group(0) @binding(1) var<storage, read_write> hits: array<vec4u>;
 
+// Zero, and no compiler knows it: for `fence`.
+fn runtime_zero() -> u32 {
+    return frame.zero;
+}
+
 fn hit_index(pixel_in_tile: vec2u) -> u32 {
     return pixel_in_tile.y * frame.tile_size.x + pixel_in_tile.x;
 }

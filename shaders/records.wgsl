@@ -36,6 +36,8 @@ struct Frame {
     first_group: vec2u,
     // Row i of them is row i * row_step modulo their number.
     row_step: u32,
+    // Zero; see fence.wgsl.
+    zero: u32,
 }
 
 // A part of the scene that fits into bindings.

@@ -17,10 +17,10 @@ struct SphereHit {
 // Without branches: software devices run both sides of one and pay for the masks.
 fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     let radius = sphere.w;
-    let to_center = sphere.xyz - ray.origin;
-    let b = dot(to_center, ray.direction);
-    let foot_to_center = to_center - b * ray.direction;
-    let discriminant = radius * radius - dot(foot_to_center, foot_to_center);
+    let to_center = fence3(sphere.xyz - ray.origin);
+    let b = fence(dot(to_center, ray.direction));
+    let foot_to_center = fence3(to_center - b * ray.direction);
+    let discriminant = fence(radius * radius - dot(foot_to_center, foot_to_center));
     // The product of the distances to both walls: positive outside, zero on the wall.
     let c = dot(to_center, to_center) - radius * radius;
     let half_chord = sqrt(max(discriminant, 0.0));
@@ -38,6 +38,6 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
 // quite right-angled either, so its hypotenuse is measured instead of taken to be the radius; it is
 // never zero, because its two legs were made from the radius.
 fn sphere_normal(ray: Ray, hit: SphereHit) -> vec3f {
-    let outward = hit.from_foot * ray.direction - hit.foot_to_center;
-    return outward / sqrt(dot(outward, outward));
+    let outward = fence3(hit.from_foot * ray.direction - hit.foot_to_center);
+    return fence3(outward / sqrt(dot(outward, outward)));
 }

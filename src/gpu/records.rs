@@ -39,7 +39,7 @@ pub(super) struct Frame {
     pub(super) traced_size: [u32; 2],
     pub(super) first_group: [u32; 2],
     row_step: u32,
-    _pad: u32,
+    zero: u32,
 }
 
 #[repr(C)]
@@ -120,7 +120,7 @@ impl Frame {
             traced_size: traced.size,
             first_group: [0, 0],
             row_step: row_step(traced.size[1]),
-            _pad: 0,
+            zero: 0,
             background: settings.background().to_array(),
             shading: match settings.shading() {
                 Shading::Flat => 0,
@@ -214,7 +214,8 @@ mod tests {
                 traced_first,
                 traced_size,
                 first_group,
-                row_step
+                row_step,
+                zero
             }),
             layout!(Brick {
                 min,

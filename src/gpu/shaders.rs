@@ -106,10 +106,11 @@ fn list_part(layout: ListLayout) -> Part {
     }
 }
 
-fn common_parts(camera: CameraKind) -> [Part; 7] {
+fn common_parts(camera: CameraKind) -> [Part; 8] {
     [
         part!("records.wgsl"),
         part!("frame.wgsl"),
+        part!("fence.wgsl"),
         part!("film.wgsl"),
         part!("ray.wgsl"),
         camera_part(camera),
