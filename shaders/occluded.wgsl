@@ -7,7 +7,7 @@ fn occluded(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     if (any(pixel >= frame.tile_size)) {
         return;
     }
-    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
+    let entry = entry_of(pixel);
     let index = hit_index(pixel);
     let is_known = hit_before(index).t < NO_HIT;
     var t = select(NO_HIT, 0.0, is_known);

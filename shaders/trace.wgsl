@@ -7,7 +7,7 @@ fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     if (any(pixel >= frame.tile_size)) {
         return;
     }
-    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel)));
+    let entry = entry_of(pixel);
     let index = hit_index(pixel);
 
     var hit = hit_before(index);

@@ -61,6 +61,7 @@ pub mod scene_file;
 pub mod settings;
 pub mod sphere;
 mod text;
+pub mod verify;
 
 pub use color::LinearRgb;
 pub use film::Film;

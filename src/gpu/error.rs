@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::image::ImageTooLarge;
+use crate::scene::SceneError;
 
 /// Why the GPU path cannot do what it was asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -132,6 +133,9 @@ pub enum GpuError {
     /// The picture does not fit into host memory.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
+    /// The scene does not fit into host memory.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
 }
 
 fn list(available: &[String]) -> String {

@@ -39,6 +39,8 @@ pub struct DataTargets<'a> {
 pub struct Frame {
     color: ColorTarget,
     data_layers: bool,
+    /// The rays of all pixels, if they are kept.
+    rays: Option<Buffer>,
     /// One record per band, each at a multiple of `stride`.
     records: Buffer,
     hits: Buffer,
@@ -95,14 +97,18 @@ impl Frame {
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
         let limits = device.limits();
-        let rows_per_band = rows_per_band(&limits, size);
-        let hit_bytes = hit_bytes(&limits, size);
+        let keeps_rays = renderer.keeps_rays;
+        let rows_per_band = rows_per_band(&limits, size, keeps_rays);
+        let pixels_per_band = u64::from(size[0]) * u64::from(rows_per_band);
+        let hit_bytes = pixels_per_band * HIT_BYTES;
         check_storage_size(device, "the buffer of hits", hit_bytes)?;
+        let ray_bytes = if keeps_rays { pixels_per_band * RAY_BYTES } else { 0 };
+        check_storage_size(device, "the buffer of rays", ray_bytes)?;
         let record_size = size_of::<records::Frame>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
         let bands = size[1].div_ceil(rows_per_band) as usize;
-        let (records, hits, status, band_groups, target_group) = scoped(device, || {
+        let (records, hits, rays, status, band_groups, target_group) = scoped(device, || {
             let status = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole status"),
                 size: size_of::<u32>() as u64,
@@ -117,24 +123,30 @@ impl Frame {
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let hits = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pinhole hits"),
-                size: hit_bytes,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
+            let of_pixels = |label, size| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size,
+                    usage: wgpu::BufferUsages::STORAGE
+                        | wgpu::BufferUsages::COPY_SRC
+                        | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            };
+            let hits = of_pixels("pinhole hits", hit_bytes);
+            let rays = keeps_rays.then(|| of_pixels("pinhole rays", ray_bytes));
             let band_group = |band| {
+                let buffers = [&hits, &status].into_iter().chain(&rays);
+                let resources = std::iter::once(part(&records, band * stride, record_size))
+                    .chain(buffers.map(Buffer::as_entire_binding));
+                let entries: Vec<_> = (0..)
+                    .zip(resources)
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                    .collect();
                 device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("pinhole frame"),
                     layout: &renderer.layouts.frame,
-                    entries: &[
-                        wgpu::BindGroupEntry {
-                            binding: 0,
-                            resource: part(&records, band * stride, record_size),
-                        },
-                        wgpu::BindGroupEntry { binding: 1, resource: hits.as_entire_binding() },
-                        wgpu::BindGroupEntry { binding: 2, resource: status.as_entire_binding() },
-                    ],
+                    entries: &entries,
                 })
             };
             let band_groups = (0..bands).map(band_group).collect();
@@ -150,12 +162,13 @@ impl Frame {
                 layout: &renderer.layouts.targets,
                 entries: &entries,
             });
-            (records, hits, status, band_groups, target_group)
+            (records, hits, rays, status, band_groups, target_group)
         })?;
         let Renderer { color, data_layers, .. } = *renderer;
         Ok(Self {
             color,
             data_layers,
+            rays,
             records,
             hits,
             stride,
@@ -166,7 +179,7 @@ impl Frame {
             view: None,
             status,
             iteration_limit: iteration_limit(device),
-            bytes: hit_bytes + (bands * stride) as u64,
+            bytes: hit_bytes + ray_bytes + (bands * stride) as u64,
         })
     }
 
@@ -267,9 +280,17 @@ impl Frame {
         parts
     }
 
-    /// Records the clearing of the hits.
+    /// Records the clearing of the hits, and of the rays if they are kept.
     pub(super) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.hits, 0, None);
+        if let Some(rays) = &self.rays {
+            encoder.clear_buffer(rays, 0, None);
+        }
+    }
+
+    /// What is known of the pixels of the last band: hits, and rays if they are kept.
+    pub(super) fn traced(&self) -> (&Buffer, Option<&Buffer>) {
+        (&self.hits, self.rays.as_ref())
     }
 
     /// One u32 that kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
@@ -295,7 +316,8 @@ impl Frame {
         scene: &SceneBuffers,
     ) -> Result<&View, GpuError> {
         let view = self.view.as_ref().ok_or(GpuError::NoView)?;
-        if (self.color, self.data_layers) != (renderer.color, renderer.data_layers) {
+        let made_for = (self.color, self.data_layers, self.rays.is_some());
+        if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
             return Err(GpuError::OtherRenderer);
         }
         if view.scene != scene.id() {
@@ -315,18 +337,25 @@ impl Frame {
     }
 }
 
-const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+pub(super) const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+pub(super) const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
 
-/// How many rows of targets of a size are traced before they are shaded: their hits fit into one binding.
-fn rows_per_band(limits: &wgpu::Limits, [width, height]: [u32; 2]) -> u32 {
-    let pixels_per_band = (binding_limit(limits) / HIT_BYTES).min(tiles::MAX_PIXELS);
+/// How many rows of targets of a size are traced before they are shaded: their hits, and their rays if they are
+/// kept, fit into one binding.
+pub(super) fn rows_per_band(
+    limits: &wgpu::Limits,
+    [width, height]: [u32; 2],
+    keeps_rays: bool,
+) -> u32 {
+    let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
+    let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_PIXELS);
     // At most MAX_PIXELS, so it fits.
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 
 /// Bytes of the hits of targets of a size.
 pub(super) fn hit_bytes(limits: &wgpu::Limits, size: [u32; 2]) -> u64 {
-    u64::from(size[0]) * u64::from(rows_per_band(limits, size)) * HIT_BYTES
+    u64::from(size[0]) * u64::from(rows_per_band(limits, size, false)) * HIT_BYTES
 }
 
 /// How many iterations of loops an invocation may take.

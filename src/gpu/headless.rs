@@ -2,8 +2,6 @@
 //!
 //! The only file of the library that submits, polls, or waits for a device's work.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -13,21 +11,23 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, 
 use super::adapter;
 use super::error::{GpuError, scoped};
 use super::faults::Faults;
-use super::frame::{Frame, Part};
+use super::frame::{Frame, Part, rows_per_band};
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
 use super::readback::ReadableTexture;
-use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
+use super::recording::ReadableTrace;
+use super::renderer::{Renderer, RendererOptions};
+use super::renderers::{RendererKey, Renderers};
 use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::seen::traced_pixels;
 use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tile_size, tiles};
-use super::timer::{PassTimer, TraceTime};
-use crate::accel::{Accel, AccelChoice, AccelPlan, Structure};
-use crate::camera::{Camera, CameraKind};
+use crate::accel::{Accel, AccelChoice, AccelPlan};
+use crate::camera::Camera;
 use crate::film::Film;
 use crate::image::{Image, LayerSet};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::verify::TracedPixel;
 
 /// A device for rendering without a display.
 #[derive(Debug)]
@@ -40,12 +40,6 @@ pub struct Headless {
     /// Locked for the whole of a render, because faults cannot be told apart by render.
     renderers: Mutex<Renderers>,
 }
-
-/// What has been built so far.
-type Renderers = HashMap<RendererKey, Renderer>;
-
-/// Camera, structure, what rays are asked, whether there are data layers, and several bricks.
-type RendererKey = (CameraKind, Structure, Query, bool, bool);
 
 impl Headless {
     /// Opens the first of [`adapter::candidates`] that gives a device.
@@ -165,17 +159,29 @@ impl Headless {
         settings: &Settings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
+        self.with_uploaded(scene, film, |buffers| {
+            let go_on = &mut |_| ControlFlow::Continue(());
+            self.render_uploaded(buffers, camera, film, settings, layers, go_on)
+        })
+    }
+
+    /// Does something with a scene in the structure that suits it for one picture; where rays take too many
+    /// steps in that, once more with another.
+    pub(super) fn with_uploaded<T>(
+        &self,
+        scene: &Scene,
+        film: &Film,
+        work: impl Fn(&SceneBuffers) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
         let mut choice = AccelChoice::Auto;
         loop {
             let accel = self.plan_once(scene, choice, film).build(scene.spheres());
             let structure = accel.structure();
             let buffers = self.upload(scene, &accel)?;
             drop(accel);
-            let go_on = &mut |_| ControlFlow::Continue(());
-            let image = self.render_uploaded(&buffers, camera, film, settings, layers, go_on);
-            match (image, structure.instead()) {
+            match (work(&buffers), structure.instead()) {
                 (Err(GpuError::Steps), Some(other)) => choice = other,
-                (image, _) => return image,
+                (result, _) => return result,
             }
         }
     }
@@ -193,39 +199,45 @@ impl Headless {
         layers: LayerSet,
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
-        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.faults.forget();
         let data_layers = layers != LayerSet::COLOR;
-        let several = scene.bricks().len() > 1;
-        let key = (camera.kind(), scene.structure(), Query::Nearest, data_layers, several);
-        self.renderer(&mut renderers, key)
-            .and_then(|renderer| {
-                let mut image = Image::new(film.width(), film.height(), layers)?;
-                let view = (camera, film, settings);
-                self.render_tiles(renderer, scene, view, &mut image, watch)?;
-                Ok(image)
-            })
-            .map_err(|error| self.explained(error))
+        let key = RendererKey { data_layers, ..RendererKey::new(scene, camera) };
+        self.with_renderer(key, |renderer| {
+            let mut image = Image::new(film.width(), film.height(), layers)?;
+            let view = (camera, film, settings);
+            self.render_tiles(renderer, scene, view, &mut image, None, watch)?;
+            Ok(image)
+        })
     }
 
-    fn render_tiles(
+    pub(super) fn render_tiles(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
         (camera, film, settings): (&dyn Camera, &Film, &Settings),
         image: &mut Image,
+        mut pixels: Option<&mut Vec<TracedPixel>>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
-        let tile_size = tile_size(film, self.device.limits().max_texture_dimension_2d);
+        let limits = self.device.limits();
+        let mut tile_size = tile_size(film, limits.max_texture_dimension_2d);
+        if renderer.keeps_rays {
+            // What is kept is that of a tile's last band.
+            tile_size[1] = tile_size[1].min(rows_per_band(&limits, tile_size, true));
+        }
         let textures = scoped(&self.device, || {
             TileTextures::new(&self.device, tile_size, renderer.data_layers)
         })?;
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
+        let traced = scoped(&self.device, || ReadableTrace::new(&self.device, &frame))?;
         let total = traced_pixels(scene, camera, film, tile_size);
         let mut progress = Progress { done: 0, total };
         for tile in tiles(film, tile_size) {
             frame.set_tile(&self.queue, scene, camera, film, tile, settings);
             let mut encoder = self.encoder();
+            if renderer.keeps_rays {
+                // Those that are not traced are known by having none.
+                frame.record_clear(&mut encoder);
+            }
             let mut unfinished = Groups::NONE;
             for part in frame.parts() {
                 let mut left = vec![part.groups];
@@ -255,11 +267,18 @@ impl Headless {
             textures.status().record_copy(&mut encoder, frame.status());
             let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
             mapped.push(textures.status().buffer());
+            if let Some(traced) = &traced {
+                traced.record_copy(&mut encoder, &frame);
+                mapped.extend(traced.buffers());
+            }
             self.submit_slice(encoder, unfinished, scene, &mapped)?;
-            if textures.status().read()? != 0 {
+            if textures.status().read(|words: &[u32]| words[0])? != 0 {
                 return Err(GpuError::Steps);
             }
             textures.read_into(image, tile)?;
+            if let (Some(traced), Some(pixels)) = (&traced, &mut pixels) {
+                traced.read_into(pixels, film, tile)?;
+            }
             progress.add(unfinished, watch)?;
         }
         Ok(())
@@ -267,7 +286,7 @@ impl Headless {
 
     /// Submits the tracing of some workgroups, and what comes with it, waits until it is done and the buffers
     /// are mapped, and takes note of how long it took.
-    fn submit_slice(
+    pub(super) fn submit_slice(
         &self,
         encoder: CommandEncoder,
         groups: Groups,
@@ -275,84 +294,13 @@ impl Headless {
         mapped: &[&wgpu::Buffer],
     ) -> Result<Duration, GpuError> {
         let started = Instant::now();
-        let submission = self.queue.submit([encoder.finish()]);
-        self.wait(mapped, submission)?;
+        self.run(encoder, mapped)?;
         let elapsed = started.elapsed();
         scene.took(groups, elapsed);
         Ok(elapsed)
     }
 
-    /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
-    ///
-    /// # Errors
-    /// As [`Headless::render`].
-    pub fn measure(
-        &self,
-        scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
-        query: Query,
-    ) -> Result<TraceTime, GpuError> {
-        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.faults.forget();
-        let several = scene.bricks().len() > 1;
-        let key = (camera.kind(), scene.structure(), query, false, several);
-        self.renderer(&mut renderers, key)
-            .and_then(|renderer| self.measure_with(renderer, scene, camera, film))
-            .map_err(|error| self.explained(error))
-    }
-
-    fn measure_with(
-        &self,
-        renderer: &Renderer,
-        scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
-    ) -> Result<TraceTime, GpuError> {
-        let tile_size = tile_size(film, self.device.limits().max_texture_dimension_2d);
-        let textures = scoped(&self.device, || TileTextures::new(&self.device, tile_size, false))?;
-        let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
-        let timer = scoped(&self.device, || PassTimer::new(&self.device, &self.queue))?;
-        let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
-        // wgpu clears a buffer when it is first used, which is none of the tracing.
-        let mut encoder = self.encoder();
-        frame.record_clear(&mut encoder);
-        let submission = self.queue.submit([encoder.finish()]);
-        self.wait(&[], submission)?;
-        let mut time = TraceTime::default();
-        for tile in tiles(film, tile_size) {
-            frame.set_tile(&self.queue, scene, camera, film, tile, &Settings::default());
-            for part in frame.parts() {
-                let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
-                    frame.set_first_group(&self.queue, part.band, groups.first);
-                    let mut encoder = self.encoder();
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                        label: Some("pinhole"),
-                        timestamp_writes: timer.as_ref().map(PassTimer::writes),
-                    });
-                    let slice = Part { groups, ..part };
-                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
-                    drop(pass);
-                    if let Some(timer) = &timer {
-                        timer.record_copy(&mut encoder);
-                    }
-                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
-                    time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
-                }
-            }
-        }
-        let mut encoder = self.encoder();
-        textures.status().record_copy(&mut encoder, frame.status());
-        let submission = self.queue.submit([encoder.finish()]);
-        self.wait(&[textures.status().buffer()], submission)?;
-        match textures.status().read()? {
-            0 => Ok(time),
-            _ => Err(GpuError::Steps),
-        }
-    }
-
-    fn encoder(&self) -> CommandEncoder {
+    pub(super) fn encoder(&self) -> CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
@@ -366,26 +314,25 @@ impl Headless {
         }
     }
 
-    fn renderer<'a>(
+    /// Works with the renderer that a key stands for, alone on this device.
+    pub(super) fn with_renderer<T>(
         &self,
-        renderers: &'a mut Renderers,
         key: RendererKey,
-    ) -> Result<&'a Renderer, GpuError> {
-        let (camera, structure, query, data_layers, several_bricks) = key;
-        match renderers.entry(key) {
-            Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(place) => {
-                let options = RendererOptions {
-                    color: ColorTarget::Linear32,
-                    data_layers,
-                    cameras: vec![camera],
-                    structures: vec![structure],
-                    several_bricks,
-                    query,
-                };
-                Ok(place.insert(Renderer::new(&self.device, &options)?))
-            }
-        }
+        work: impl FnOnce(&Renderer) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
+        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.faults.forget();
+        renderers.of(&self.device, key).and_then(work).map_err(|error| self.explained(error))
+    }
+
+    /// Submits, and waits until it is done and the buffers are mapped.
+    pub(super) fn run(
+        &self,
+        encoder: CommandEncoder,
+        mapped: &[&wgpu::Buffer],
+    ) -> Result<(), GpuError> {
+        let submission = self.queue.submit([encoder.finish()]);
+        self.wait(mapped, submission)
     }
 
     /// Waits until the submission is done and the buffers are mapped.

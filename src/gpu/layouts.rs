@@ -5,7 +5,7 @@ use std::num::NonZeroU64;
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use super::records;
-use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, RendererOptions};
 use crate::accel::{ListLayout, Structure};
 
 /// The layouts of all groups that the kernels use.
@@ -22,12 +22,8 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    pub(super) fn new(
-        device: &Device,
-        color: ColorTarget,
-        data_layers: bool,
-        structures: &[Structure],
-    ) -> Self {
+    pub(super) fn new(device: &Device, options: &RendererOptions) -> Self {
+        let RendererOptions { color, data_layers, keeps_rays, ref structures, .. } = *options;
         let layout = |label, kinds: &[BindingType]| {
             let entries: Vec<_> =
                 (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
@@ -40,15 +36,16 @@ impl Layouts {
         if data_layers {
             targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
         }
+        let mut frame = vec![
+            uniform::<records::Frame>(),
+            storage::<records::Hit>(false),
+            storage::<u32>(false),
+        ];
+        if keeps_rays {
+            frame.push(storage::<records::TracedRay>(false));
+        }
         Self {
-            frame: layout(
-                "pinhole frame",
-                &[
-                    uniform::<records::Frame>(),
-                    storage::<records::Hit>(false),
-                    storage::<u32>(false),
-                ],
-            ),
+            frame: layout("pinhole frame", &frame),
             brick: structures
                 .iter()
                 .map(|structure| {

@@ -96,17 +96,17 @@ impl ReadableTexture {
     }
 }
 
-/// A word that kernels write, and a buffer that the host reads.
+/// A buffer that the host reads what kernels wrote from.
 #[derive(Debug)]
-pub(super) struct ReadableWord {
+pub(super) struct ReadableBuffer {
     buffer: Buffer,
 }
 
-impl ReadableWord {
-    pub(super) fn new(device: &Device, label: &'static str) -> Self {
+impl ReadableBuffer {
+    pub(super) fn new(device: &Device, label: &'static str, size: u64) -> Self {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
-            size: size_of::<u32>() as u64,
+            size,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -117,20 +117,24 @@ impl ReadableWord {
         &self.buffer
     }
 
-    pub(super) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, word: &Buffer) {
-        encoder.copy_buffer_to_buffer(word, 0, &self.buffer, 0, size_of::<u32>() as u64);
+    /// Records the copy of a buffer of the same size.
+    pub(super) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, written: &Buffer) {
+        encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
     }
 
-    /// The word; unmaps the buffer, which must be mapped.
-    pub(super) fn read(&self) -> Result<u32, GpuError> {
+    /// What `look` makes of its elements; unmaps the buffer, which must be mapped.
+    pub(super) fn read<T: bytemuck::AnyBitPattern, R>(
+        &self,
+        look: impl FnOnce(&[T]) -> R,
+    ) -> Result<R, GpuError> {
         let bytes = self
             .buffer
             .get_mapped_range(..)
             .map_err(|error| GpuError::Device { message: error.to_string() })?;
-        let word = bytemuck::pod_read_unaligned(&bytes[..size_of::<u32>()]);
+        let seen = look(bytemuck::cast_slice(&bytes));
         drop(bytes);
         self.buffer.unmap();
-        Ok(word)
+        Ok(seen)
     }
 }
 

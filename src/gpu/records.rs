@@ -11,13 +11,13 @@ use crate::settings::{Settings, Shading};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Camera {
-    origin: [f32; 3],
-    advance: f32,
-    right: [f32; 3],
+    pub(super) origin: [f32; 3],
+    pub(super) advance: f32,
+    pub(super) right: [f32; 3],
     _pad1: u32,
-    up: [f32; 3],
+    pub(super) up: [f32; 3],
     _pad2: u32,
-    forward: [f32; 3],
+    pub(super) forward: [f32; 3],
     _pad3: u32,
 }
 
@@ -58,6 +58,9 @@ pub(super) struct Brick {
 /// The bits of distance, id and place, and nothing: one `vec4u`.
 pub(super) type Hit = [u32; 4];
 
+/// Origin and distance, direction and whether there is one: two `vec4f`.
+pub(super) type TracedRay = [f32; 8];
+
 /// Where a scene lies: its frame in the world, and in it the box that rays are moved to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneSpace {
@@ -78,7 +81,7 @@ pub(super) const NO_HIT: f32 = 1e30;
 impl Camera {
     /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box,
     /// then narrows.
-    fn new(vectors: &CameraVectors, scene: &SceneSpace) -> Self {
+    pub(super) fn new(vectors: &CameraVectors, scene: &SceneSpace) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
@@ -245,6 +248,7 @@ mod tests {
             crate::camera::CameraKind::Pinhole,
             crate::accel::Structure::List,
             shaders::Turn::First,
+            false,
         )
         .source();
         for (name, _) in &records {

@@ -59,6 +59,8 @@ pub struct RendererOptions {
     pub several_bricks: bool,
     /// What rays are asked. With [`Query::Any`] a renderer is good for measurements only.
     pub query: Query,
+    /// Whether frames keep the ray of every pixel, 32 bytes each, for [`verify`](crate::verify).
+    pub keeps_rays: bool,
 }
 
 impl Default for RendererOptions {
@@ -71,6 +73,7 @@ impl Default for RendererOptions {
             structures: Structure::AUTOMATIC.to_vec(),
             several_bricks: true,
             query: Query::Nearest,
+            keeps_rays: false,
         }
     }
 }
@@ -81,6 +84,7 @@ pub struct Renderer {
     pub(super) layouts: Layouts,
     pub(super) color: ColorTarget,
     pub(super) data_layers: bool,
+    pub(super) keeps_rays: bool,
     shade: Vec<(CameraKind, ComputePipeline)>,
     trace: Vec<(CameraKind, Structure, TracePipelines)>,
 }
@@ -108,10 +112,10 @@ impl Renderer {
     /// # Errors
     /// If the device refuses a kernel, which is a defect of this crate or of the driver.
     pub fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
-        let RendererOptions { color, data_layers, ref structures, .. } = *options;
-        let layouts = scoped(device, || Layouts::new(device, color, data_layers, structures))?;
-        let mut renderer =
-            Self { layouts, color, data_layers, shade: Vec::new(), trace: Vec::new() };
+        let RendererOptions { color, data_layers, query, keeps_rays, .. } = *options;
+        let layouts = scoped(device, || Layouts::new(device, options))?;
+        let (shade, trace) = (Vec::new(), Vec::new());
+        let mut renderer = Self { layouts, color, data_layers, keeps_rays, shade, trace };
         for &camera in &options.cameras {
             let kernel = shaders::shade_kernel(camera, color, data_layers);
             let Layouts { frame, surface, targets, .. } = &renderer.layouts;
@@ -119,11 +123,15 @@ impl Renderer {
             renderer.shade.push((camera, shade));
             for (structure, brick) in &renderer.layouts.brick {
                 let groups = [frame, brick];
-                let kernel = match options.query {
-                    Query::Nearest => shaders::trace_kernel,
-                    Query::Any => shaders::occluded_kernel,
+                let build = |turn| {
+                    let kernel = match query {
+                        Query::Nearest => {
+                            shaders::trace_kernel(camera, *structure, turn, keeps_rays)
+                        }
+                        Query::Any => shaders::occluded_kernel(camera, *structure, turn),
+                    };
+                    pipeline(device, &kernel, &groups)
                 };
-                let build = |turn| pipeline(device, &kernel(camera, *structure, turn), &groups);
                 let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
                 let pipelines = TracePipelines { first: build(Turn::First)?, later };
                 renderer.trace.push((camera, *structure, pipelines));
@@ -283,12 +291,17 @@ mod tests {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         assert_eq!(device.limits().max_storage_buffer_binding_size, 128 << 20);
         for &color in ColorTarget::ALL {
-            for (data_layers, query) in [(false, Query::Nearest), (true, Query::Any)] {
+            for (data_layers, query, keeps_rays) in [
+                (false, Query::Nearest, false),
+                (true, Query::Nearest, true),
+                (true, Query::Any, false),
+            ] {
                 let options = RendererOptions {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
                     query,
+                    keeps_rays,
                     ..RendererOptions::default()
                 };
                 let renderer = Renderer::new(&device, &options).unwrap();
@@ -301,11 +314,14 @@ mod tests {
     #[test]
     fn a_refused_kernel_is_an_error_that_names_the_part() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
-        let layouts = Layouts::new(&device, ColorTarget::Srgb8, false, &[Structure::List]);
+        let structures = vec![Structure::List];
+        let layouts =
+            Layouts::new(&device, &RendererOptions { structures, ..RendererOptions::default() });
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
-            let kernel = shaders::trace_kernel(CameraKind::Pinhole, Structure::List, Turn::First)
-                .with_part("broken.wgsl", broken);
+            let kernel =
+                shaders::trace_kernel(CameraKind::Pinhole, Structure::List, Turn::First, false)
+                    .with_part("broken.wgsl", broken);
             match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
                 Err(GpuError::Device { message }) => {
                     assert!(message.contains("broken.wgsl:"), "{message}");

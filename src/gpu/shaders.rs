@@ -37,9 +37,19 @@ pub(super) enum Turn {
     Later,
 }
 
-/// Finds the nearest sphere of every ray.
-pub(super) fn trace_kernel(camera: CameraKind, structure: Structure, turn: Turn) -> Kernel {
+/// Finds the nearest sphere of every ray; the rays may be kept.
+pub(super) fn trace_kernel(
+    camera: CameraKind,
+    structure: Structure,
+    turn: Turn,
+    keeps_rays: bool,
+) -> Kernel {
     let mut parts = walk_parts(camera, structure, turn);
+    parts.push(match (keeps_rays, turn) {
+        (false, _) => part!("entry_made.wgsl"),
+        (true, Turn::First) => part!("entry_recorded.wgsl"),
+        (true, Turn::Later) => part!("entry_replayed.wgsl"),
+    });
     parts.push(part!("trace.wgsl"));
     Kernel { entry_point: "trace", parts }
 }
@@ -47,7 +57,7 @@ pub(super) fn trace_kernel(camera: CameraKind, structure: Structure, turn: Turn)
 /// Finds whether every ray hits anything.
 pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Turn) -> Kernel {
     let mut parts = walk_parts(camera, structure, turn);
-    parts.push(part!("occluded.wgsl"));
+    parts.extend([part!("entry_made.wgsl"), part!("occluded.wgsl")]);
     Kernel { entry_point: "occluded", parts }
 }
 
@@ -142,6 +152,7 @@ impl Kernel {
             "nested_grid",
             "wide_tree",
             "binary_tree",
+            "entry_re",
         ];
         self.parts
             .iter()
@@ -206,7 +217,9 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
     for &camera in CameraKind::ALL {
         for &structure in Structure::ALL {
             for turn in [Turn::First, Turn::Later] {
-                kernels.push(trace_kernel(camera, structure, turn));
+                for keeps_rays in [false, true] {
+                    kernels.push(trace_kernel(camera, structure, turn, keeps_rays));
+                }
                 kernels.push(occluded_kernel(camera, structure, turn));
             }
         }
@@ -246,7 +259,7 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (4 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
         );
         for kernel in kernels {
             let module =

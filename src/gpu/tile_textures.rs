@@ -4,7 +4,7 @@ use wgpu::{Device, TextureFormat};
 
 use super::error::GpuError;
 use super::frame::{DataTargets, Targets};
-use super::readback::{ReadableTexture, ReadableWord};
+use super::readback::{ReadableBuffer, ReadableTexture};
 use super::records::NO_HIT;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::tiles::Tile;
@@ -36,7 +36,7 @@ pub(super) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
 pub(super) struct TileTextures {
     color: ReadableTexture,
     data: Option<DataTextures>,
-    status: ReadableWord,
+    status: ReadableBuffer,
 }
 
 #[derive(Debug)]
@@ -56,7 +56,7 @@ impl TileTextures {
                 normal: texture("pinhole normal", NORMAL_FORMAT),
                 id: texture("pinhole id", ID_FORMAT),
             }),
-            status: ReadableWord::new(device, "pinhole status"),
+            status: ReadableBuffer::new(device, "pinhole status", size_of::<u32>() as u64),
         }
     }
 
@@ -72,7 +72,7 @@ impl TileTextures {
     }
 
     /// What kernels reported.
-    pub(super) fn status(&self) -> &ReadableWord {
+    pub(super) fn status(&self) -> &ReadableBuffer {
         &self.status
     }
 

@@ -15,6 +15,7 @@ mod plan;
 mod program;
 mod scenes;
 mod structures;
+mod verify;
 
 use std::sync::LazyLock;
 
@@ -57,6 +58,7 @@ fn main() {
         program::trials(),
         structures::trials(),
         plan::trials(),
+        verify::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();

@@ -254,6 +254,7 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
         structures: vec![accel.structure()],
         several_bricks: accel.bricks().len() > 1,
         query: Query::Any,
+        ..RendererOptions::default()
     };
     let renderer = Renderer::new(&host.device, &options).unwrap();
     let scene =

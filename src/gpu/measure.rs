@@ -1,0 +1,82 @@
+//! Measuring how long tracing takes.
+
+use wgpu::ComputePassDescriptor;
+
+use super::error::{GpuError, scoped};
+use super::frame::{Frame, Part};
+use super::headless::Headless;
+use super::renderer::{Query, Renderer};
+use super::renderers::RendererKey;
+use super::scene_buffers::SceneBuffers;
+use super::tile_textures::TileTextures;
+use super::tiles::{Groups, tile_size, tiles};
+use super::timer::{PassTimer, TraceTime};
+use crate::camera::Camera;
+use crate::film::Film;
+use crate::settings::Settings;
+
+impl Headless {
+    /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn measure(
+        &self,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        query: Query,
+    ) -> Result<TraceTime, GpuError> {
+        let key = RendererKey { query, ..RendererKey::new(scene, camera) };
+        self.with_renderer(key, |renderer| self.measure_with(renderer, scene, camera, film))
+    }
+
+    fn measure_with(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+    ) -> Result<TraceTime, GpuError> {
+        let tile_size = tile_size(film, self.device().limits().max_texture_dimension_2d);
+        let textures =
+            scoped(self.device(), || TileTextures::new(self.device(), tile_size, false))?;
+        let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;
+        let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue()))?;
+        let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
+        // wgpu clears a buffer when it is first used, which is none of the tracing.
+        let mut encoder = self.encoder();
+        frame.record_clear(&mut encoder);
+        self.run(encoder, &[])?;
+        let mut time = TraceTime::default();
+        for tile in tiles(film, tile_size) {
+            frame.set_tile(self.queue(), scene, camera, film, tile, &Settings::default());
+            for part in frame.parts() {
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
+                    frame.set_first_group(self.queue(), part.band, groups.first);
+                    let mut encoder = self.encoder();
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                        label: Some("pinhole"),
+                        timestamp_writes: timer.as_ref().map(PassTimer::writes),
+                    });
+                    let slice = Part { groups, ..part };
+                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
+                    drop(pass);
+                    if let Some(timer) = &timer {
+                        timer.record_copy(&mut encoder);
+                    }
+                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
+                    time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
+                }
+            }
+        }
+        let mut encoder = self.encoder();
+        textures.status().record_copy(&mut encoder, frame.status());
+        self.run(encoder, &[textures.status().buffer()])?;
+        match textures.status().read(|words: &[u32]| words[0])? {
+            0 => Ok(time),
+            _ => Err(GpuError::Steps),
+        }
+    }
+}

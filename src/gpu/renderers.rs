@@ -1,0 +1,63 @@
+//! The renderers of a device, each built when it is first wanted.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use wgpu::Device;
+
+use super::error::GpuError;
+use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
+use super::scene_buffers::SceneBuffers;
+use crate::accel::Structure;
+use crate::camera::{Camera, CameraKind};
+
+/// What they differ in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct RendererKey {
+    pub(super) camera: CameraKind,
+    pub(super) structure: Structure,
+    pub(super) several_bricks: bool,
+    pub(super) query: Query,
+    pub(super) data_layers: bool,
+    pub(super) keeps_rays: bool,
+}
+
+impl RendererKey {
+    /// Pictures of colour alone.
+    pub(super) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
+        Self {
+            camera: camera.kind(),
+            structure: scene.structure(),
+            several_bricks: scene.bricks().len() > 1,
+            query: Query::Nearest,
+            data_layers: false,
+            keeps_rays: false,
+        }
+    }
+}
+
+/// What has been built so far.
+#[derive(Debug, Default)]
+pub(super) struct Renderers(HashMap<RendererKey, Renderer>);
+
+impl Renderers {
+    /// The renderer that a key stands for.
+    pub(super) fn of(&mut self, device: &Device, key: RendererKey) -> Result<&Renderer, GpuError> {
+        let RendererKey { camera, structure, several_bricks, query, data_layers, keeps_rays } = key;
+        match self.0.entry(key) {
+            Entry::Occupied(built) => Ok(built.into_mut()),
+            Entry::Vacant(place) => {
+                let options = RendererOptions {
+                    color: ColorTarget::Linear32,
+                    data_layers,
+                    cameras: vec![camera],
+                    structures: vec![structure],
+                    several_bricks,
+                    query,
+                    keeps_rays,
+                };
+                Ok(place.insert(Renderer::new(device, &options)?))
+            }
+        }
+    }
+}

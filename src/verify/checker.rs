@@ -1,0 +1,107 @@
+//! A scene, ready to judge recordings.
+
+use super::camera::CameraModel;
+use super::candidates::Candidates;
+use super::certificate::{Certificate, KEPT, Verdict};
+use super::hit::LegalHits;
+use super::line::Line;
+use super::pixel::PixelCheck;
+use super::recording::Recording;
+use super::upload;
+use super::violation::Violation;
+use crate::parallel::{map_parts, ranges};
+use crate::scene::{Scene, SceneError};
+
+/// How many pixels a thread takes at a time.
+const CHUNK: usize = 1 << 12;
+
+/// Judges what devices make of a scene.
+#[derive(Debug)]
+pub struct Checker<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) candidates: Candidates,
+}
+
+/// What was found in some pixels.
+#[derive(Default)]
+struct Part {
+    verdicts: Vec<Verdict>,
+    violations: Vec<Violation>,
+    worst_depth: f64,
+    worst_normal: f64,
+}
+
+impl<'a> Checker<'a> {
+    /// Prepares a scene: 24 bytes a sphere, and 8 to 16 of boxes.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub fn new(scene: &'a Scene) -> Result<Self, SceneError> {
+        Ok(Self { scene, candidates: Candidates::new(scene.spheres())? })
+    }
+
+    /// Every answer that a conforming device may give to a ray of exactly these numbers, in the scene's frame;
+    /// the direction is of about unit length.
+    #[must_use]
+    pub fn legal_hits(&self, origin: [f32; 3], direction: [f32; 3]) -> LegalHits {
+        let mut legal = LegalHits::default();
+        legal.find(&self.candidates, &Line::new(origin, direction));
+        legal
+    }
+
+    /// Judges every pixel.
+    #[must_use]
+    pub fn certify(&self, recording: &Recording) -> Certificate {
+        let Recording { camera, uploaded, film, .. } = recording;
+        let size = [film.width(), film.height()];
+        let mut certificate = Certificate {
+            size,
+            verdicts: Vec::new(),
+            violations: Vec::new(),
+            upload: upload::check(self.scene, &self.candidates, recording).err(),
+            worst_depth: 0.0,
+            worst_normal: 0.0,
+        };
+        if certificate.upload.is_some() {
+            return certificate;
+        }
+        let check = PixelCheck {
+            checker: self,
+            model: CameraModel::new(camera.kind, uploaded, film),
+            recording,
+        };
+        let pixels = ranges(recording.pixels.len(), CHUNK);
+        for part in map_parts(pixels, |range| judge(&check, range, size[0])) {
+            certificate.verdicts.extend(part.verdicts);
+            let room = KEPT.saturating_sub(certificate.violations.len());
+            certificate.violations.extend(part.violations.into_iter().take(room));
+            certificate.worst_depth = certificate.worst_depth.max(part.worst_depth);
+            certificate.worst_normal = certificate.worst_normal.max(part.worst_normal);
+        }
+        certificate
+    }
+}
+
+fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> Part {
+    let mut part = Part { verdicts: Vec::with_capacity(range.len()), ..Part::default() };
+    let mut legal = LegalHits::default();
+    for index in range {
+        // A film's sides are u32.
+        let pixel = [(index % width as usize) as u32, (index / width as usize) as u32];
+        let verdict = match check.judge(index, pixel, &mut legal) {
+            Ok(judged) => {
+                part.worst_depth = part.worst_depth.max(judged.depth);
+                part.worst_normal = part.worst_normal.max(judged.normal);
+                judged.verdict
+            }
+            Err(kind) => {
+                if part.violations.len() < KEPT {
+                    part.violations.push(Violation { pixel, kind });
+                }
+                Verdict::Violation
+            }
+        };
+        part.verdicts.push(verdict);
+    }
+    part
+}

@@ -1,0 +1,113 @@
+//! The nearest hit of a ray: every answer that a conforming device may give.
+
+use super::candidates::{Candidate, Candidates};
+use super::line::Line;
+use super::rounding::Interval;
+use super::sphere::{Slack, SphereTest};
+
+/// What a device may answer to a ray.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LegalHits {
+    /// The spheres that may be the nearest, in no order.
+    pub spheres: Vec<LegalHit>,
+    /// Some sphere is hit for certain, and no farther away than this; or infinity.
+    pub limit: f64,
+    /// Whether it may be that none is hit.
+    pub miss: bool,
+}
+
+/// A sphere that may be the nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegalHit {
+    /// Index in input order.
+    pub id: u32,
+    /// Distances to its near wall.
+    pub near: Option<Interval>,
+    /// Distances to its far wall, if the ray may start inside.
+    pub far: Option<Interval>,
+    sphere: [u32; 4],
+}
+
+impl LegalHit {
+    fn walls(&self) -> impl Iterator<Item = Interval> {
+        [self.near, self.far].into_iter().flatten()
+    }
+
+    /// The interval in which a distance lies.
+    #[must_use]
+    pub fn wall_at(&self, t: f64) -> Option<Interval> {
+        self.walls().find(|wall| wall.contains(t))
+    }
+
+    fn lowest(&self) -> f64 {
+        self.walls().map(|wall| wall.low).fold(f64::INFINITY, f64::min)
+    }
+
+    fn highest(&self) -> f64 {
+        self.walls().map(|wall| wall.high).fold(0.0, f64::max)
+    }
+}
+
+impl LegalHits {
+    /// How many answers there are, apart from distances.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.spheres.len() + usize::from(self.miss)
+    }
+
+    /// The legal hit of a sphere.
+    #[must_use]
+    pub fn of(&self, id: u32) -> Option<&LegalHit> {
+        self.spheres.iter().find(|hit| hit.id == id)
+    }
+
+    /// Whether the answer may be that this sphere is hit, at this distance.
+    #[must_use]
+    pub fn allows(&self, id: u32, t: f64) -> bool {
+        t <= self.limit && self.of(id).is_some_and(|hit| hit.wall_at(t).is_some())
+    }
+
+    /// Only a miss; keeps the memory.
+    pub(super) fn clear(&mut self) {
+        self.spheres.clear();
+        self.limit = f64::INFINITY;
+        self.miss = true;
+    }
+
+    /// Finds them anew; keeps the memory.
+    pub(super) fn find(&mut self, candidates: &Candidates, line: &Line) {
+        self.clear();
+        candidates.visit(line, |candidate| {
+            if let Some((hit, may_miss)) = legal_hit(candidate, line) {
+                if hit.lowest() <= self.limit {
+                    self.spheres.push(hit);
+                }
+                if !may_miss {
+                    self.miss = false;
+                    self.limit = self.limit.min(hit.highest());
+                }
+            }
+            self.limit
+        });
+        self.spheres.retain(|hit| hit.lowest() <= self.limit);
+        self.drop_copies();
+    }
+
+    /// Of spheres that are the same to the bit, a kernel finds the same distance to the bit, because it has
+    /// but one sphere test; and of equal distances the smaller id wins. This is a promise of this crate's, and
+    /// not one of WGSL's.
+    fn drop_copies(&mut self) {
+        if self.spheres.len() > 1 {
+            self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));
+            self.spheres.dedup_by_key(|hit| hit.sphere);
+        }
+    }
+}
+
+fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line) -> Option<(LegalHit, bool)> {
+    let test = SphereTest::new(line, *sphere, Slack::default())?;
+    let roots = test.roots();
+    let hit =
+        LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
+    roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
+}

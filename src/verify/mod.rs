@@ -1,0 +1,49 @@
+//! Decides whether a picture is one that a conforming device may have made.
+//!
+//! A GPU's f32 arithmetic is not exact, and WGSL leaves it free in many ways: either neighbour in rounding,
+//! fused or not, in any order. So two devices differ, and comparing pictures with a tolerance proves nothing.
+//! Here instead, from the very numbers that the device was given, a running error bound in f64 gives the set
+//! of answers that a conforming implementation of the kernels may come to: which spheres may be the nearest and
+//! at which distances, whether a miss is possible, which normals, depths and colours follow. A pixel is
+//! *decided* if that set has one element, up to distances within their bounds.
+//!
+//! Stages are judged one by one, each given what the device recorded of the one before, so that errors do not
+//! add up: the camera's ray, the nearest hit, and what is made of it. The checker shares no code with the
+//! kernels' twins and knows nothing of the structure that found the spheres.
+//!
+//! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/fence.wgsl` keeps a compiler from
+//! looking through it, which [`Headless::self_test`](crate::gpu::Headless::self_test) checks; and of spheres
+//! that are the same to the bit, the smallest id wins.
+//!
+//! ```no_run
+//! # use pinhole::{Scene, Film, Settings, camera::PinholeCamera, gpu::{Headless, HeadlessOptions}};
+//! # fn f(scene: &Scene, camera: &PinholeCamera, film: &Film) -> Result<(), Box<dyn std::error::Error>> {
+//! let headless = Headless::open(&HeadlessOptions::default())?;
+//! let certificate = headless.verify(scene, camera, film, &Settings::default())?;
+//! assert!(certificate.is_legal(), "{certificate}");
+//! # Ok(())
+//! # }
+//! ```
+#![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
+
+mod camera;
+mod candidates;
+mod certificate;
+mod checker;
+mod hit;
+mod line;
+mod pixel;
+mod recording;
+mod rounding;
+mod shading;
+mod sphere;
+mod upload;
+mod violation;
+
+pub use certificate::{Certificate, Verdict};
+pub use checker::Checker;
+pub use hit::{LegalHit, LegalHits};
+pub use recording::{Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+pub use rounding::Interval;
+pub use upload::UploadError;
+pub use violation::{Violation, ViolationKind};

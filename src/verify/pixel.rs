@@ -1,0 +1,178 @@
+//! One pixel, stage by stage.
+
+use glam::DVec3;
+
+use super::camera::{CameraModel, EnteredRay};
+use super::certificate::Verdict;
+use super::checker::Checker;
+use super::hit::LegalHits;
+use super::line::Line;
+use super::recording::{Recording, TracedPixel, TracedRay};
+use super::rounding::Interval;
+use super::shading::{LegalNormals, UNIT_ERROR, exactly, legal_color, legal_depth};
+use super::violation::ViolationKind;
+use crate::image::NO_ID;
+
+/// What pixels are judged by.
+pub(super) struct PixelCheck<'a> {
+    pub(super) checker: &'a Checker<'a>,
+    pub(super) model: CameraModel,
+    pub(super) recording: &'a Recording,
+}
+
+/// A pixel that is as it may be.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    /// How far the distance is from the middle of what is legal, in parts of half the width.
+    pub(super) depth: f64,
+    /// The same of the normal.
+    pub(super) normal: f64,
+}
+
+/// The layers of a pixel.
+struct Layers {
+    color: [f32; 3],
+    depth: f32,
+    normal: [f32; 3],
+    id: u32,
+}
+
+impl PixelCheck<'_> {
+    /// The first stage that went wrong is the error. `legal` is memory that is used again.
+    pub(super) fn judge(
+        &self,
+        index: usize,
+        pixel: [u32; 2],
+        legal: &mut LegalHits,
+    ) -> Result<Judged, ViolationKind> {
+        let TracedPixel { ray, t, id } = self.recording.pixels[index];
+        let layers = self.layers(index);
+        let camera_ray = self.model.ray(pixel);
+        let Some(ray) = ray else {
+            let exact = camera_ray.entered(&self.model, camera_ray.line.direction);
+            if !exact.may_miss_box {
+                return Err(ViolationKind::NotTraced);
+            }
+            self.check_miss(&layers, NO_ID)?;
+            return Ok(Judged { verdict: Verdict::Decided, depth: 0.0, normal: 0.0 });
+        };
+        let line = Line::new(ray.origin, ray.direction);
+        let entered = camera_ray.entered(&self.model, line.direction);
+        check_ray(&entered, &ray)?;
+
+        legal.clear();
+        if entered.may_meet_box {
+            legal.find(&self.checker.candidates, &line);
+            legal.miss |= entered.may_miss_box;
+        }
+        let verdict = match (legal.count(), legal.miss) {
+            (1, _) => Verdict::Decided,
+            (_, true) => Verdict::Silhouette,
+            (_, false) => Verdict::Tie,
+        };
+        let illegal = |legal: &LegalHits| ViolationKind::Hit { id, t, legal: legal.clone() };
+        if id == NO_ID {
+            if !legal.miss {
+                return Err(illegal(legal));
+            }
+            self.check_miss(&layers, id)?;
+            return Ok(Judged { verdict, depth: 0.0, normal: 0.0 });
+        }
+        if !legal.allows(id, t.into()) {
+            return Err(illegal(legal));
+        }
+        let wall = legal.of(id).and_then(|hit| hit.wall_at(t.into()));
+        let depth = wall.map_or(0.0, |wall| wall.fraction(t.into()));
+        let normal = self.check_hit(&layers, &entered, &line, t, id)?;
+        Ok(Judged { verdict, depth, normal })
+    }
+
+    fn layers(&self, index: usize) -> Layers {
+        let image = &self.recording.image;
+        // A recording has all layers.
+        Layers {
+            color: image.color()[index],
+            depth: image.depth().map_or(f32::NAN, |layer| layer[index]),
+            normal: image.normal().map_or([f32::NAN; 3], |layer| layer[index]),
+            id: image.id().map_or(NO_ID, |layer| layer[index]),
+        }
+    }
+
+    fn check_miss(&self, layers: &Layers, traced: u32) -> Result<(), ViolationKind> {
+        if layers.id != traced {
+            return Err(ViolationKind::Id { found: layers.id, traced });
+        }
+        let infinity = Interval { low: f64::INFINITY, high: f64::INFINITY };
+        if layers.depth != f32::INFINITY {
+            return Err(ViolationKind::Depth { found: layers.depth, legal: infinity });
+        }
+        if layers.normal.iter().any(|component| component.abs() > 0.0 || component.is_nan()) {
+            let (found, exact) = (layers.normal, [0.0; 3]);
+            return Err(ViolationKind::Normal { found, exact, error: 0.0 });
+        }
+        let background = self.recording.settings.background().to_array();
+        check_color(layers.color, background.map(exactly))
+    }
+
+    /// How far the normal is from the exact one, of how far it may be.
+    fn check_hit(
+        &self,
+        layers: &Layers,
+        entered: &EnteredRay,
+        line: &Line,
+        t: f32,
+        id: u32,
+    ) -> Result<f64, ViolationKind> {
+        if layers.id != id {
+            return Err(ViolationKind::Id { found: layers.id, traced: id });
+        }
+        let depth = legal_depth(entered.distance, t);
+        if !depth.contains(layers.depth.into()) {
+            return Err(ViolationKind::Depth { found: layers.depth, legal: depth });
+        }
+        let scene = self.checker.scene;
+        let normals = LegalNormals::new(line, scene.spheres()[id as usize], entered.slack);
+        let normal = DVec3::from(layers.normal.map(f64::from));
+        let fraction = normals.fraction(normal);
+        let is_unit = (normal.length() - 1.0).abs() <= UNIT_ERROR;
+        if !(fraction <= 1.0 && is_unit) {
+            let (exact, error) = normals.walls().next().unwrap_or_default();
+            let (found, exact) = (layers.normal, exact.to_array());
+            return Err(ViolationKind::Normal { found, exact, error });
+        }
+        let color = scene.color(id).to_array();
+        let shading = self.recording.settings.shading();
+        check_color(layers.color, legal_color(shading, color, normal, entered.direction))?;
+        Ok(fraction)
+    }
+}
+
+fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), ViolationKind> {
+    for axis in 0..3 {
+        let (found, legal) = (ray.direction[axis], entered.direction[axis]);
+        if !legal.contains(found.into()) {
+            return Err(ViolationKind::Direction { axis, found, legal });
+        }
+    }
+    for axis in 0..3 {
+        let (found, legal) = (ray.origin[axis], entered.origin[axis]);
+        if !legal.contains(found.into()) {
+            return Err(ViolationKind::Origin { axis, found, legal });
+        }
+    }
+    let (found, legal) = (ray.distance, entered.distance);
+    if !legal.contains(found.into()) {
+        return Err(ViolationKind::Distance { found, legal });
+    }
+    Ok(())
+}
+
+fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), ViolationKind> {
+    match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
+        None => Ok(()),
+        Some(channel) => {
+            let (found, legal) = (found[channel], legal[channel]);
+            Err(ViolationKind::Color { channel, found, legal })
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What a device was given, and what it made of it.
+
+use crate::camera::{CameraKind, CameraVectors};
+use crate::film::Film;
+use crate::image::Image;
+use crate::settings::Settings;
+
+/// The picture of a scene as a device rendered it, the rays and hits that it got there by, and the numbers
+/// that it was given. Beside the scene, this is all that the checker needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// The camera that was asked for.
+    pub camera: RequestedCamera,
+    /// What was made of it for the device.
+    pub uploaded: UploadedView,
+    /// The picture's size.
+    pub film: Film,
+    /// How hits become colours.
+    pub settings: Settings,
+    /// Of every pixel, as in [`Image`].
+    pub pixels: Vec<TracedPixel>,
+    /// All layers.
+    pub image: Image,
+}
+
+/// A camera, in f64 and in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RequestedCamera {
+    /// Which one.
+    pub kind: CameraKind,
+    /// Its vectors.
+    pub vectors: CameraVectors,
+}
+
+/// The numbers of a view that kernels compute with, in the scene's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UploadedView {
+    /// The camera, moved by `advance` times `forward`.
+    pub origin: [f32; 3],
+    /// See `origin`.
+    pub advance: f32,
+    /// See [`CameraVectors::right`].
+    pub right: [f32; 3],
+    /// See [`CameraVectors::up`].
+    pub up: [f32; 3],
+    /// See [`CameraVectors::forward`].
+    pub forward: [f32; 3],
+    /// The corner of the box that rays are moved to, with the smallest coordinates.
+    pub scene_min: [f32; 3],
+    /// The opposite corner.
+    pub scene_max: [f32; 3],
+}
+
+/// The ray that a device traced for a pixel, and its answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TracedPixel {
+    /// The ray; `None` where the device was told that no ray can meet the scene's box.
+    pub ray: Option<TracedRay>,
+    /// Distance along the ray to the nearest sphere, if it hit one.
+    pub t: f32,
+    /// Index of that sphere in input order; [`NO_ID`](crate::image::NO_ID) for a miss.
+    pub id: u32,
+}
+
+/// A ray that a device traced, in the scene's frame, from where it enters the scene's box.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TracedRay {
+    /// Where it starts.
+    pub origin: [f32; 3],
+    /// Of unit length, up to rounding.
+    pub direction: [f32; 3],
+    /// How far the origin is from the camera.
+    pub distance: f32,
+}

@@ -1,0 +1,100 @@
+//! From a hit to a pixel's layers: what `shaders/shade.wgsl` may write. It makes the ray and the sphere test
+//! anew, so that both may differ from those of the trace by a little.
+
+use glam::DVec3;
+
+use super::line::Line;
+use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use super::sphere::{Slack, SphereTest};
+use crate::settings::Shading;
+
+/// How far a normal's length may be from one: the dot product under the root, the root, the quotient.
+pub(super) const UNIT_ERROR: f64 = gamma(3) + SQRT + DIVIDE + 2.0 * U;
+
+/// The unit normals that a device may write: all within a distance of one of these.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LegalNormals {
+    walls: [Option<(DVec3, f64)>; 2],
+}
+
+impl LegalNormals {
+    /// Of a sphere and a ray, or one that is nearly the same.
+    pub(super) fn new(line: &Line, sphere: [f32; 4], slack: Slack) -> Self {
+        let Some(test) = SphereTest::new(line, sphere, slack) else {
+            return Self::default();
+        };
+        let wall = |from_foot: f64| {
+            let exact = test.exact_half();
+            let half_error = (test.half.high - exact).max(exact - test.half.low);
+            let outward = from_foot * line.direction - test.foot;
+            let length = outward.length();
+            let error = half_error
+                + test.foot_error
+                + test.half.high * slack.direction
+                + gamma(2) * (test.half.high + length)
+                + 4.0 * FLUSH;
+            // Dunkl and Williams, "A simple norm inequality" (1964): 2 |x − y| / (|x| + |y|), with |y| no less
+            // than |x| − |x − y|.
+            let turned = 2.0 * error / (2.0 * length - error).max(error);
+            let normal = if length > 0.0 { outward / length } else { DVec3::ZERO };
+            (normal, (PAD * turned + 2.0 * UNIT_ERROR).min(2.0 + UNIT_ERROR))
+        };
+        Self {
+            walls: [
+                test.may_start_outside().then(|| wall(-test.exact_half())),
+                test.may_start_inside().then(|| wall(test.exact_half())),
+            ],
+        }
+    }
+
+    /// How far a normal is from the nearest that is exact, of how far it may be; above 1 it is not legal.
+    pub(super) fn fraction(&self, normal: DVec3) -> f64 {
+        let fractions =
+            self.walls.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
+        // The minimum of two numbers ignores one that is none.
+        fractions.reduce(|a, b| if a < b { a } else { b }).unwrap_or(f64::INFINITY)
+    }
+
+    /// The exact ones, and by how much each may be missed.
+    pub(super) fn walls(&self) -> impl Iterator<Item = (DVec3, f64)> {
+        self.walls.into_iter().flatten()
+    }
+}
+
+/// The depths that may be written for a hit at the distance `t` of a ray.
+pub(super) fn legal_depth(distance: Interval, t: f32) -> Interval {
+    let t = f64::from(t);
+    let rounding = PAD * gamma(2) * (distance.low.abs().max(distance.high.abs()) + t) + FLUSH;
+    Interval { low: distance.low + t - rounding, high: distance.high + t + rounding }
+}
+
+/// The colours that may be written for a normal that was written.
+pub(super) fn legal_color(
+    shading: Shading,
+    color: [f32; 3],
+    normal: DVec3,
+    direction: [Interval; 3],
+) -> [Interval; 3] {
+    let Shading::Headlight = shading else {
+        return color.map(exactly);
+    };
+    let middle = DVec3::from(direction.map(|axis| 0.5 * (axis.low + axis.high)));
+    let half = DVec3::from(direction.map(|axis| 0.5 * (axis.high - axis.low)));
+    let terms = normal.abs().dot(middle.abs() + half);
+    let cosine = normal.dot(middle).abs();
+    let error = PAD * (normal.abs().dot(half) + gamma(3) * terms) + 4.0 * FLUSH;
+    color.map(|c| {
+        let c = f64::from(c);
+        Interval {
+            low: c * (cosine - error).max(0.0) * (1.0 - U) / PAD - FLUSH,
+            high: c * (cosine + error) * (1.0 + U) * PAD + FLUSH,
+        }
+    })
+}
+
+/// A number that is handed through; or zero, if it is below the normal ones.
+pub(super) fn exactly(value: f32) -> Interval {
+    let value = f64::from(value);
+    let low = if value.abs() < FLUSH { value.min(0.0) } else { value };
+    Interval { low, high: if value.abs() < FLUSH { value.max(0.0) } else { value } }
+}

@@ -1,0 +1,114 @@
+//! Whether the numbers that a device was given are those of the camera and the scene that were asked for.
+
+use glam::{DVec3, Vec3};
+
+use super::candidates::Candidates;
+use super::recording::Recording;
+use super::rounding::U;
+use crate::scene::Scene;
+
+/// Spheres must lie inside the box that rays are moved to by at least this, of the box's diagonal: twice what
+/// the roundings of a ray's entry can come to.
+const LEAST_MARGIN: f64 = 16.0 * U;
+
+/// A number that the device was given is not what was asked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UploadError {
+    /// A vector of the camera.
+    #[error("the camera's vector {name} is {found:?} on the device; it should be {expected:?}")]
+    Vector {
+        /// Which vector.
+        name: &'static str,
+        /// What the device was given.
+        found: [f32; 3],
+        /// What it should have been given.
+        expected: [f32; 3],
+    },
+    /// The camera was moved past a part of the scene.
+    #[error(
+        "rays start {advance} times the forward vector into the picture; the scene's box is {nearest:?} times away"
+    )]
+    Advance {
+        /// What the device was given.
+        advance: f32,
+        /// The most that it may be given.
+        nearest: f64,
+    },
+    /// The box that rays are moved to does not hold the spheres.
+    #[error(
+        "the scene's box on the device, {found:?}, does not hold the spheres' own, {spheres:?}"
+    )]
+    Box {
+        /// Both corners, as the device was given them.
+        found: [[f32; 3]; 2],
+        /// Both corners of the spheres' box.
+        spheres: [[f32; 3]; 2],
+    },
+    /// The recording is of another size than its film.
+    #[error("there are {found} pixels; the film has {expected}")]
+    Size {
+        /// How many the recording has.
+        found: u64,
+        /// How many the film has.
+        expected: u64,
+    },
+}
+
+/// Compares them, in f64.
+pub(super) fn check(
+    scene: &Scene,
+    candidates: &Candidates,
+    recording: &Recording,
+) -> Result<(), UploadError> {
+    let (view, vectors) = (&recording.uploaded, &recording.camera.vectors);
+    let advance = f64::from(view.advance);
+    let origin = vectors.origin - scene.origin();
+    let moved = origin + advance * vectors.forward;
+    for (name, found, asked) in [
+        ("right", view.right, vectors.right),
+        ("up", view.up, vectors.up),
+        ("forward", view.forward, vectors.forward),
+        ("origin", view.origin, moved),
+    ] {
+        let expected = asked.as_vec3();
+        // Of the origin, what f64 itself may round where large numbers cancel.
+        let slack = f64::EPSILON * 4.0 * (origin.abs() + (advance * vectors.forward).abs());
+        let off = (Vec3::from(found) - expected).as_dvec3().abs();
+        let allowed = if name == "origin" { slack + U * asked.abs() } else { DVec3::ZERO };
+        if !off.cmple(allowed).all() {
+            return Err(UploadError::Vector { name, found, expected: expected.to_array() });
+        }
+    }
+    let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
+    let (low, high) = (wide(view.scene_min), wide(view.scene_max));
+    let nearest = (0..8)
+        .map(|i| {
+            let side =
+                |bit: u32, axis: usize| if i >> bit & 1 == 0 { low[axis] } else { high[axis] };
+            let corner = DVec3::new(side(0, 0), side(1, 1), side(2, 2));
+            (corner - origin).dot(vectors.forward) / vectors.forward.length_squared()
+        })
+        .fold(f64::INFINITY, f64::min);
+    if !(advance >= 0.0 && advance <= nearest.max(0.0) * (1.0 + U)) {
+        return Err(UploadError::Advance { advance: view.advance, nearest });
+    }
+    if !scene.is_empty() {
+        let (spheres_low, spheres_high) = candidates.bounds();
+        let margin = LEAST_MARGIN * (high - low).length();
+        let holds = (low + margin).cmple(spheres_low.as_dvec3()).all()
+            && (high - margin).cmpge(spheres_high.as_dvec3()).all();
+        if !holds {
+            return Err(UploadError::Box {
+                found: [view.scene_min, view.scene_max],
+                spheres: [spheres_low.to_array(), spheres_high.to_array()],
+            });
+        }
+    }
+    let expected = recording.film.pixel_count();
+    let found = recording.pixels.len() as u64;
+    if found != expected || recording.image.color().len() as u64 != expected {
+        return Err(UploadError::Size { found, expected });
+    }
+    Ok(())
+}
