@@ -86,7 +86,8 @@ impl Headless {
             reported.report(GpuError::DeviceLost { message });
         });
         let timeout = options.timeout;
-        Ok(Self { info, device, queue, timeout, faults, renderers: Mutex::default() })
+        let renderers = Mutex::new(Renderers::new(options.edits.clone()));
+        Ok(Self { info, device, queue, timeout, faults, renderers })
     }
 
     /// Name, driver and kind of the adapter in use.

@@ -39,4 +39,5 @@ pub use options::{HeadlessOptions, LimitChoice, Progress, Watch};
 pub use plan::{HostPeak, RenderPlan};
 pub use renderer::{ColorTarget, Query, Renderer, RendererOptions};
 pub use scene_buffers::SceneBuffers;
+pub use shaders::ShaderEdit;
 pub use timer::TraceTime;

@@ -6,7 +6,7 @@ use super::error::{GpuError, scoped};
 use super::frame::{Frame, Part};
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
-use super::shaders::{self, Kernel, Turn};
+use super::shaders::{self, Kernel, ShaderEdit, Turn};
 use super::tiles::Groups;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
@@ -61,6 +61,8 @@ pub struct RendererOptions {
     pub query: Query,
     /// Whether frames keep the ray of every pixel, 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
+    /// Changes of shaders; none, but in experiments and tests.
+    pub edits: Vec<ShaderEdit>,
 }
 
 impl Default for RendererOptions {
@@ -74,6 +76,7 @@ impl Default for RendererOptions {
             several_bricks: true,
             query: Query::Nearest,
             keeps_rays: false,
+            edits: Vec::new(),
         }
     }
 }
@@ -117,7 +120,8 @@ impl Renderer {
         let (shade, trace) = (Vec::new(), Vec::new());
         let mut renderer = Self { layouts, color, data_layers, keeps_rays, shade, trace };
         for &camera in &options.cameras {
-            let kernel = shaders::shade_kernel(camera, color, data_layers);
+            let kernel =
+                shaders::shade_kernel(camera, color, data_layers).edited(&options.edits)?;
             let Layouts { frame, surface, targets, .. } = &renderer.layouts;
             let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
             renderer.shade.push((camera, shade));
@@ -130,7 +134,7 @@ impl Renderer {
                         }
                         Query::Any => shaders::occluded_kernel(camera, *structure, turn),
                     };
-                    pipeline(device, &kernel, &groups)
+                    pipeline(device, &kernel.edited(&options.edits)?, &groups)
                 };
                 let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
                 let pipelines = TracePipelines { first: build(Turn::First)?, later };

@@ -10,12 +10,14 @@ mod support;
 mod agreement;
 mod device;
 mod embedding;
+mod faults;
 mod pictures;
 mod plan;
 mod program;
 mod scenes;
 mod structures;
 mod verify;
+mod verify_views;
 
 use std::sync::LazyLock;
 
