@@ -450,7 +450,7 @@ const GRIDS: &[Row] = &[
         GRID,
         "grid.wgsl",
         "planes <= vec3f(t_leave)",
-        "planes <= vec3f(t_leave + 0.6)",
+        "planes <= vec3f(t_leave + 2.0)",
     ),
     (
         "first_of_a_list_dropped",
