@@ -15,7 +15,7 @@ fn unit(random: &mut Rng) -> DVec3 {
     loop {
         let v = DVec3::from([0; 3].map(|_| random.f64() * 2.0 - 1.0));
         if (0.01..1.0).contains(&v.length_squared()) {
-            return v.normalize();
+            return v.normalize_or(DVec3::X);
         }
     }
 }

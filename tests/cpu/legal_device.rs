@@ -1,6 +1,11 @@
 //! A device that does whatever WGSL leaves it free to do, at random: for tests that it is never accused.
 
 use fastrand::Rng;
+use pinhole::camera::CameraKind;
+use pinhole::film::YAxis;
+use pinhole::image::{NO_ID, Pixel};
+use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
+use pinhole::{Film, Image, Scene};
 
 /// How it rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,5 +136,137 @@ impl LegalDevice {
             self.divide(c, divisor)
         };
         if discriminant >= 0.0 && t > 0.0 { t } else { NO_HIT }
+    }
+}
+
+/// The kernels of a picture, one after the other.
+impl LegalDevice {
+    fn vector(&mut self, mut component: impl FnMut(&mut Self, usize) -> f32) -> [f32; 3] {
+        [0, 1, 2].map(|k| component(self, k))
+    }
+
+    /// `relative_location` of shaders/film.wgsl.
+    fn location(&mut self, film: &Film, pixel: [u32; 2]) -> [f32; 2] {
+        let sign = if film.y_axis() == YAxis::Up { -1.0 } else { 1.0 };
+        let along = |this: &mut Self, i: u32, side: u32| {
+            let doubled = 2 * i64::from(i) + 1 - i64::from(side);
+            this.divide(doubled as f32, side as f32)
+        };
+        let x = along(self, pixel[0], film.width());
+        [x, sign * along(self, pixel[1], film.height())]
+    }
+
+    /// `camera_ray` of shaders/camera_*.wgsl: origin, direction, distance.
+    fn camera_ray(
+        &mut self,
+        kind: CameraKind,
+        view: &UploadedView,
+        [x, y]: [f32; 2],
+    ) -> ([f32; 3], [f32; 3], f32) {
+        let (right, up, forward) = (view.right, view.up, view.forward);
+        match kind {
+            CameraKind::Orthographic => {
+                let origin = self.vector(|this, k| {
+                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])])
+                });
+                (origin, forward, view.advance)
+            }
+            _ => {
+                let aside = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k])]));
+                let toward = self.vector(|this, k| {
+                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])])
+                });
+                let squared = self.dot(&mut toward.map(|x| (x, x)));
+                let length = self.sqrt(squared);
+                let inverse = self.divide(1.0, length);
+                let direction = self.vector(|this, k| this.mul(toward[k], inverse));
+                let origin =
+                    self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
+                (origin, direction, self.mul(view.advance, length))
+            }
+        }
+    }
+
+    /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
+    fn ray(
+        &mut self,
+        kind: CameraKind,
+        view: &UploadedView,
+        film: &Film,
+        pixel: [u32; 2],
+    ) -> (TracedRay, bool) {
+        let location = self.location(film, pixel);
+        let (origin, direction, distance) = self.camera_ray(kind, view, location);
+        let (mut near, mut far) = (0.0_f32, f32::MAX);
+        for k in 0..3 {
+            let size = direction[k].abs().max(2_f32.powi(-40));
+            let inverse = self.divide(1.0, if direction[k] >= 0.0 { size } else { -size });
+            let mut plane = |wall: f32| {
+                let away = self.add(wall, -origin[k]);
+                self.mul(away, inverse)
+            };
+            let (a, b) = (plane(view.scene_min[k]), plane(view.scene_max[k]));
+            (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
+        }
+        let origin = self.vector(|this, k| this.mul_add(near, direction[k], origin[k]));
+        let distance = self.add(distance, near);
+        (TracedRay { origin, direction, distance }, near <= far)
+    }
+
+    /// `sphere_normal` of shaders/sphere.wgsl.
+    fn normal(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> [f32; 3] {
+        let (center, d) = ([x, y, z], ray.direction);
+        let l = self.vector(|this, k| this.add(center[k], -ray.origin[k]));
+        let b = self.dot(&mut [0, 1, 2].map(|k| (l[k], d[k])));
+        let foot = self.vector(|this, k| this.mul_add(-b, d[k], l[k]));
+        let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
+        let [fx, fy, fz] = squares(foot, -1.0);
+        let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
+        let [lx, ly, lz] = squares(l, 1.0);
+        let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
+        let half = self.sqrt(discriminant.max(0.0));
+        let from_foot = if c > 0.0 { -half } else { half };
+        let outward = self.vector(|this, k| this.mul_add(from_foot, d[k], -foot[k]));
+        let squared = self.dot(&mut outward.map(|x| (x, x)));
+        let length = self.sqrt(squared);
+        self.vector(|this, k| this.divide(outward[k], length))
+    }
+
+    /// A picture of headlight-lit spheres. `made` is a recording of the same view: of it only what the device is
+    /// given is used.
+    pub(crate) fn record(&mut self, scene: &Scene, made: &Recording) -> Recording {
+        let Recording { camera, uploaded, film, settings, .. } = made;
+        let mut layers = Vec::new();
+        let mut pixels = Vec::new();
+        for j in 0..film.height() {
+            for i in 0..film.width() {
+                let (ray, is_inside) = self.ray(camera.kind, uploaded, film, [i, j]);
+                let (mut t, mut id) = (NO_HIT, NO_ID);
+                for (sphere, place) in scene.spheres().iter().zip(0..) {
+                    let is_first = !scene.spheres()[..place as usize].contains(sphere);
+                    if is_inside && is_first {
+                        let here = self.intersect((ray.origin, ray.direction), *sphere);
+                        if here < t {
+                            (t, id) = (here, place);
+                        }
+                    }
+                }
+                pixels.push(TracedPixel { ray: Some(ray), t, id });
+                layers.push(if id == NO_ID {
+                    let color = settings.background().to_array();
+                    Pixel { color, depth: f32::INFINITY, normal: [0.0; 3], id }
+                } else {
+                    // Another kernel makes the ray anew.
+                    let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
+                    let normal = self.normal(&again, scene.spheres()[id as usize]);
+                    let d = again.direction;
+                    let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
+                    let color = scene.color(id).to_array().map(|c| self.mul(c, cosine));
+                    Pixel { color, depth: self.add(again.distance, t), normal, id }
+                });
+            }
+        }
+        let image = Image::from_pixels(film.width(), film.height(), &layers).unwrap();
+        Recording { pixels, image, ..made.clone() }
     }
 }

@@ -29,4 +29,5 @@ mod scene;
 mod scene_file;
 mod soundness;
 mod structures;
+mod verify;
 mod xyz;
