@@ -6,6 +6,7 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use super::self_test::records::SelfTest;
 use crate::accel::{ListLayout, Structure};
 
 /// The layouts of all groups that the kernels use.
@@ -28,14 +29,7 @@ impl Layouts {
         data_layers: bool,
         structures: &[Structure],
     ) -> Self {
-        let layout = |label, kinds: &[BindingType]| {
-            let entries: Vec<_> =
-                (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &entries,
-            })
-        };
+        let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
         let mut targets = vec![target(color.texture_format())];
         if data_layers {
             targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
@@ -73,6 +67,20 @@ impl Layouts {
             targets: layout("pinhole targets", &targets),
         }
     }
+}
+
+/// Group 0 of a kernel of the self-test: what all share, an input and an answer for each invocation.
+pub(super) fn self_test<Input, Answer>(device: &Device) -> BindGroupLayout {
+    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
+    layout(device, "pinhole self-test", &kinds)
+}
+
+fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
+    let entries: Vec<_> = (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &entries,
+    })
 }
 
 /// What a structure consists of beside its spheres, from binding 3 on.

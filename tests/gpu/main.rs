@@ -14,6 +14,7 @@ mod pictures;
 mod plan;
 mod program;
 mod scenes;
+mod self_test;
 mod structures;
 
 use std::sync::LazyLock;
@@ -57,6 +58,7 @@ fn main() {
         program::trials(),
         structures::trials(),
         plan::trials(),
+        self_test::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();
