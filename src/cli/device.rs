@@ -131,6 +131,12 @@ impl WantedAdapter {
         Self { name: args.adapter.clone(), limits: args.limits }
     }
 
+    /// With all its limits; without a name, the best.
+    #[cfg(feature = "gpu")]
+    pub(super) fn named(name: Option<String>) -> Self {
+        Self { name, limits: None }
+    }
+
     /// Opens it. The error within is that there is no adapter, which some can do without.
     #[cfg(feature = "gpu")]
     pub(super) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
