@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::interrupt;
+use super::{interrupt, self_test};
 use crate::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use crate::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -77,18 +77,21 @@ pub(super) enum Opened {
         headless: Box<Headless>,
         /// What finds spheres.
         choice: AccelChoice,
+        /// What is wrong with how it computes.
+        doubt: Option<String>,
     },
 }
 
 impl Device {
-    /// Opens it.
+    /// Opens it, and sees whether it computes as it should.
     pub(super) fn open(&self) -> Result<Opened, Failure> {
         match self {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
                 Ok(headless) => {
-                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice })
+                    let doubt = interrupt::on_device(|| self_test::doubt(&headless))?;
+                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice, doubt })
                 }
                 Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),

@@ -1,4 +1,4 @@
-//! The self-test of an adapter: for `pinhole info`.
+//! The self-test of an adapter: for `pinhole info`, and the quick part before a render.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,9 @@ use super::adapter::AdapterReport;
 use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
 use super::{interrupt, progress};
-use crate::gpu::{PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
+use crate::gpu::{
+    GpuError, Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty,
+};
 
 /// What was found of an adapter.
 #[derive(Serialize)]
@@ -87,6 +89,20 @@ fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
     Some(format!("{adapter} fails the self-test ({failure})"))
 }
 
+/// Tests the little that takes no time; gives the warning for a device whose pictures may be wrong.
+pub(super) fn doubt(headless: &Headless) -> Option<String> {
+    warning(&headless.adapter_info().name, headless.self_test(SelfTestExtent::Quick))
+}
+
+fn warning(adapter: &str, tested: Result<SelfTestReport, GpuError>) -> Option<String> {
+    let failure = match tested {
+        Ok(report) => failure(adapter, &report)?,
+        // The render may succeed all the same, or says it again.
+        Err(error) => format!("{adapter} cannot do the self-test ({error})"),
+    };
+    Some(format!("warning: {failure}; check its pictures with `pinhole verify`"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,5 +144,27 @@ mod tests {
         let passed = tested(None);
         assert!(passed.readable().contains("\n  ok      fence: the words\n"));
         assert!(passed.verdict().is_ok());
+    }
+
+    #[test]
+    fn a_warning_names_adapter_and_property() {
+        let report = |outcome| {
+            let words = "the words".to_owned();
+            SelfTestReport::new(vec![TestedProperty {
+                name: "fence",
+                outcome,
+                words,
+                figures: vec![],
+            }])
+        };
+        for good in [PropertyOutcome::Passed, PropertyOutcome::Noted] {
+            assert_eq!(warning("some", Ok(report(good))), None);
+        }
+        assert_eq!(
+            warning("some", Ok(report(PropertyOutcome::Failed))).unwrap(),
+            "warning: some fails the self-test (fence: the words); check its pictures with `pinhole verify`"
+        );
+        let lost = GpuError::DeviceLost { message: "gone".to_owned() };
+        assert!(warning("some", Err(lost)).unwrap().contains("cannot do the self-test"));
     }
 }
