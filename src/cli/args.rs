@@ -13,7 +13,8 @@ use crate::accel::AccelChoice;
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done; 1 the job failed, or would not fit; 2 wrong usage; 130 stopped by a signal."
+    after_help = "Exit codes: 0 done; 1 the job failed, or would not fit; 2 wrong usage; 3 a check failed; \
+    130 stopped by a signal."
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -235,7 +236,26 @@ pub(super) enum Backend {
 }
 
 #[derive(Debug, Args)]
+#[cfg_attr(
+    feature = "gpu",
+    command(
+        after_help = "The self-test has the adapter compute, and judges whether it keeps what bounds of errors \
+    count on. Exit codes: 0 done; 1 there is no adapter, or it fails to compute; 2 wrong usage; 3 it computes, \
+    but a property fails.\n\n\
+    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
+    `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
+    outcome (ok, note, FAILED), words, figures. Keys may be added, not changed."
+    )
+)]
 pub(super) struct InfoArgs {
+    /// Test whether an adapter computes as bounds of errors assume
+    #[cfg(feature = "gpu")]
+    #[arg(long)]
+    pub(super) self_test: bool,
+    /// The adapter to test, whose name contains this text [default: the one that `render` would use]
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME")]
+    pub(super) adapter: Option<String>,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

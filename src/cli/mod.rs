@@ -32,6 +32,8 @@ mod plan;
 mod process;
 mod progress;
 mod render;
+#[cfg(feature = "gpu")]
+mod self_test;
 mod speak;
 #[cfg(feature = "gpu")]
 mod table;
@@ -40,7 +42,8 @@ mod threads;
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
 
-/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 130 stopped.
+/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed,
+/// 130 stopped.
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {

@@ -229,7 +229,8 @@ impl Renderer {
     }
 }
 
-fn pipeline(
+/// A pipeline of a kernel, with its groups in their order.
+pub(super) fn pipeline(
     device: &Device,
     kernel: &Kernel,
     groups: &[&wgpu::BindGroupLayout],
@@ -280,8 +281,8 @@ fn shader_module(
     // SAFETY: what a loop without wgpu's counter must not do is run for ever. Loops over a tree's or a grid's
     // levels and cells ask `spend` in every iteration and leave when it says so. The others end by data: a
     // loop over all spheres at a number from a uniform, a loop over a list or a leaf at a mark in buffers that
-    // only `SceneBuffers` writes, from structures whose builders end every list; and reads beyond a buffer
-    // are bounded all the same.
+    // only `SceneBuffers` writes, from structures whose builders end every list, and the loops of the self-test
+    // at numbers from a uniform; and reads beyond a buffer are bounded all the same.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 

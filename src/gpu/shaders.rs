@@ -51,6 +51,16 @@ pub(super) enum Turn {
     Later,
 }
 
+/// What a kernel of the self-test tries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Probe {
+    /// Operations that may round.
+    Arithmetic,
+    /// Operations that may not.
+    Exact,
+    Loops,
+}
+
 /// Finds the nearest sphere of every ray; the rays may be kept.
 pub(super) fn trace_kernel(
     camera: CameraKind,
@@ -121,6 +131,16 @@ pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: 
         if data_layers { part!("layers_all.wgsl") } else { part!("layers_none.wgsl") },
     ]);
     Kernel { entry_point: "shade", parts }
+}
+
+/// Does what the self-test judges.
+pub(super) fn self_test_kernel(probe: Probe) -> Kernel {
+    let (entry_point, part) = match probe {
+        Probe::Arithmetic => ("arithmetic", part!("self_test_arithmetic.wgsl")),
+        Probe::Exact => ("exact", part!("self_test_exact.wgsl")),
+        Probe::Loops => ("loops", part!("self_test_loops.wgsl")),
+    };
+    Kernel { entry_point, parts: vec![part!("self_test.wgsl"), part!("fence.wgsl"), part] }
 }
 
 fn list_part(layout: ListLayout) -> Part {
@@ -240,7 +260,8 @@ impl Kernel {
 /// Every kernel that can be composed.
 #[cfg(test)]
 pub(super) fn all_kernels() -> Vec<Kernel> {
-    let mut kernels = Vec::new();
+    let mut kernels =
+        [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
     for &camera in CameraKind::ALL {
         for &structure in Structure::ALL {
             for turn in [Turn::First, Turn::Later] {
@@ -286,7 +307,7 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len()) + 3
         );
         for kernel in kernels {
             let module =

@@ -15,6 +15,7 @@ mod pictures;
 mod plan;
 mod program;
 mod scenes;
+mod self_test;
 mod structures;
 mod verify;
 mod verify_views;
@@ -60,6 +61,7 @@ fn main() {
         program::trials(),
         structures::trials(),
         plan::trials(),
+        self_test::trials(),
         verify::trials(),
     ];
     let trials =
