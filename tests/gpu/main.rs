@@ -17,6 +17,7 @@ mod program;
 mod scenes;
 mod self_test;
 mod structures;
+mod twin;
 mod verify;
 mod verify_views;
 
@@ -62,6 +63,7 @@ fn main() {
         structures::trials(),
         plan::trials(),
         self_test::trials(),
+        twin::trials(),
         verify::trials(),
     ];
     let trials =
