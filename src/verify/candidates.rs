@@ -80,7 +80,8 @@ impl Candidates {
             inverse: line.inverse(),
             beside: (BESIDE + 2.0 * line.bend) * longest,
         };
-        let mut nearest = f64::INFINITY;
+        // A box that is not entered is entered at infinity, which is farther.
+        let mut nearest = f64::MAX;
         let mut stack = [Visit::default(); LEVELS];
         let mut top = 0;
         let end = self.items.len();
@@ -91,7 +92,7 @@ impl Candidates {
                 // Nothing to be found there.
             } else if next.level == 0 {
                 for item in &self.items[next.start..next.end] {
-                    nearest = offer(item);
+                    nearest = offer(item).min(f64::MAX);
                 }
             } else {
                 let [near, far] = self.children(&slab, next);
