@@ -13,6 +13,7 @@ use super::error::{GpuError, scoped};
 use super::faults::Faults;
 use super::frame::{Frame, Part, rows_per_band};
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
+use super::quirks;
 use super::readback::ReadableTexture;
 use super::recording::ReadableTrace;
 use super::renderer::{Renderer, RendererOptions};
@@ -112,14 +113,19 @@ impl Headless {
     /// What to build of a scene for this device, and for many pictures.
     #[must_use]
     pub fn plan(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
-        AccelPlan::new(scene.spheres(), choice, binding_limit(&self.device.limits()))
+        let binding = binding_limit(&self.device.limits());
+        quirks::plan(&self.info, scene, choice, |choice| {
+            AccelPlan::new(scene.spheres(), choice, binding)
+        })
     }
 
     /// What to build of a scene for this device, and for one picture.
     #[must_use]
     pub fn plan_once(&self, scene: &Scene, choice: AccelChoice, film: &Film) -> AccelPlan {
         let binding = binding_limit(&self.device.limits());
-        AccelPlan::for_rays(scene.spheres(), choice, binding, film.pixel_count())
+        quirks::plan(&self.info, scene, choice, |choice| {
+            AccelPlan::for_rays(scene.spheres(), choice, binding, film.pixel_count())
+        })
     }
 
     /// Tests whether the device computes as bounds of errors assume.

@@ -20,6 +20,7 @@ mod options;
 mod order;
 mod pace;
 mod plan;
+mod quirks;
 mod readback;
 mod recording;
 mod records;

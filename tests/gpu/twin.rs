@@ -108,5 +108,9 @@ fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> b
         && (traced.id, id) == (nearest.id, nearest.id)
         && traced.t.to_bits() == nearest.t.to_bits()
         && depth.to_bits() == (ray.distance + nearest.t).to_bits()
-        && image.color()[index] == color(settings, view.scene.color(id), normal, &ray)
+        && bits(image.color()[index]) == bits(color(settings, view.scene.color(id), normal, &ray))
+}
+
+fn bits(v: [f32; 3]) -> [u32; 3] {
+    v.map(f32::to_bits)
 }
