@@ -9,6 +9,9 @@ pub(super) const FAILED: u8 = 1;
 /// Exit code of wrong usage.
 pub(super) const USAGE: u8 = 2;
 
+/// Exit code of a check that found something wrong.
+pub(super) const UNPROVEN: u8 = 3;
+
 /// Exit code of a job that a signal stopped: as shells have it for SIGINT.
 pub(super) const STOPPED: u8 = 130;
 
@@ -22,6 +25,8 @@ pub(super) enum Failure {
     Usage(anyhow::Error),
     /// The job could not be done.
     Job(anyhow::Error),
+    /// The job was done, and what was checked is not as it must be.
+    Unproven(anyhow::Error),
     /// The user stopped it while a device was at work.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "elsewhere the program exits"))]
     Stopped,
@@ -35,7 +40,7 @@ impl Failure {
     /// The error with all its contexts.
     pub(super) fn message(&self) -> String {
         match self {
-            Self::Usage(error) | Self::Job(error) => format!("{error:#}"),
+            Self::Usage(error) | Self::Job(error) | Self::Unproven(error) => format!("{error:#}"),
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
         }
     }
@@ -44,6 +49,7 @@ impl Failure {
         match self {
             Self::Usage(_) => USAGE.into(),
             Self::Job(_) => FAILED.into(),
+            Self::Unproven(_) => UNPROVEN.into(),
             Self::Stopped => STOPPED.into(),
         }
     }
@@ -59,7 +65,9 @@ impl fmt::Display for Failure {
     /// The line that the program ends with.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(_) | Self::Job(_) => write!(f, "error: {}", self.message()),
+            Self::Usage(_) | Self::Job(_) | Self::Unproven(_) => {
+                write!(f, "error: {}", self.message())
+            }
             Self::Stopped => f.write_str(&self.message()),
         }
     }

@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-#[cfg(feature = "gpu")]
 mod adapter;
 mod args;
 #[cfg(feature = "gpu")]
@@ -36,11 +35,19 @@ mod speak;
 #[cfg(feature = "gpu")]
 mod table;
 mod threads;
+mod verify;
+mod verify_output;
+mod verify_page;
+mod verify_pictures;
+mod verify_report;
+#[cfg(feature = "gpu")]
+mod with_scene;
 
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
 
-/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 130 stopped.
+/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed,
+/// 130 stopped.
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -49,6 +56,7 @@ pub fn main() -> ExitCode {
     };
     let result = interrupt::install().and_then(|()| match arguments.command {
         Command::Render(args) => render::run(&args),
+        Command::Verify(args) => verify::run(&args),
         #[cfg(feature = "gpu")]
         Command::Plan(args) => plan::run(&args),
         #[cfg(feature = "gpu")]

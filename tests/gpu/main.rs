@@ -16,6 +16,7 @@ mod program;
 mod scenes;
 mod structures;
 mod verify;
+mod verify_program;
 
 use std::sync::LazyLock;
 
@@ -59,6 +60,7 @@ fn main() {
         structures::trials(),
         plan::trials(),
         verify::trials(),
+        verify_program::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();

@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::container::{Container, contradiction};
 use super::numbers::Flag;
-use super::write::{shading_name, y_axis_name};
 use super::{LIMIT, Provenance, Run, RunFileError, scene_sha256};
 use crate::camera::{CameraKind, CameraVectors};
 use crate::color::LinearRgb;
@@ -53,7 +52,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
     let [background] = file.fixed::<f32, 3, 1>("background")?;
     let settings = Settings::default()
-        .with_shading(named(file, "shading", &[Shading::Flat, Shading::Headlight], shading_name)?)
+        .with_shading(named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?)
         .with_background(color("background", background)?);
     let image = Image::from_layers(
         [film.width(), film.height()],
@@ -79,7 +78,7 @@ fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let film = Film::new(side(width), side(height))
         .map_err(|error| contradiction(format!("the picture: {error}")))?;
-    Ok(film.with_y_axis(named(file, "y_axis", &[YAxis::Up, YAxis::Down], y_axis_name)?))
+    Ok(film.with_y_axis(named(file, "y_axis", &[YAxis::Up, YAxis::Down], YAxis::name)?))
 }
 
 fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {

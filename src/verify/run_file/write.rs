@@ -6,9 +6,7 @@ use std::io::{self, Write};
 use super::container;
 use super::numbers::{Array, Flag};
 use super::{LIMIT, Provenance, scene_sha256};
-use crate::film::YAxis;
 use crate::scene::Scene;
-use crate::settings::Shading;
 use crate::verify::{Recording, TracedPixel};
 
 /// Writes a run file: 69 bytes a pixel and 16 or 20 a sphere, in small pieces.
@@ -39,8 +37,8 @@ pub fn write(
     }
     for (key, text) in [
         ("camera", camera.kind.name()),
-        ("y_axis", y_axis_name(film.y_axis())),
-        ("shading", shading_name(settings.shading())),
+        ("y_axis", film.y_axis().name()),
+        ("shading", settings.shading().name()),
     ] {
         texts.insert(key.to_owned(), text.to_owned());
     }
@@ -84,18 +82,4 @@ pub fn write(
     let is_traced = |pixel: &TracedPixel| [Flag(pixel.ray.is_some().into())];
     arrays.push(Array::new("traced", &shape, pixels, is_traced));
     container::write(texts, &arrays, out)
-}
-
-pub(super) fn y_axis_name(y_axis: YAxis) -> &'static str {
-    match y_axis {
-        YAxis::Up => "up",
-        YAxis::Down => "down",
-    }
-}
-
-pub(super) fn shading_name(shading: Shading) -> &'static str {
-    match shading {
-        Shading::Flat => "flat",
-        Shading::Headlight => "headlight",
-    }
 }
