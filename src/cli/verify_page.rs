@@ -74,11 +74,11 @@ impl Frame {
         /// A frame is at most so many times as long as wide.
         const LONGEST: f64 = 8.0;
         /// In CSS pixels.
-        const HEIGHT: f64 = 640.0;
+        const HEIGHT: f64 = 860.0;
         const LARGEST_PIXEL: f64 = 32.0;
         let film = f64::from(width) / f64::from(height);
         let aspect = film.clamp(1.0 / LONGEST, LONGEST);
-        let least = 128.0 * aspect.max(1.0);
+        let least = (HEIGHT * aspect).min(128.0);
         let most = LARGEST_PIXEL * f64::from(width.max(height)) * aspect.min(1.0);
         let wide = most.min(HEIGHT * aspect).max(least);
         Self {
@@ -271,7 +271,7 @@ mod tests {
         };
         assert_eq!(frame([1, 1]), (128.0, 128.0, false, true));
         assert_eq!(frame([800, 600]), (576.0, 432.0, false, false));
-        assert_eq!(frame([1, 4096]), (80.0, 640.0, true, false));
+        assert_eq!(frame([1, 4096]), (107.5, 860.0, true, false));
         assert_eq!(frame([4096, 1]), (576.0, 72.0, true, false));
     }
 

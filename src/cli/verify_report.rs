@@ -125,7 +125,8 @@ impl Report {
         let adapter = one_line(&self.adapter.adapter.line());
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
-             picture: {width}x{height}, {camera} camera, by the {structure}\n{}\n{}\n",
+             picture: {width}x{height}, {camera} camera\n\
+             structure: {structure}\n{}\n{}\n",
             16 * spheres,
             self.table,
             self.verdict()

@@ -73,7 +73,8 @@ fn a_replay_needs_no_adapter() {
     for line in [
         "adapter: By <i>hand</i> & \\u{1b}[31m (, ), driver:",
         "scene: 0 spheres, 0 bytes, sha256 e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
-        "picture: 3x2, orthographic camera, by the list",
+        "picture: 3x2, orthographic camera",
+        "structure: list",
         "decided                6  100.0000 %",
         "legal: every pixel is as a conforming device may have made it",
     ] {
