@@ -3,6 +3,6 @@
 
 fn camera_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
-    let aside = location.x * camera.right + location.y * camera.up;
+    let aside = fence3(location.x * camera.right + location.y * camera.up);
     return CameraRay(Ray(camera.origin + aside, camera.forward), camera.advance);
 }

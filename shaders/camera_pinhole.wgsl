@@ -3,7 +3,7 @@
 
 fn camera_ray(location: vec2f) -> CameraRay {
     let camera = frame.camera;
-    let aside = location.x * camera.right + location.y * camera.up;
+    let aside = fence3(location.x * camera.right + location.y * camera.up);
     let toward = aside + camera.forward;
     let length = sqrt(dot(toward, toward));
     let ray = Ray(camera.origin + camera.advance * aside, fence3(toward * (1.0 / length)));

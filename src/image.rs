@@ -187,6 +187,20 @@ impl Image {
         Self { width, height, color, depth: Some(depth), normal: Some(normal), id: Some(id) }
     }
 
+    /// An image of all layers, from its pixels, row by row from the top. `None` if they are not as many as the
+    /// sides say.
+    #[must_use]
+    pub fn from_pixels(width: u32, height: u32, pixels: &[Pixel]) -> Option<Self> {
+        (pixels.len() as u64 == u64::from(width) * u64::from(height)).then(|| Self {
+            width,
+            height,
+            color: pixels.iter().map(|pixel| pixel.color).collect(),
+            depth: Some(pixels.iter().map(|pixel| pixel.depth).collect()),
+            normal: Some(pixels.iter().map(|pixel| pixel.normal).collect()),
+            id: Some(pixels.iter().map(|pixel| pixel.id).collect()),
+        })
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {

@@ -304,7 +304,26 @@ pub(super) enum Backend {
 }
 
 #[derive(Debug, Args)]
+#[cfg_attr(
+    feature = "gpu",
+    command(
+        after_help = "The self-test has the adapter compute, and judges whether it keeps what bounds of errors \
+    count on. Exit codes: 0 done; 1 there is no adapter, or it fails to compute; 2 wrong usage; 3 it computes, \
+    but a property fails.\n\n\
+    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
+    `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
+    outcome (ok, note, FAILED), words, figures. Keys may be added, not changed."
+    )
+)]
 pub(super) struct InfoArgs {
+    /// Test whether an adapter computes as bounds of errors assume
+    #[cfg(feature = "gpu")]
+    #[arg(long)]
+    pub(super) self_test: bool,
+    /// The adapter to test, whose name contains this text [default: the one that `render` would use]
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME")]
+    pub(super) adapter: Option<String>,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

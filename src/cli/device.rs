@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::interrupt;
+use super::{interrupt, self_test};
 use crate::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use crate::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -77,18 +77,21 @@ pub(super) enum Opened {
         headless: Box<Headless>,
         /// What finds spheres.
         choice: AccelChoice,
+        /// What is wrong with how it computes.
+        doubt: Option<String>,
     },
 }
 
 impl Device {
-    /// Opens it.
+    /// Opens it, and sees whether it computes as it should.
     pub(super) fn open(&self) -> Result<Opened, Failure> {
         match self {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
                 Ok(headless) => {
-                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice })
+                    let doubt = interrupt::on_device(|| self_test::doubt(&headless))?;
+                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice, doubt })
                 }
                 Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),
@@ -129,6 +132,12 @@ impl Device {
 impl WantedAdapter {
     pub(super) fn new(args: &AdapterArgs) -> Self {
         Self { name: args.adapter.clone(), limits: args.limits }
+    }
+
+    /// With all its limits; without a name, the best.
+    #[cfg(feature = "gpu")]
+    pub(super) fn named(name: Option<String>) -> Self {
+        Self { name, limits: None }
     }
 
     /// Opens it. The error within is that there is no adapter, which some can do without.

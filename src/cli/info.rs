@@ -4,7 +4,11 @@ use anyhow::Context;
 use serde::Serialize;
 
 use super::args::InfoArgs;
+#[cfg(feature = "gpu")]
+use super::device::WantedAdapter;
 use super::failure::Failure;
+#[cfg(feature = "gpu")]
+use super::self_test::SelfTested;
 use super::speak::answer;
 
 /// What is known of this program and the machine.
@@ -16,6 +20,9 @@ struct Info {
     adapters: Vec<AdapterReport>,
     /// Why none is chosen, in the words of `render`.
     problem: Option<String>,
+    #[cfg(feature = "gpu")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    self_test: Option<SelfTested>,
 }
 
 #[derive(Serialize)]
@@ -53,11 +60,36 @@ struct Features {
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let info = info();
-    let text = if args.json {
-        serde_json::to_string_pretty(&info).context("the report")? + "\n"
+    #[cfg(feature = "gpu")]
+    if args.self_test {
+        return run_self_test(args);
+    } else if args.adapter.is_some() {
+        return Err(Failure::usage(
+            "--adapter chooses what to test; add --self-test, or drop it, as all adapters are listed",
+        ));
+    }
+    print(&info(), args.json)
+}
+
+/// Programs get the report beside the listing, people get it alone.
+#[cfg(feature = "gpu")]
+fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
+    let tested = SelfTested::new(&WantedAdapter::named(args.adapter.clone()))?;
+    let verdict = tested.verdict();
+    if args.json {
+        print(&Info { self_test: Some(tested), ..info() }, true)?;
     } else {
-        readable(&info)
+        let text = format!("pinhole {VERSION}\n\n{}", tested.readable());
+        answer(text.as_bytes()).context("standard output: cannot be written")?;
+    }
+    verdict
+}
+
+fn print(info: &Info, json: bool) -> Result<(), Failure> {
+    let text = if json {
+        serde_json::to_string_pretty(info).context("the report")? + "\n"
+    } else {
+        readable(info)
     };
     Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
 }
@@ -80,6 +112,7 @@ fn info() -> Info {
             GpuError::NoAdapter => format!("{error}; `render` uses the CPU reference"),
             refused => format!("`render` refuses: {refused}"),
         }),
+        self_test: None,
     }
 }
 

@@ -31,6 +31,8 @@ mod plan;
 mod process;
 mod progress;
 mod render;
+#[cfg(feature = "gpu")]
+mod self_test;
 mod speak;
 #[cfg(feature = "gpu")]
 mod table;

@@ -68,7 +68,10 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
             on_cpu(input, layers)
         }
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice } => on_gpu(headless, input, layers, *choice),
+        Opened::Device { headless, choice, doubt } => {
+            doubt.iter().for_each(tell);
+            on_gpu(headless, input, layers, *choice)
+        }
     }
 }
 

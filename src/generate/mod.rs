@@ -8,10 +8,11 @@ mod standard;
 mod uniform;
 
 pub use standard::Standard;
+pub(crate) use uniform::Uniform;
 
 use crate::parallel;
 use sphereflake::Sphereflake;
-use uniform::{Uniform, power_of_two};
+use uniform::power_of_two;
 
 /// What the spheres look like. All lie in the unit cube [0, 1]³, up to their radii and, of clusters,
 /// their tails.

@@ -13,23 +13,23 @@ const PLACES: u64 = 32;
 /// constants are those of S. Vigna's splitmix64.c. The seed is mixed once before, so that seeds that are
 /// neighbours have nothing in common.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Uniform {
+pub(crate) struct Uniform {
     seed: u64,
 }
 
 impl Uniform {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self { seed: mix(seed.wrapping_add(STEP)) }
     }
 
     /// 64 random bits; `place` is less than [`PLACES`].
-    fn bits(&self, index: u64, place: u64) -> u64 {
+    pub(crate) fn bits(&self, index: u64, place: u64) -> u64 {
         let n = index.wrapping_mul(PLACES).wrapping_add(place).wrapping_add(1);
         mix(self.seed.wrapping_add(n.wrapping_mul(STEP)))
     }
 
     /// A multiple of 2⁻⁵³ in [0, 1).
-    pub(super) fn number(&self, index: u64, place: u64) -> f64 {
+    pub(crate) fn number(&self, index: u64, place: u64) -> f64 {
         (self.bits(index, place) >> 11) as f64 / (1_u64 << 53) as f64
     }
 

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::shaders::ShaderEdit;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::image::ImageTooLarge;
@@ -129,6 +130,12 @@ pub enum GpuError {
     Device {
         /// wgpu's message; places in shaders are given as file and line.
         message: String,
+    },
+    /// A shader is to be edited where it has no such text.
+    #[error("shaders/{} has no text `{}`, which is to be replaced", edit.file, edit.find)]
+    NoSuchText {
+        /// The edit.
+        edit: ShaderEdit,
     },
     /// The picture does not fit into host memory.
     #[error(transparent)]

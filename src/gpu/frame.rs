@@ -362,9 +362,9 @@ pub(super) fn band_bytes(limits: &wgpu::Limits, size: [u32; 2], keeps_rays: bool
 /// How many iterations of loops an invocation may take.
 ///
 /// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the eight invocations that it
-/// runs together, so that an eighth of that is safe. Elsewhere it is only a bound on what a kernel that is
-/// wrong could do.
-fn iteration_limit(device: &Device) -> u32 {
+/// runs together, so that an eighth of that is safe; the self-test's nested loops try that. Elsewhere it is only
+/// a bound on what a kernel that is wrong could do.
+pub(super) fn iteration_limit(device: &Device) -> u32 {
     match device.adapter_info().device_type {
         wgpu::DeviceType::Cpu => 8_000,
         _ => 1 << 24,

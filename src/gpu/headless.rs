@@ -19,6 +19,7 @@ use super::renderer::{Renderer, RendererOptions};
 use super::renderers::{RendererKey, Renderers};
 use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::seen::traced_pixels;
+use super::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tile_size, tiles};
 use crate::accel::{Accel, AccelChoice, AccelPlan};
@@ -86,7 +87,8 @@ impl Headless {
             reported.report(GpuError::DeviceLost { message });
         });
         let timeout = options.timeout;
-        Ok(Self { info, device, queue, timeout, faults, renderers: Mutex::default() })
+        let renderers = Mutex::new(Renderers::new(options.edits.clone()));
+        Ok(Self { info, device, queue, timeout, faults, renderers })
     }
 
     /// Name, driver and kind of the adapter in use.
@@ -118,6 +120,23 @@ impl Headless {
     pub fn plan_once(&self, scene: &Scene, choice: AccelChoice, film: &Film) -> AccelPlan {
         let binding = binding_limit(&self.device.limits());
         AccelPlan::for_rays(scene.spheres(), choice, binding, film.pixel_count())
+    }
+
+    /// Tests whether the device computes as bounds of errors assume.
+    ///
+    /// # Errors
+    /// If the device fails. That it lacks a property is in the report.
+    pub fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
+        let _alone = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.faults.forget();
+        SelfTestRun::new(&self.device, extent)
+            .and_then(|run| {
+                let mut encoder = self.encoder();
+                run.record(&mut encoder);
+                self.run(encoder, &run.buffers())?;
+                run.judge()
+            })
+            .map_err(|error| self.explained(error))
     }
 
     /// Copies a scene to the device, brick by brick.

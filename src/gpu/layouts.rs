@@ -6,6 +6,7 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use super::records;
 use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, RendererOptions};
+use super::self_test::records::SelfTest;
 use crate::accel::{ListLayout, Structure};
 
 /// The layouts of all groups that the kernels use.
@@ -24,14 +25,7 @@ pub(super) struct Layouts {
 impl Layouts {
     pub(super) fn new(device: &Device, options: &RendererOptions) -> Self {
         let RendererOptions { color, data_layers, keeps_rays, ref structures, .. } = *options;
-        let layout = |label, kinds: &[BindingType]| {
-            let entries: Vec<_> =
-                (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &entries,
-            })
-        };
+        let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
         let mut targets = vec![target(color.texture_format())];
         if data_layers {
             targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
@@ -70,6 +64,20 @@ impl Layouts {
             targets: layout("pinhole targets", &targets),
         }
     }
+}
+
+/// Group 0 of a kernel of the self-test: what all share, an input and an answer for each invocation.
+pub(super) fn self_test<Input, Answer>(device: &Device) -> BindGroupLayout {
+    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
+    layout(device, "pinhole self-test", &kinds)
+}
+
+fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
+    let entries: Vec<_> = (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &entries,
+    })
 }
 
 /// What a structure consists of beside its spheres, from binding 3 on.

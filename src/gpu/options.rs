@@ -6,6 +6,7 @@ use std::time::Duration;
 use wgpu::Limits;
 
 use super::error::GpuError;
+use super::shaders::ShaderEdit;
 use super::tiles::Groups;
 
 /// How a device is opened.
@@ -18,6 +19,8 @@ pub struct HeadlessOptions {
     /// How long one submission may take before it is given up. Submissions adapt to the device and take
     /// about 60 milliseconds.
     pub timeout: Duration,
+    /// Changes of shaders; none, but in experiments and tests.
+    pub edits: Vec<ShaderEdit>,
 }
 
 /// Which limits a device is opened with.
@@ -34,7 +37,7 @@ impl Default for HeadlessOptions {
     /// The best adapter with its own limits; ten minutes.
     fn default() -> Self {
         let timeout = Duration::from_secs(600);
-        Self { adapter: None, limits: LimitChoice::Adapter, timeout }
+        Self { adapter: None, limits: LimitChoice::Adapter, timeout, edits: Vec::new() }
     }
 }
 

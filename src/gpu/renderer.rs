@@ -6,7 +6,7 @@ use super::error::{GpuError, scoped};
 use super::frame::{Frame, Part};
 use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
-use super::shaders::{self, Kernel, Turn};
+use super::shaders::{self, Kernel, ShaderEdit, Turn};
 use super::tiles::Groups;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
@@ -61,6 +61,8 @@ pub struct RendererOptions {
     pub query: Query,
     /// Whether frames keep the ray of every pixel, 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
+    /// Changes of shaders; none, but in experiments and tests.
+    pub edits: Vec<ShaderEdit>,
 }
 
 impl Default for RendererOptions {
@@ -74,6 +76,7 @@ impl Default for RendererOptions {
             several_bricks: true,
             query: Query::Nearest,
             keeps_rays: false,
+            edits: Vec::new(),
         }
     }
 }
@@ -117,7 +120,8 @@ impl Renderer {
         let (shade, trace) = (Vec::new(), Vec::new());
         let mut renderer = Self { layouts, color, data_layers, keeps_rays, shade, trace };
         for &camera in &options.cameras {
-            let kernel = shaders::shade_kernel(camera, color, data_layers);
+            let kernel =
+                shaders::shade_kernel(camera, color, data_layers).edited(&options.edits)?;
             let Layouts { frame, surface, targets, .. } = &renderer.layouts;
             let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
             renderer.shade.push((camera, shade));
@@ -130,7 +134,7 @@ impl Renderer {
                         }
                         Query::Any => shaders::occluded_kernel(camera, *structure, turn),
                     };
-                    pipeline(device, &kernel, &groups)
+                    pipeline(device, &kernel.edited(&options.edits)?, &groups)
                 };
                 let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
                 let pipelines = TracePipelines { first: build(Turn::First)?, later };
@@ -225,7 +229,8 @@ impl Renderer {
     }
 }
 
-fn pipeline(
+/// A pipeline of a kernel, with its groups in their order.
+pub(super) fn pipeline(
     device: &Device,
     kernel: &Kernel,
     groups: &[&wgpu::BindGroupLayout],
@@ -276,8 +281,8 @@ fn shader_module(
     // SAFETY: what a loop without wgpu's counter must not do is run for ever. Loops over a tree's or a grid's
     // levels and cells ask `spend` in every iteration and leave when it says so. The others end by data: a
     // loop over all spheres at a number from a uniform, a loop over a list or a leaf at a mark in buffers that
-    // only `SceneBuffers` writes, from structures whose builders end every list; and reads beyond a buffer
-    // are bounded all the same.
+    // only `SceneBuffers` writes, from structures whose builders end every list, and the loops of the self-test
+    // at numbers from a uniform; and reads beyond a buffer are bounded all the same.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 

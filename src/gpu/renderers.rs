@@ -8,6 +8,7 @@ use wgpu::Device;
 use super::error::GpuError;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
+use super::shaders::ShaderEdit;
 use crate::accel::Structure;
 use crate::camera::{Camera, CameraKind};
 
@@ -37,14 +38,22 @@ impl RendererKey {
 }
 
 /// What has been built so far.
-#[derive(Debug, Default)]
-pub(super) struct Renderers(HashMap<RendererKey, Renderer>);
+#[derive(Debug)]
+pub(super) struct Renderers {
+    built: HashMap<RendererKey, Renderer>,
+    edits: Vec<ShaderEdit>,
+}
 
 impl Renderers {
+    /// None yet; all will be built with these changes of their shaders.
+    pub(super) fn new(edits: Vec<ShaderEdit>) -> Self {
+        Self { built: HashMap::new(), edits }
+    }
+
     /// The renderer that a key stands for.
     pub(super) fn of(&mut self, device: &Device, key: RendererKey) -> Result<&Renderer, GpuError> {
         let RendererKey { camera, structure, several_bricks, query, data_layers, keeps_rays } = key;
-        match self.0.entry(key) {
+        match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
             Entry::Vacant(place) => {
                 let options = RendererOptions {
@@ -55,6 +64,7 @@ impl Renderers {
                     several_bricks,
                     query,
                     keeps_rays,
+                    edits: self.edits.clone(),
                 };
                 Ok(place.insert(Renderer::new(device, &options)?))
             }

@@ -3,22 +3,36 @@
 //! WGSL has no modules and does not care about the order of declarations, so "these parts" is a
 //! complete module system for a folder of this size. This is the only file that knows how it is done.
 
+use std::borrow::Cow;
+
+use super::error::GpuError;
 use super::renderer::ColorTarget;
 use crate::accel::{ListLayout, Structure};
 use crate::camera::{CameraKind, camera_table};
 
 /// One WGSL file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Part {
     file: &'static str,
-    source: &'static str,
+    source: Cow<'static, str>,
+}
+
+/// A change of a shader: for experiments, and for tests that a fault is found.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct ShaderEdit {
+    /// A file of the folder `shaders`.
+    pub file: String,
+    /// What is replaced, wherever it stands in the file.
+    pub find: String,
+    /// What it is replaced by.
+    pub replace: String,
 }
 
 macro_rules! part {
     ($($piece:literal),+) => {
         Part {
             file: concat!($($piece),+),
-            source: include_str!(concat!("../../shaders/", $($piece),+)),
+            source: Cow::Borrowed(include_str!(concat!("../../shaders/", $($piece),+))),
         }
     };
 }
@@ -35,6 +49,16 @@ pub(super) struct Kernel {
 pub(super) enum Turn {
     First,
     Later,
+}
+
+/// What a kernel of the self-test tries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Probe {
+    /// Operations that may round.
+    Arithmetic,
+    /// Operations that may not.
+    Exact,
+    Loops,
 }
 
 /// Finds the nearest sphere of every ray; the rays may be kept.
@@ -109,6 +133,16 @@ pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: 
     Kernel { entry_point: "shade", parts }
 }
 
+/// Does what the self-test judges.
+pub(super) fn self_test_kernel(probe: Probe) -> Kernel {
+    let (entry_point, part) = match probe {
+        Probe::Arithmetic => ("arithmetic", part!("self_test_arithmetic.wgsl")),
+        Probe::Exact => ("exact", part!("self_test_exact.wgsl")),
+        Probe::Loops => ("loops", part!("self_test_loops.wgsl")),
+    };
+    Kernel { entry_point, parts: vec![part!("self_test.wgsl"), part!("fence.wgsl"), part] }
+}
+
 fn list_part(layout: ListLayout) -> Part {
     match layout {
         ListLayout::Copied => part!("list_copied.wgsl"),
@@ -165,13 +199,26 @@ impl Kernel {
     /// The kernel with one more part.
     #[cfg(test)]
     pub(super) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
-        self.parts.push(Part { file, source });
+        self.parts.push(Part { file, source: source.into() });
         self
+    }
+
+    /// The kernel with the changes that concern its parts.
+    pub(super) fn edited(mut self, edits: &[ShaderEdit]) -> Result<Self, GpuError> {
+        for edit in edits {
+            for part in self.parts.iter_mut().filter(|part| part.file == edit.file) {
+                if !part.source.contains(&edit.find) {
+                    return Err(GpuError::NoSuchText { edit: edit.clone() });
+                }
+                part.source = part.source.replace(&edit.find, &edit.replace).into();
+            }
+        }
+        Ok(self)
     }
 
     /// The composed WGSL.
     pub(super) fn source(&self) -> String {
-        self.parts.iter().flat_map(|part| [part.source, "\n"]).collect()
+        self.parts.iter().flat_map(|part| [part.source.as_ref(), "\n"]).collect()
     }
 
     /// Replaces every place in the composed WGSL, in a message of naga's or wgpu's, by a place in a part.
@@ -213,7 +260,8 @@ impl Kernel {
 /// Every kernel that can be composed.
 #[cfg(test)]
 pub(super) fn all_kernels() -> Vec<Kernel> {
-    let mut kernels = Vec::new();
+    let mut kernels =
+        [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
     for &camera in CameraKind::ALL {
         for &structure in Structure::ALL {
             for turn in [Turn::First, Turn::Later] {
@@ -259,7 +307,7 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len()) + 3
         );
         for kernel in kernels {
             let module =
@@ -274,7 +322,7 @@ mod tests {
     #[test]
     fn an_error_names_the_part_and_its_line() {
         let broken =
-            Part { file: "broken.wgsl", source: "// first\n// second\nconst x: f32 = y;\n" };
+            Part { file: "broken.wgsl", source: "// first\n// second\nconst x: f32 = y;\n".into() };
         let parts = vec![part!("ray.wgsl"), broken, part!("film.wgsl")];
         let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
         assert!(message.contains("broken.wgsl:3:"), "{message}");
@@ -284,8 +332,9 @@ mod tests {
     fn every_shader_file_is_used_short_and_listed() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
         let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
+        let kernels = all_kernels();
         let used: BTreeSet<&str> =
-            all_kernels().iter().flat_map(|k| k.parts.iter().map(|p| p.file)).collect();
+            kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.file)).collect();
         let files: BTreeSet<String> = std::fs::read_dir(&folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -80,7 +80,8 @@ impl Candidates {
             inverse: line.inverse(),
             beside: (BESIDE + 2.0 * line.bend) * longest,
         };
-        let mut nearest = f64::INFINITY;
+        // A box that is not entered is entered at infinity, which is farther.
+        let mut nearest = f64::MAX;
         let mut stack = [Visit::default(); LEVELS];
         let mut top = 0;
         let end = self.items.len();
@@ -90,8 +91,9 @@ impl Candidates {
             if next.entry > nearest || next.start == next.end {
                 // Nothing to be found there.
             } else if next.level == 0 {
-                for item in &self.items[next.start..next.end] {
-                    nearest = offer(item);
+                let items = self.items[next.start..next.end].iter();
+                for item in items.filter(|item| slab.may_meet(line, item)) {
+                    nearest = offer(item).min(f64::MAX);
                 }
             } else {
                 let [near, far] = self.children(&slab, next);
@@ -179,6 +181,18 @@ struct Slab {
 }
 
 impl Slab {
+    /// Whether the ray comes near the sphere.
+    fn may_meet(
+        &self,
+        line: &Line,
+        Candidate { sphere: [x, y, z, radius], .. }: &Candidate,
+    ) -> bool {
+        let to_center = DVec3::new((*x).into(), (*y).into(), (*z).into()) - line.origin;
+        let along = to_center.dot(line.direction);
+        let foot = to_center - along * line.direction;
+        foot.length_squared() <= (f64::from(*radius) + self.beside).powi(2)
+    }
+
     /// Where the ray enters the box, made wider by `beside` on all sides; infinity if it does not.
     fn entry(&self, node: &Node) -> f64 {
         let low = (node.low.as_dvec3() - self.beside - self.origin) * self.inverse;

@@ -111,3 +111,84 @@ fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line) -> Option<(Legal
         LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
     roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
 }
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+    use glam::Vec3;
+
+    use super::*;
+
+    /// Every sphere is tried.
+    fn without_search(spheres: &[[f32; 4]], line: &Line) -> LegalHits {
+        let mut legal = LegalHits::default();
+        legal.clear();
+        for (sphere, id) in spheres.iter().zip(0..) {
+            if let Some((hit, may_miss)) = legal_hit(&Candidate { sphere: *sphere, id }, line) {
+                legal.spheres.push(hit);
+                if !may_miss {
+                    legal.miss = false;
+                    legal.limit = legal.limit.min(hit.highest());
+                }
+            }
+        }
+        legal.spheres.retain(|hit| hit.lowest() <= legal.limit);
+        legal.drop_copies();
+        legal
+    }
+
+    fn in_order(mut legal: LegalHits) -> LegalHits {
+        legal.spheres.sort_unstable_by_key(|hit| hit.id);
+        legal
+    }
+
+    fn point(random: &mut Rng) -> Vec3 {
+        Vec3::from([0; 3].map(|_| random.f32() * 2.0 - 1.0))
+    }
+
+    /// Of all sizes, some of them twice.
+    fn spheres(random: &mut Rng, scale: f32, count: usize) -> Vec<[f32; 4]> {
+        let decades = random.f32() * 6.0;
+        let mut spheres: Vec<[f32; 4]> = (0..count)
+            .map(|_| {
+                let [x, y, z] = point(random).to_array();
+                let radius = 10_f32.powf(-decades * random.f32()) * 0.5;
+                [x, y, z, radius].map(|number| number * scale)
+            })
+            .collect();
+        for _ in 0..count / 4 {
+            spheres.push(spheres[random.usize(0..spheres.len())]);
+        }
+        spheres
+    }
+
+    #[test]
+    fn the_search_loses_no_sphere() {
+        let mut random = Rng::with_seed(9);
+        let mut undecided = 0;
+        for round in 0..60 {
+            let scale = 2_f32.powi(random.i32(-50..51));
+            let spheres = spheres(&mut random, scale, 1 << (round % 10));
+            let candidates = Candidates::new(&spheres).unwrap();
+            for _ in 0..300 {
+                // At a silhouette, half of them where a box ends, and along its side.
+                let [x, y, z, r] = spheres[random.usize(0..spheres.len())];
+                let mut outward = point(&mut random).normalize_or(Vec3::X);
+                if random.bool() {
+                    outward = Vec3::AXES[random.usize(0..3)] * f32::from(random.i8(0..2) * 2 - 1);
+                }
+                let off = 1.0 + 10_f32.powf(-3.0 - 5.0 * random.f32()) * (random.f32() - 0.5);
+                let target = Vec3::new(x, y, z) + outward * r * off;
+                let along = outward.cross(point(&mut random)).normalize_or(Vec3::Y);
+                let origin = target - along * 2_f32.powi(random.i32(-3..5)) * scale;
+                let direction = (target - origin).normalize_or(Vec3::Y);
+                let line = Line::new(origin.to_array(), direction.to_array());
+                let mut found = LegalHits::default();
+                found.find(&candidates, &line);
+                assert_eq!(in_order(found.clone()), in_order(without_search(&spheres, &line)));
+                undecided += u32::from(found.count() > 1);
+            }
+        }
+        assert!(undecided > 1000, "{undecided}");
+    }
+}

@@ -10,13 +10,17 @@ mod support;
 mod agreement;
 mod device;
 mod embedding;
+mod faults;
 mod pictures;
 mod plan;
 mod program;
 mod scenes;
+mod self_test;
 mod structures;
+mod twin;
 mod verify;
 mod verify_program;
+mod verify_views;
 
 use std::sync::LazyLock;
 
@@ -59,6 +63,8 @@ fn main() {
         program::trials(),
         structures::trials(),
         plan::trials(),
+        self_test::trials(),
+        twin::trials(),
         verify::trials(),
         verify_program::trials(),
     ];

@@ -15,6 +15,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("program::the_demo_renders_on_the_adapter", demo),
         trial("program::layers_come_from_the_adapter", layers),
         trial("program::info_lists_the_adapter", info),
+        trial("program::self_test_of_the_adapter", self_test),
     ]
 }
 
@@ -63,6 +64,31 @@ fn layers(headless: &'static Headless) {
     let id = read("id.npy");
     let id: Vec<u32> = npyz::NpyFile::new(&id[..]).unwrap().into_vec().unwrap();
     assert!(id == image.id().unwrap(), "id");
+}
+
+fn self_test(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let name = &headless.adapter_info().name;
+    let json = run(folder.path(), &["info", "--self-test", "--json", "--adapter", name]);
+    let info: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert!(!info["adapters"].as_array().unwrap().is_empty());
+    let tested = &info["self_test"];
+    assert_eq!(
+        (&tested["adapter"]["name"], &tested["passed"]),
+        (&name.as_str().into(), &true.into())
+    );
+    let properties = tested["properties"].as_array().unwrap();
+    assert_eq!(properties.len(), 9);
+    let text = String::from_utf8(run(folder.path(), &["info", "--self-test"])).unwrap();
+    assert!(text.contains(name), "{text}");
+    for property in properties {
+        assert_eq!(property["passed"], true);
+        assert!(property["figures"]["tested"].as_f64().unwrap() > 0.0, "{property}");
+        let [outcome, name, words] =
+            ["outcome", "name", "words"].map(|key| property[key].as_str().unwrap());
+        assert!(outcome == "ok" || outcome == "note", "{outcome}");
+        assert!(text.contains(&format!("  {outcome:<6}  {name}: {words}\n")), "{text}");
+    }
 }
 
 fn info(headless: &'static Headless) {

@@ -1,25 +1,194 @@
-//! Every scene is rendered as a conforming device may, and, on a device that rounds to the nearest, as the
-//! kernels' twins on the CPU do, to the bit.
+//! What the checker says of this device, and of faults that are planted in it.
 
-use libtest_mimic::Trial;
+use std::ops::ControlFlow;
+use std::path::Path;
 
-use crate::headless;
-use crate::scenes;
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{Accel, AccelPlan};
+use pinhole::camera::{PinholeCamera, Pose};
+use pinhole::film::YAxis;
+use pinhole::gpu::{Headless, HeadlessOptions, ShaderEdit};
+use pinhole::image::NO_ID;
+use pinhole::verify::{Certificate, Checker, Recording};
+use pinhole::{LinearRgb, Scene, Shading, Sphere};
+
+use crate::faults::{self, Fault, How, LIST};
+use crate::support::View;
+use crate::verify_views as views;
+use crate::{headless, scenes};
 
 pub(crate) fn trials() -> Vec<Trial> {
-    scenes::all()
-        .into_iter()
-        .map(|(name, view)| {
-            Trial::test(format!("verify::{name}"), move || {
-                let camera = view.camera.as_ref();
-                let certificate =
-                    headless()?.verify(&view.scene, camera, &view.film, &view.settings)?;
-                println!("{name}\n{certificate}");
-                if !certificate.is_legal() {
-                    return Err(certificate.to_string().into());
-                }
-                Ok(())
-            })
+    let mut trials = Vec::new();
+    for (name, view) in scenes::all() {
+        trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(&view)));
+    }
+    trials.push(Trial::test("verify::faults::none_without_one", none_without_one));
+    for fault in faults::all() {
+        let name = format!("verify::faults::{}", fault.name);
+        trials.push(Trial::test(name, move || is_found(&fault)));
+    }
+    for (name, spoil) in INPUT_FAULTS {
+        trials.push(Trial::test(format!("verify::faults::input_{name}"), move || {
+            input_fault_is_found(*spoil)
+        }));
+    }
+    trials
+}
+
+fn legal(view: &View) -> Result<(), Failed> {
+    let View { scene, camera, film, settings } = view;
+    let certificate = headless()?.verify(scene, camera.as_ref(), film, settings)?;
+    if certificate.is_legal() { Ok(()) } else { Err(certificate.to_string().into()) }
+}
+
+fn build(scene: &Scene, how: How) -> Accel {
+    let spheres = scene.spheres();
+    AccelPlan::for_rays(spheres, how.choice, how.binding_bytes, how.rays).build(spheres)
+}
+
+fn record(headless: &Headless, view: &View, how: How) -> Result<Recording, Failed> {
+    let View { scene, camera, film, settings } = view;
+    let buffers = headless.upload(scene, &build(scene, how))?;
+    let go_on = |_| ControlFlow::Continue(());
+    Ok(headless.record(&buffers, camera.as_ref(), film, settings, &mut { go_on })?)
+}
+
+fn certify(view: &View, recording: &Recording) -> Certificate {
+    Checker::new(&view.scene).unwrap().certify(recording)
+}
+
+/// What the faults are planted in is legal before.
+fn none_without_one() -> Result<(), Failed> {
+    let mut seen: Vec<(fn() -> View, How)> = Vec::new();
+    for Fault { view, how, name, .. } in faults::all() {
+        if seen.iter().any(|(v, h)| std::ptr::fn_addr_eq(*v, view) && *h == how) {
+            continue;
+        }
+        seen.push((view, how));
+        let view = view();
+        let certificate = certify(&view, &record(headless()?, &view, how)?);
+        if !certificate.is_legal() {
+            return Err(format!("{name}, without the fault: {certificate}").into());
+        }
+    }
+    Ok(())
+}
+
+fn is_found(fault: &Fault) -> Result<(), Failed> {
+    let Fault { file, find, replace, .. } = *fault;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
+    if !std::fs::read_to_string(path)?.contains(find) {
+        return Err(format!("{file} has no `{find}`").into());
+    }
+    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
+    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+    let view = (fault.view)();
+    let certificate = certify(&view, &record(&Headless::open(&options)?, &view, fault.how)?);
+    found(&certificate).map_err(|error| {
+        let structure = build(&view.scene, fault.how).structure().name();
+        format!("in the structure {structure}: {error:?}").into()
+    })
+}
+
+fn found(certificate: &Certificate) -> Result<(), Failed> {
+    if certificate.is_legal() {
+        return Err(format!("the fault was not found:\n{certificate}").into());
+    }
+    Ok(())
+}
+
+/// Spoils what a device is given, or what is said that it was given; a sphere that is seen may be spoilt.
+type Spoil = fn(&mut View, &mut dyn FnMut(&View) -> Recording, usize) -> Recording;
+
+/// The view is what was asked for; the recording is of something else.
+const INPUT_FAULTS: &[(&str, Spoil)] = &[
+    ("radius_off_by_a_thousandth", |view, record, seen| {
+        with_spheres(view, record, |spheres| spheres[seen].radius *= 1.0 + 2_f64.powi(-10))
+    }),
+    ("center_off_by_a_ten_thousandth", |view, record, seen| {
+        with_spheres(view, record, |spheres| spheres[seen].center[1] += 1e-4)
+    }),
+    ("two_spheres_swapped", |view, record, seen| {
+        with_spheres(view, record, |spheres| spheres.swap(seen, seen / 2))
+    }),
+    ("one_sphere_twice_for_another", |view, record, seen| {
+        with_spheres(view, record, |spheres| spheres[seen] = spheres[seen / 2])
+    }),
+    ("one_color_off_by_a_hundred_thousandth", |view, record, seen| {
+        with_spheres(view, record, |spheres| {
+            let [r, g, b] = spheres[seen].color.to_array();
+            spheres[seen].color = LinearRgb::new([r, g * 1.000_01, b]).unwrap();
+        })
+    }),
+    ("another_shading", |view, record, _| {
+        let asked = view.settings;
+        view.settings = asked.with_shading(Shading::Flat);
+        Recording { settings: asked, ..record(view) }
+    }),
+    ("y_the_other_way_round", |view, record, _| {
+        let asked = view.film;
+        view.film = asked.with_y_axis(YAxis::Down);
+        Recording { film: asked, ..record(view) }
+    }),
+    ("field_of_view_off_by_a_millionth", |view, record, _| {
+        let asked = record(view).camera;
+        let pose = Pose::looking_at([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], [0.1, 1.0, 0.2]).unwrap();
+        let fov = f64::to_radians(44.000_044);
+        view.camera = Box::new(PinholeCamera::with_vertical_fov(pose, fov, 1.2).unwrap());
+        Recording { camera: asked, ..record(view) }
+    }),
+    ("eye_moved_past_the_first_spheres", |view, record, _| {
+        let mut recording = record(view);
+        recording.uploaded.advance *= 1.1;
+        recording
+    }),
+    ("box_without_the_last_sphere", |view, record, _| {
+        let mut recording = record(view);
+        recording.uploaded.scene_max[0] -= 0.1;
+        recording
+    }),
+    ("box_smaller_on_the_device", |view, record, _| {
+        let asked = record(view).uploaded;
+        let whole = view.scene.clone();
+        let fewer: Vec<Sphere> = spheres_of(&whole).into_iter().take(10).collect();
+        view.scene = Scene::new(&fewer).unwrap();
+        let recording = record(view);
+        view.scene = whole;
+        Recording { uploaded: asked, ..recording }
+    }),
+];
+
+fn spheres_of(scene: &Scene) -> Vec<Sphere> {
+    (0..)
+        .zip(scene.spheres())
+        .map(|(id, [x, y, z, radius])| {
+            let center = [*x, *y, *z].map(f64::from);
+            Sphere::new(center, f64::from(*radius), scene.color(id))
         })
         .collect()
+}
+
+/// Records other spheres than those of the view.
+fn with_spheres(
+    view: &mut View,
+    record: &mut dyn FnMut(&View) -> Recording,
+    change: impl FnOnce(&mut Vec<Sphere>),
+) -> Recording {
+    let asked = view.scene.clone();
+    let mut spheres = spheres_of(&asked);
+    change(&mut spheres);
+    view.scene = Scene::new(&spheres).unwrap();
+    let recording = record(view);
+    view.scene = asked;
+    recording
+}
+
+fn input_fault_is_found(spoil: Spoil) -> Result<(), Failed> {
+    let headless = headless()?;
+    let mut view = views::balls();
+    let reference = view.reference();
+    let seen = reference.id().unwrap().iter().find(|id| **id != NO_ID).unwrap();
+    let record = &mut |view: &View| record(headless, view, LIST).unwrap();
+    let recording = spoil(&mut view, record, *seen as usize);
+    found(&certify(&view, &recording))
 }

@@ -254,6 +254,8 @@ fn usage() {
         refused(&[], &arguments, 2, &[name, "adapter"]);
     }
     refused(&[], &format!("demo --adapter {name}"), 2, &[name, "adapter"]);
+    refused(&[], &format!("info --self-test --adapter {name}"), 2, &[name, "adapter"]);
+    refused(&[], &format!("info --adapter {name}"), 2, &["--adapter", "add --self-test"]);
 }
 
 #[test]

@@ -204,6 +204,17 @@ fn info_is_json_on_request() {
 }
 
 #[test]
+fn a_self_test_without_an_adapter_is_a_failed_job() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let run = Folder::new().run_without_drivers("info --self-test");
+    assert_eq!((run.code, run.stdout.len()), (1, 0));
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert!(run.stderr.contains("no Vulkan, Metal or DX12 adapter"), "{}", run.stderr);
+}
+
+#[test]
 fn help_and_version_go_to_standard_output() {
     let folder = Folder::new();
     for arguments in

@@ -1,0 +1,264 @@
+//! The checker: what it decides, what it takes, and what the fences in kernels take.
+//!
+//! ```sh
+//! cargo bench --bench verify -- standard    # the standard scenes, and from 100 times as far
+//! cargo bench --bench verify -- cost        # the checker against the CPU reference
+//! cargo bench --bench verify -- fences      # tracing with and without fences, by turns
+//! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
+//! ```
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use pinhole::accel::AccelChoice;
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::generate::{Kind, Standard};
+use pinhole::glam::DVec3;
+use pinhole::gpu::wgpu::DeviceType;
+use pinhole::gpu::{Headless, HeadlessOptions, Query, ShaderEdit};
+use pinhole::verify::{Certificate, Checker, Recording, Verdict};
+use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, cpu};
+
+#[path = "../tests/support/spheres.rs"]
+#[allow(dead_code, reason = "tests use all of them")]
+mod spheres;
+
+fn main() {
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let info = headless.adapter_info();
+    println!("{} ({:?}), {} {}\n", info.name, info.backend, info.driver, info.driver_info);
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    let runs = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
+    if runs("standard") {
+        standard(&headless);
+    }
+    if runs("cost") {
+        cost(&headless);
+    }
+    if runs("fences") {
+        fences(&headless);
+    }
+    // Only if it is named: it takes minutes.
+    if wanted.iter().any(|wanted| wanted == "campaign") {
+        campaign(&headless);
+    }
+}
+
+fn grey(spheres: Vec<[f32; 4]>) -> Scene {
+    Scene::from_f32(spheres, LinearRgb::from_srgb8([128, 128, 128])).unwrap()
+}
+
+fn record(headless: &Headless, scene: &Scene, camera: &dyn Camera, film: &Film) -> Recording {
+    let accel = headless.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
+    let buffers = headless.upload(scene, &accel).unwrap();
+    let go_on = |_| ControlFlow::Continue(());
+    headless.record(&buffers, camera, film, &Settings::default(), &mut { go_on }).unwrap()
+}
+
+/// One row of a table.
+fn row(name: &str, certificate: &Certificate) {
+    let count = |verdict| certificate.count(verdict);
+    println!(
+        "{name:<34}{:>11}{:>12.5}{:>9}{:>9}{:>6}{:>9.3}{:>9.3}",
+        certificate.verdicts.len(),
+        100.0 * certificate.decided_fraction(),
+        count(Verdict::Silhouette),
+        count(Verdict::Tie),
+        count(Verdict::Violation),
+        certificate.worst_depth,
+        certificate.worst_normal,
+    );
+}
+
+fn heading() {
+    println!(
+        "{:<34}{:>11}{:>12}{:>9}{:>9}{:>6}{:>9}{:>9}",
+        "scene", "rays", "decided, %", "silhou.", "ties", "viol.", "depth", "normal"
+    );
+}
+
+fn standard(headless: &Headless) {
+    heading();
+    for standard in Standard::ALL {
+        let scene = grey(standard.spheres().unwrap());
+        let film = standard.film().unwrap();
+        let started = Instant::now();
+        let checker = Checker::new(&scene).unwrap();
+        let prepared = started.elapsed();
+        let bounds = scene.bounds().unwrap();
+        let far = far(bounds.center(), bounds.size().max_element(), 100.0);
+        let near = standard.camera().unwrap();
+        let views: [(&str, &dyn Camera); 2] = [("", &near), (", from 100 times as far", &far)];
+        for (from, camera) in views {
+            let started = Instant::now();
+            let recording = record(headless, &scene, camera, &film);
+            let recorded = started.elapsed();
+            let started = Instant::now();
+            let certificate = checker.certify(&recording);
+            let checked = started.elapsed();
+            row(&format!("{}{from}", standard.name()), &certificate);
+            println!(
+                "    checker prepared in {:.2} s, picture made in {:.2} s, checked in {:.2} s",
+                prepared.as_secs_f64(),
+                recorded.as_secs_f64(),
+                checked.as_secs_f64()
+            );
+        }
+    }
+    println!();
+}
+
+/// A camera that is so many times a size away, and sees as much of it as one nearby.
+fn far(center: DVec3, size: f64, times: f64) -> PinholeCamera {
+    let eye = center + DVec3::new(0.48, 0.36, -0.8) * times * size;
+    let pose = Pose::looking_at(eye, center, [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::new(pose, times * size, [0.8 * size, 0.8 * size]).unwrap()
+}
+
+fn cost(headless: &Headless) {
+    for (name, count, side) in [("3", 3, 1024), ("100", 100, 1024), ("2000", 2000, 512)] {
+        let scene = grey(spheres::random(count, 1, |rng| 0.05 + 0.1 * rng.f32()));
+        let film = Film::new(side, side).unwrap();
+        let camera =
+            PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect()).unwrap();
+        let recording = record(headless, &scene, &camera, &film);
+        let (mut reference, mut check) = (Duration::MAX, Duration::MAX);
+        for _ in 0..5 {
+            let started = Instant::now();
+            cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::ALL).unwrap();
+            reference = reference.min(started.elapsed());
+            let started = Instant::now();
+            let certificate = Checker::new(&scene).unwrap().certify(&recording);
+            check = check.min(started.elapsed());
+            assert!(certificate.is_legal(), "{certificate}");
+        }
+        println!(
+            "{name} spheres, {side}x{side}: reference {:.1} ms, checker {:.1} ms, {:.2} times",
+            reference.as_secs_f64() * 1e3,
+            check.as_secs_f64() * 1e3,
+            check.as_secs_f64() / reference.as_secs_f64()
+        );
+    }
+    println!();
+}
+
+/// Rounds of a comparison; the best of each counts.
+const ROUNDS: usize = 15;
+
+fn fences(fenced: &Headless) {
+    let edit = |find: &str| ShaderEdit {
+        file: "fence.wgsl".to_owned(),
+        find: find.to_owned(),
+        replace: "v".to_owned(),
+    };
+    let edits = vec![
+        edit("bitcast<f32>(bitcast<u32>(v) ^ runtime_zero())"),
+        edit("bitcast<vec3f>(bitcast<vec3u>(v) ^ vec3u(runtime_zero()))"),
+    ];
+    let bare = Headless::open(&HeadlessOptions { edits, ..HeadlessOptions::default() }).unwrap();
+    for standard in [Standard::R1M, Standard::L1M, Standard::C200k] {
+        let scene = grey(standard.spheres().unwrap());
+        let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
+        for choice in [AccelChoice::Auto, AccelChoice::Tree] {
+            let accel = fenced.plan(&scene, choice).build(scene.spheres());
+            let devices = [fenced, &bare];
+            let buffers = devices.map(|headless| headless.upload(&scene, &accel).unwrap());
+            let mut best = [Duration::MAX; 2];
+            for round in 0..=ROUNDS {
+                for (which, headless) in devices.into_iter().enumerate() {
+                    let time =
+                        headless.measure(&buffers[which], &camera, &film, Query::Nearest).unwrap();
+                    // A software device's own clock counts only what it queues.
+                    let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
+                    let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
+                    // The first is for warming up.
+                    if round > 0 {
+                        best[which] = best[which].min(time);
+                    }
+                }
+            }
+            let [with, without] = best.map(|time| time.as_secs_f64() * 1e3);
+            println!(
+                "{}, {}: {with:.2} ms with fences, {without:.2} without, {:+.1} %",
+                standard.name(),
+                accel.structure().name(),
+                100.0 * (with / without - 1.0)
+            );
+        }
+    }
+    println!();
+}
+
+type Named = (&'static str, Scene);
+
+fn campaign_scenes() -> Vec<Named> {
+    let made = |kind: Kind, count| kind.spheres(count, 7).unwrap();
+    let offset = |spheres: Vec<[f32; 4]>| {
+        spheres.into_iter().map(|[x, y, z, r]| [x + 1e6, y - 2e6, z + 5e5, r]).collect()
+    };
+    [
+        ("random, 100", made(Kind::Random, 100)),
+        ("random, 100000", made(Kind::Random, 100_000)),
+        ("lattice, 864", made(Kind::Lattice, 864)),
+        ("lattice, 108000", made(Kind::Lattice, 108_000)),
+        ("clusters, 50000", made(Kind::Clusters, 50_000)),
+        ("sphereflake, 7381", made(Kind::Sphereflake, 7381)),
+        ("four decades of radii", spheres::four_decades(20_000)),
+        ("equal pairs", spheres::twice(3000)),
+        ("mirrored pairs", spheres::mirrored(3000)),
+        ("coincident", spheres::coincident(50)),
+        ("nearly coincident", spheres::nearly_coincident(40)),
+        ("concentric", spheres::concentric(100)),
+        ("each in the next", spheres::nested(100)),
+        ("a line that touches", spheres::line(300)),
+        ("a plane", spheres::flat(5000)),
+        ("one around all", spheres::one_around_all(3000)),
+        ("dense in places", spheres::clusters(20, 500)),
+        ("two to the 50", spheres::scaled(&spheres::four_decades(3000), 2_f32.powi(50))),
+        ("two to the -40", spheres::scaled(&spheres::random(3000, 2, |_| 0.02), 2_f32.powi(-40))),
+        ("offset by a million", offset(spheres::random(500, 3, |_| 64.0))),
+        ("a ground of radius a million", {
+            let mut spheres = spheres::random(500, 4, |_| 0.03);
+            spheres.push([0.5, -1e6, 0.5, 1e6]);
+            spheres
+        }),
+        ("an outlier", spheres::outlier(3000)),
+    ]
+    .map(|(name, spheres)| (name, grey(spheres)))
+    .into()
+}
+
+/// From outside, from 100 times as far, from within, and in parallel.
+fn campaign_views(scene: &Scene) -> Vec<(&'static str, Box<dyn Camera>)> {
+    let bounds = scene.bounds_to_frame();
+    let (center, size) = (bounds.center(), bounds.size().max_element());
+    let up = [0.1, 1.0, 0.2];
+    let outside = Pose::looking_at(center + DVec3::new(0.9, 0.6, 1.4) * size, center, up).unwrap();
+    let within = Pose::looking_along(center, [0.3, -0.4, 0.8], up).unwrap();
+    vec![
+        ("near", Box::new(PinholeCamera::with_vertical_fov(outside, 0.7, 1.0).unwrap())),
+        ("far", Box::new(far(center, size, 100.0))),
+        ("within", Box::new(PinholeCamera::with_vertical_fov(within, 1.9, 1.0).unwrap())),
+        ("parallel", Box::new(OrthographicCamera::new(outside, [0.8 * size, 0.8 * size]).unwrap())),
+    ]
+}
+
+fn campaign(headless: &Headless) {
+    heading();
+    let film = Film::new(1080, 1080).unwrap();
+    let (mut rays, mut pictures) = (0, 0);
+    let started = Instant::now();
+    for (name, scene) in campaign_scenes() {
+        let checker = Checker::new(&scene).unwrap();
+        for (from, camera) in campaign_views(&scene) {
+            let recording = record(headless, &scene, camera.as_ref(), &film);
+            let certificate = checker.certify(&recording);
+            row(&format!("{name}, {from}"), &certificate);
+            assert!(certificate.is_legal(), "{certificate}");
+            rays += certificate.verdicts.len();
+            pictures += 1;
+        }
+    }
+    println!("{rays} rays in {pictures} pictures, {:.0} s\n", started.elapsed().as_secs_f64());
+}

@@ -1,0 +1,129 @@
+//! What the self-test has a device compute with: random numbers, the same in every run.
+
+use bytemuck::Zeroable;
+
+use super::records::{Operands, Values};
+use crate::generate::Uniform;
+
+/// The numbers of one invocation, by place.
+struct Numbers<'a> {
+    uniform: &'a Uniform,
+    index: u64,
+}
+
+impl Numbers<'_> {
+    fn bits(&self, place: u64) -> u32 {
+        // Truncation is what is wanted.
+        self.uniform.bits(self.index, place) as u32
+    }
+
+    /// From `first` to `last`, both included.
+    fn integer(&self, place: u64, first: i32, last: i32) -> i32 {
+        let count = f64::from(last - first + 1);
+        first + (self.uniform.number(self.index, place) * count) as i32
+    }
+
+    /// Any sign and mantissa. Takes one place.
+    fn float(&self, place: u64, exponent: i32) -> f32 {
+        let bits = self.bits(place);
+        f32::from_bits(((exponent + 127) as u32) << 23 | bits & 0x807f_ffff)
+    }
+
+    /// Any sign and mantissa, and an exponent between both. Takes two places.
+    fn float_between(&self, place: u64, first: i32, last: i32) -> f32 {
+        self.float(place, self.integer(place + 1, first, last))
+    }
+}
+
+fn all<T>(seed: u64, count: usize, make: impl Fn(&Numbers<'_>) -> T) -> Vec<T> {
+    let uniform = Uniform::new(seed);
+    (0..count as u64).map(|index| make(&Numbers { uniform: &uniform, index })).collect()
+}
+
+/// Exponents are such that nothing overflows, that nothing is subnormal, that f64 holds sums and products
+/// exactly, and that f32 holds what a sum loses, whichever way it is rounded.
+pub(super) fn operands(count: usize) -> Vec<Operands> {
+    let mut operands = all(1, count, |numbers| {
+        let exponent = numbers.integer(0, -50, 59);
+        let a = numbers.float(1, exponent);
+        let b = numbers.float_between(2, exponent - 20, exponent - 1);
+        let p = numbers.float_between(4, -20, 20);
+        let quotient = numbers.integer(8, -100, 100);
+        // Division is bounded for divisors from 2^-126 to 2^126.
+        let divisor = numbers.integer(9, (-126).max(-126 - quotient), 125.min(125 - quotient));
+        let vector =
+            |place: u64| [0, 2, 4].map(|axis| numbers.float_between(place + axis, -10, 10));
+        Operands {
+            a,
+            b,
+            p,
+            // Equal but for the lowest bits of the mantissa.
+            q: f32::from_bits((-p).to_bits() ^ numbers.bits(6) & 0xfff),
+            factor: numbers.float_between(7, -20, 20),
+            dividend: numbers.float(10, divisor + quotient),
+            divisor: numbers.float(11, divisor),
+            radicand: numbers.float_between(12, -126, 127).abs(),
+            u: vector(14),
+            v: vector(20),
+            ..Operands::zeroed()
+        }
+    });
+    if let Some(first) = operands.first_mut() {
+        first.radicand = 0.0;
+    }
+    operands
+}
+
+pub(super) fn values(count: usize) -> Vec<Values> {
+    const MANTISSA: u32 = 0x007f_ffff;
+    all(2, count, |numbers| {
+        let f = numbers.float_between(0, -3, 30);
+        let small = numbers.float(2, -126);
+        let tiny = |place| f32::from_bits(numbers.bits(place) & (MANTISSA >> 1));
+        Values {
+            f,
+            g: match numbers.integer(3, 0, 7) {
+                0 => f,
+                1 => -f,
+                2 => f.trunc(),
+                _ => numbers.float_between(4, -3, 30),
+            },
+            whole: (numbers.bits(6) >> 8) << numbers.integer(7, 0, 8),
+            i: numbers.bits(8) << numbers.integer(9, 0, 31),
+            // The CPU has no quotient by zero.
+            j: (numbers.bits(10) >> numbers.integer(11, 0, 31)).max(1),
+            small,
+            other: f32::from_bits(small.to_bits() ^ numbers.bits(12) & MANTISSA),
+            scale: numbers.float_between(13, -13, -2),
+            tiny: tiny(15),
+            speck: tiny(16),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_promised() {
+        for o in operands(4096) {
+            assert!(o.a.abs() >= o.b.abs(), "{o:?}");
+            let numbers = [o.a * o.b, o.p, o.q, o.p * o.factor, o.dividend, o.divisor];
+            let quotient = o.dividend / o.divisor;
+            assert!(numbers.iter().chain([&quotient]).all(|v| v.is_normal()), "{o:?}");
+            assert!((o.q / o.p + 1.0).abs() < 0.001, "{o:?}");
+            assert!((2_f32.powi(-126)..2_f32.powi(126)).contains(&o.divisor.abs()), "{o:?}");
+            assert!(o.radicand == 0.0 || o.radicand.is_normal(), "{o:?}");
+        }
+        for v in values(4096) {
+            assert!(v.f.abs() < 2_f32.powi(31) && v.g.abs() < 2_f32.powi(31), "{v:?}");
+            assert_eq!(f64::from(v.whole as f32), f64::from(v.whole));
+            assert!(v.small.is_normal() && v.other.is_normal() && v.j > 0, "{v:?}");
+            for tiny in [v.tiny, v.speck, v.tiny + v.speck, v.small - v.other] {
+                assert!(!tiny.is_normal(), "{v:?}");
+            }
+            assert!((v.small * v.scale).is_subnormal(), "{v:?}");
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Judges operations that may round.
+
+use super::float::{PAD, error_in_ulp, is_neighbour, neighbours};
+use super::records::{Arithmetic, Operands};
+use super::report::{Tally, TestedProperty, percent};
+
+/// The largest error of a quotient, of 1/√x and of √x in ULP: WGSL's, the last inherited from 1/(1/√x).
+const DIVIDE: f64 = 2.5;
+const INVERSE_SQRT: f64 = 2.0;
+const SQRT: f64 = 5.0;
+
+/// Relative to the sum of absolute products, the largest error of a dot product of three components:
+/// γ(3), with the error of an operation that rounds to either neighbour. N. J. Higham, Accuracy and
+/// Stability of Numerical Algorithms, section 3.1.
+const DOT: f64 = 3.0 * ROUNDING / (1.0 - 3.0 * ROUNDING);
+const ROUNDING: f64 = f32::EPSILON as f64;
+
+/// What is lost of f64's own sums.
+const DOT_PAD: f64 = 4.0 * f64::EPSILON;
+
+type Pair<'a> = (&'a Operands, &'a Arithmetic);
+
+/// All properties of operations that may round.
+pub(super) fn judge(operands: &[Operands], answers: &[Arithmetic]) -> Vec<TestedProperty> {
+    let pairs: Vec<Pair<'_>> = operands.iter().zip(answers).collect();
+    vec![
+        fence(&pairs),
+        add_multiply(&pairs),
+        divide(&pairs),
+        sqrt(&pairs),
+        inverse_sqrt(&pairs),
+        dot(&pairs),
+    ]
+}
+
+fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
+    let mut tally = Tally::default();
+    let (mut unfenced, mut tested) = (0, 0);
+    for (o, answer) in pairs {
+        let Operands { a, b, p, q, factor, .. } = **o;
+        let Arithmetic { sum, back, error, unfenced_error, scaled, .. } = **answer;
+        let wide = f64::from;
+        tally.check(wide(sum) + wide(error) == wide(a) + wide(b), || {
+            format!("TwoSum of {a:e} and {b:e}, which gives {sum:e} and {error:e}")
+        });
+        // Exact, because |a| is the larger one.
+        tally.check(wide(back) == wide(sum) - wide(a), || {
+            format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}")
+        });
+        tally.check(is_sum_of_products(scaled, p, q, factor), || {
+            format!("{p:e}*{factor:e} + {q:e}*{factor:e}, which gives {scaled:e}")
+        });
+        // Where nothing is lost, zero is right.
+        if error != 0.0 {
+            tested += 1;
+            unfenced += usize::from(unfenced_error != error);
+        }
+    }
+    let rewritten = percent(unfenced, tested);
+    let reassociates = if unfenced == 0 {
+        "this compiler leaves unfenced ones alone".to_owned()
+    } else {
+        format!("this compiler reassociates: {rewritten:.1} % of unfenced sums that round")
+    };
+    let words = format!(
+        "fenced sums, differences and products are as written, {} of them; {reassociates}",
+        tally.tested()
+    );
+    tally.property("fence", words, vec![("unfenced_rewritten_percent", rewritten)])
+}
+
+/// Whether p d + q d was rounded after each of three operations.
+fn is_sum_of_products(got: f32, p: f32, q: f32, d: f32) -> bool {
+    let product = |v: f32| neighbours(f64::from(v) * f64::from(d)).map(f64::from);
+    let second = product(q);
+    product(p).iter().any(|p| second.iter().any(|q| is_neighbour(got, p + q)))
+}
+
+fn add_multiply(pairs: &[Pair<'_>]) -> TestedProperty {
+    let mut tally = Tally::default();
+    let mut nearest = 0;
+    for (Operands { a, b, .. }, answer) in pairs {
+        let (wide_a, wide_b) = (f64::from(*a), f64::from(*b));
+        for (sign, got, exact) in [
+            ('+', answer.sum, wide_a + wide_b),
+            ('-', answer.difference, wide_a - wide_b),
+            ('*', answer.product, wide_a * wide_b),
+        ] {
+            tally.check(is_neighbour(got, exact), || format!("{a:e} {sign} {b:e} = {got:e}"));
+            nearest += usize::from(got == exact as f32);
+        }
+    }
+    let nearest = percent(nearest, tally.tested());
+    let words = format!(
+        "all of {} sums, differences and products are neighbours of the exact one; {nearest:.1} % are the \
+         nearest",
+        tally.tested()
+    );
+    tally.property("add_multiply", words, vec![("nearest_percent", nearest)])
+}
+
+/// Results that are bounded in ULP: what was computed, in words, the device's result and the exact one.
+fn in_ulp(
+    name: &'static str,
+    bound: f64,
+    results: impl Iterator<Item = (String, f32, f64)>,
+) -> TestedProperty {
+    let mut tally = Tally::default();
+    let mut worst = 0.0_f64;
+    for (what, got, exact) in results {
+        let error = if exact == 0.0 {
+            if got == 0.0 { 0.0 } else { f64::INFINITY }
+        } else {
+            error_in_ulp(got, exact)
+        };
+        // A NaN is within no bound.
+        tally.check(error <= bound + PAD, || format!("{what} = {got:e}, off by {error:.2} ULP"));
+        worst = worst.max(error);
+    }
+    let words =
+        format!("the worst of {} is off by {worst:.2} ULP; {bound} are allowed", tally.tested());
+    tally.property(name, words, vec![("worst_ulp", worst), ("allowed_ulp", bound)])
+}
+
+fn divide(pairs: &[Pair<'_>]) -> TestedProperty {
+    let results = pairs.iter().map(|(o, answer)| {
+        let exact = f64::from(o.dividend) / f64::from(o.divisor);
+        (format!("{:e} / {:e}", o.dividend, o.divisor), answer.quotient, exact)
+    });
+    in_ulp("divide", DIVIDE, results)
+}
+
+fn sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
+    let results = pairs.iter().map(|(o, answer)| {
+        (format!("sqrt({:e})", o.radicand), answer.root, f64::from(o.radicand).sqrt())
+    });
+    in_ulp("sqrt", SQRT, results)
+}
+
+fn inverse_sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
+    // The kernel takes 1 for 0.
+    let results = pairs.iter().filter(|(o, _)| o.radicand != 0.0).map(|(o, answer)| {
+        let exact = 1.0 / f64::from(o.radicand).sqrt();
+        (format!("inverseSqrt({:e})", o.radicand), answer.inverse_root, exact)
+    });
+    in_ulp("inverse_sqrt", INVERSE_SQRT, results)
+}
+
+fn dot(pairs: &[Pair<'_>]) -> TestedProperty {
+    let mut tally = Tally::default();
+    let mut worst = 0.0_f64;
+    for (o, answer) in pairs {
+        let products = [0, 1, 2].map(|axis| f64::from(o.u[axis]) * f64::from(o.v[axis]));
+        let size: f64 = products.iter().map(|product| product.abs()).sum();
+        let error = (f64::from(answer.dot) - products.iter().sum::<f64>()).abs() / size;
+        tally.check(error <= DOT + DOT_PAD, || {
+            format!("dot({:?}, {:?}) = {:e}", o.u, o.v, answer.dot)
+        });
+        worst = worst.max(error);
+    }
+    let share = 100.0 * worst / DOT;
+    let words = format!(
+        "the worst of {} errors is {share:.0} % of the largest allowed, 3 roundings",
+        tally.tested()
+    );
+    tally.property("dot", words, vec![("worst_percent_of_allowed", share)])
+}

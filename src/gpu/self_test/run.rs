@@ -1,0 +1,219 @@
+//! A self-test on a device: recorded here, submitted by `Headless`.
+
+use std::marker::PhantomData;
+
+use bytemuck::{Pod, bytes_of, cast_slice};
+use wgpu::{
+    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device,
+};
+
+use super::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
+use super::report::{SelfTestExtent, SelfTestReport};
+use super::{exactness, inputs, loops, rounding};
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::frame::iteration_limit;
+use crate::gpu::layouts;
+use crate::gpu::renderer::pipeline;
+use crate::gpu::shaders::{Probe, self_test_kernel};
+
+/// Inputs of each operation: multiples of a workgroup.
+const QUICK: usize = 512;
+const FULL: usize = 1 << 17;
+
+const WORKGROUP: u32 = 64;
+
+/// All that is dispatched, with its inputs.
+#[derive(Debug)]
+pub(in crate::gpu) struct SelfTestRun {
+    operands: Vec<Operands>,
+    arithmetic: Dispatch,
+    full: Option<Full>,
+}
+
+/// What a quick test leaves out.
+#[derive(Debug)]
+struct Full {
+    values: Vec<Values>,
+    exact: Dispatch,
+    limit: u32,
+    loops: Vec<Dispatch>,
+}
+
+impl SelfTestRun {
+    pub(in crate::gpu) fn new(device: &Device, extent: SelfTestExtent) -> Result<Self, GpuError> {
+        let count = match extent {
+            SelfTestExtent::Quick => QUICK,
+            SelfTestExtent::Full => FULL,
+        };
+        let operands = inputs::operands(count);
+        let kernel = TestKernel::<_, Arithmetic>::new(device, Probe::Arithmetic)?;
+        let arithmetic = kernel.dispatch(device, &SelfTest::default(), &operands)?;
+        let full = match extent {
+            SelfTestExtent::Quick => None,
+            SelfTestExtent::Full => Some(Full::new(device, count)?),
+        };
+        Ok(Self { operands, arithmetic, full })
+    }
+
+    fn dispatches(&self) -> impl Iterator<Item = &Dispatch> {
+        let full = self.full.iter();
+        let rest = full.flat_map(|full| std::iter::once(&full.exact).chain(&full.loops));
+        std::iter::once(&self.arithmetic).chain(rest)
+    }
+
+    pub(in crate::gpu) fn record(&self, encoder: &mut CommandEncoder) {
+        for dispatch in self.dispatches() {
+            dispatch.record(encoder);
+        }
+    }
+
+    /// What must be mapped before it is judged.
+    pub(in crate::gpu) fn buffers(&self) -> Vec<&Buffer> {
+        self.dispatches().map(|dispatch| &dispatch.readable).collect()
+    }
+
+    /// Judges what the device has computed.
+    pub(in crate::gpu) fn judge(&self) -> Result<SelfTestReport, GpuError> {
+        let mut properties = rounding::judge(&self.operands, &self.arithmetic.read()?);
+        if let Some(Full { values, exact, limit, loops }) = &self.full {
+            properties.extend(exactness::judge(values, &exact.read()?));
+            let answers = loops.iter().map(Dispatch::read).collect::<Result<Vec<_>, _>>()?;
+            properties.push(loops::judge(*limit, &answers));
+        }
+        Ok(SelfTestReport::new(properties))
+    }
+}
+
+impl Full {
+    fn new(device: &Device, count: usize) -> Result<Self, GpuError> {
+        let values = inputs::values(count);
+        let kernel = TestKernel::<_, Exact>::new(device, Probe::Exact)?;
+        let exact = kernel.dispatch(device, &SelfTest::default(), &values)?;
+        let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops)?;
+        let limit = iteration_limit(device);
+        // Nothing but how many there are counts.
+        let invocations = [0_u32; loops::INVOCATIONS as usize];
+        let loops = loops::runs(limit)
+            .iter()
+            .map(|uniform| kernel.dispatch(device, uniform, &invocations))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { values, exact, limit, loops })
+    }
+}
+
+/// A kernel, built as those of a renderer are.
+struct TestKernel<Input, Answer> {
+    pipeline: ComputePipeline,
+    layout: BindGroupLayout,
+    records: PhantomData<(Input, Answer)>,
+}
+
+/// A kernel and what it reads and writes.
+#[derive(Debug)]
+struct Dispatch {
+    pipeline: ComputePipeline,
+    group: BindGroup,
+    answers: Buffer,
+    readable: Buffer,
+    workgroups: u32,
+}
+
+impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
+    fn new(device: &Device, probe: Probe) -> Result<Self, GpuError> {
+        let layout = scoped(device, || layouts::self_test::<Input, Answer>(device))?;
+        let pipeline = pipeline(device, &self_test_kernel(probe), &[&layout])?;
+        Ok(Self { pipeline, layout, records: PhantomData })
+    }
+
+    /// One invocation for each input.
+    fn dispatch(
+        &self,
+        device: &Device,
+        uniform: &SelfTest,
+        inputs: &[Input],
+    ) -> Result<Dispatch, GpuError> {
+        scoped(device, || {
+            let filled = |label, bytes: &[u8], usage| {
+                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size: bytes.len() as u64,
+                    usage,
+                    mapped_at_creation: true,
+                });
+                // What could not be created, the error scope around us has noted.
+                if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
+                    target.copy_from_slice(bytes);
+                }
+                buffer.unmap();
+                buffer
+            };
+            let empty = |label, usage| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size: (inputs.len() * size_of::<Answer>()) as u64,
+                    usage,
+                    mapped_at_creation: false,
+                })
+            };
+            let uniform = filled("pinhole self-test", bytes_of(uniform), BufferUsages::UNIFORM);
+            let input =
+                filled("pinhole self-test inputs", cast_slice(inputs), BufferUsages::STORAGE);
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let answers = empty("pinhole self-test answers", usage);
+            let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+            let readable = empty("pinhole self-test answers", usage);
+            let entries: Vec<_> = (0..)
+                .zip([&uniform, &input, &answers])
+                .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffer.as_entire_binding(),
+                })
+                .collect();
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole self-test"),
+                layout: &self.layout,
+                entries: &entries,
+            });
+            let pipeline = self.pipeline.clone();
+            let workgroups = (inputs.len() as u32).div_ceil(WORKGROUP);
+            Dispatch { pipeline, group, answers, readable, workgroups }
+        })
+    }
+}
+
+impl Dispatch {
+    fn record(&self, encoder: &mut CommandEncoder) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups(self.workgroups, 1, 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&self.answers, 0, &self.readable, 0, self.answers.size());
+    }
+
+    /// What was computed; unmaps the buffer, which must be mapped.
+    fn read<Answer: Pod>(&self) -> Result<Vec<Answer>, GpuError> {
+        let bytes = self
+            .readable
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::Device { message: error.to_string() })?;
+        let answers = bytemuck::pod_collect_to_vec(&bytes);
+        drop(bytes);
+        self.readable.unmap();
+        Ok(answers)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kernel_is_accepted_by_a_device_with_webgpu_limits() {
+        let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
+        let run = SelfTestRun::new(&device, SelfTestExtent::Full).unwrap();
+        assert_eq!(run.buffers().len(), 5);
+        let run = SelfTestRun::new(&device, SelfTestExtent::Quick).unwrap();
+        assert_eq!(run.buffers().len(), 1);
+    }
+}

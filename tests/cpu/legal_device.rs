@@ -1,0 +1,272 @@
+//! A device that does whatever WGSL leaves it free to do, at random: for tests that it is never accused.
+
+use fastrand::Rng;
+use pinhole::camera::CameraKind;
+use pinhole::film::YAxis;
+use pinhole::image::{NO_ID, Pixel};
+use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
+use pinhole::{Film, Image, Scene};
+
+/// How it rounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Habit {
+    /// As every real device.
+    Nearest,
+    /// Always up, or always down: errors add up.
+    Up,
+    Down,
+    /// Either neighbour, each time anew; fused or not; sums in any order; quotients and roots off by what
+    /// they may be; small numbers become zero.
+    Random,
+}
+
+pub(crate) struct LegalDevice {
+    pub(crate) habit: Habit,
+    pub(crate) random: Rng,
+}
+
+/// Where its sphere test ends.
+pub(crate) const NO_HIT: f32 = 1e30;
+
+impl LegalDevice {
+    /// One of the neighbours of a number, or the number itself if there is such an f32.
+    fn round(&mut self, exact: f64) -> f32 {
+        let nearest = exact as f32;
+        let (down, up) = match f64::from(nearest).total_cmp(&exact) {
+            std::cmp::Ordering::Equal => (nearest, nearest),
+            std::cmp::Ordering::Less => (nearest, nearest.next_up()),
+            std::cmp::Ordering::Greater => (nearest.next_down(), nearest),
+        };
+        let rounded = match self.habit {
+            Habit::Nearest => nearest,
+            Habit::Up => up,
+            Habit::Down => down,
+            Habit::Random => {
+                if self.random.bool() {
+                    up
+                } else {
+                    down
+                }
+            }
+        };
+        if self.habit == Habit::Random && rounded.is_subnormal() && self.random.bool() {
+            0.0
+        } else {
+            rounded
+        }
+    }
+
+    /// Off by up to so many ULP.
+    fn off(&mut self, exact: f64, ulps: f64) -> f32 {
+        let rounded = self.round(exact);
+        if self.habit == Habit::Nearest || rounded == 0.0 {
+            return rounded;
+        }
+        let ulp = f64::from(rounded.abs().next_up()) - f64::from(rounded.abs());
+        let part = match self.habit {
+            Habit::Up => 1.0,
+            Habit::Down => -1.0,
+            _ => self.random.f64() * 2.0 - 1.0,
+        };
+        // Truncated, so that it is off by no more.
+        let off = exact + part * (ulps - 0.5) * ulp * 0.99;
+        off as f32
+    }
+
+    fn add(&mut self, a: f32, b: f32) -> f32 {
+        self.round(f64::from(a) + f64::from(b))
+    }
+
+    fn mul(&mut self, a: f32, b: f32) -> f32 {
+        self.round(f64::from(a) * f64::from(b))
+    }
+
+    /// a b + c, perhaps fused.
+    fn mul_add(&mut self, a: f32, b: f32, c: f32) -> f32 {
+        if self.habit == Habit::Random && self.random.bool() {
+            self.round(f64::from(a) * f64::from(b) + f64::from(c))
+        } else {
+            let product = self.mul(a, b);
+            self.add(product, c)
+        }
+    }
+
+    fn divide(&mut self, a: f32, b: f32) -> f32 {
+        self.off(f64::from(a) / f64::from(b), 2.5)
+    }
+
+    fn sqrt(&mut self, a: f32) -> f32 {
+        self.off(f64::from(a).sqrt(), 4.5)
+    }
+
+    /// A sum of products, in any order.
+    fn dot(&mut self, products: &mut [(f32, f32)]) -> f32 {
+        if self.habit == Habit::Random {
+            self.random.shuffle(products);
+        }
+        let mut sum = self.mul(products[0].0, products[0].1);
+        for (a, b) in &products[1..] {
+            sum = self.mul_add(*a, *b, sum);
+        }
+        sum
+    }
+
+    /// `intersect_sphere` of shaders/sphere.wgsl.
+    pub(crate) fn intersect(
+        &mut self,
+        (origin, direction): ([f32; 3], [f32; 3]),
+        [x, y, z, radius]: [f32; 4],
+    ) -> f32 {
+        let center = [x, y, z];
+        let d = direction;
+        let l = [0, 1, 2].map(|k| self.add(center[k], -origin[k]));
+        let b = self.dot(&mut [(l[0], d[0]), (l[1], d[1]), (l[2], d[2])]);
+        let f = [0, 1, 2].map(|k| self.mul_add(-b, d[k], l[k]));
+        let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
+        let [fx, fy, fz] = squares(f, -1.0);
+        let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
+        let [lx, ly, lz] = squares(l, 1.0);
+        let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
+        let half_chord = self.sqrt(discriminant.max(0.0));
+        let from_foot = if c > 0.0 { -half_chord } else { half_chord };
+        let t = if self.mul(b, from_foot) >= 0.0 {
+            self.add(b, from_foot)
+        } else {
+            let divisor = self.add(b, -from_foot);
+            self.divide(c, divisor)
+        };
+        if discriminant >= 0.0 && t > 0.0 { t } else { NO_HIT }
+    }
+}
+
+/// The kernels of a picture, one after the other.
+impl LegalDevice {
+    fn vector(&mut self, mut component: impl FnMut(&mut Self, usize) -> f32) -> [f32; 3] {
+        [0, 1, 2].map(|k| component(self, k))
+    }
+
+    /// `relative_location` of shaders/film.wgsl.
+    fn location(&mut self, film: &Film, pixel: [u32; 2]) -> [f32; 2] {
+        let sign = if film.y_axis() == YAxis::Up { -1.0 } else { 1.0 };
+        let along = |this: &mut Self, i: u32, side: u32| {
+            let doubled = 2 * i64::from(i) + 1 - i64::from(side);
+            this.divide(doubled as f32, side as f32)
+        };
+        let x = along(self, pixel[0], film.width());
+        [x, sign * along(self, pixel[1], film.height())]
+    }
+
+    /// `camera_ray` of shaders/camera_*.wgsl: origin, direction, distance.
+    fn camera_ray(
+        &mut self,
+        kind: CameraKind,
+        view: &UploadedView,
+        [x, y]: [f32; 2],
+    ) -> ([f32; 3], [f32; 3], f32) {
+        let (right, up, forward) = (view.right, view.up, view.forward);
+        match kind {
+            CameraKind::Orthographic => {
+                let origin = self.vector(|this, k| {
+                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])])
+                });
+                (origin, forward, view.advance)
+            }
+            _ => {
+                let aside = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k])]));
+                let toward = self.vector(|this, k| {
+                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])])
+                });
+                let squared = self.dot(&mut toward.map(|x| (x, x)));
+                let length = self.sqrt(squared);
+                let inverse = self.divide(1.0, length);
+                let direction = self.vector(|this, k| this.mul(toward[k], inverse));
+                let origin =
+                    self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
+                (origin, direction, self.mul(view.advance, length))
+            }
+        }
+    }
+
+    /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
+    fn ray(
+        &mut self,
+        kind: CameraKind,
+        view: &UploadedView,
+        film: &Film,
+        pixel: [u32; 2],
+    ) -> (TracedRay, bool) {
+        let location = self.location(film, pixel);
+        let (origin, direction, distance) = self.camera_ray(kind, view, location);
+        let (mut near, mut far) = (0.0_f32, f32::MAX);
+        for k in 0..3 {
+            let size = direction[k].abs().max(2_f32.powi(-40));
+            let inverse = self.divide(1.0, if direction[k] >= 0.0 { size } else { -size });
+            let mut plane = |wall: f32| {
+                let away = self.add(wall, -origin[k]);
+                self.mul(away, inverse)
+            };
+            let (a, b) = (plane(view.scene_min[k]), plane(view.scene_max[k]));
+            (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
+        }
+        let origin = self.vector(|this, k| this.mul_add(near, direction[k], origin[k]));
+        let distance = self.add(distance, near);
+        (TracedRay { origin, direction, distance }, near <= far)
+    }
+
+    /// `sphere_normal` of shaders/sphere.wgsl.
+    fn normal(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> [f32; 3] {
+        let (center, d) = ([x, y, z], ray.direction);
+        let l = self.vector(|this, k| this.add(center[k], -ray.origin[k]));
+        let b = self.dot(&mut [0, 1, 2].map(|k| (l[k], d[k])));
+        let foot = self.vector(|this, k| this.mul_add(-b, d[k], l[k]));
+        let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
+        let [fx, fy, fz] = squares(foot, -1.0);
+        let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
+        let [lx, ly, lz] = squares(l, 1.0);
+        let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
+        let half = self.sqrt(discriminant.max(0.0));
+        let from_foot = if c > 0.0 { -half } else { half };
+        let outward = self.vector(|this, k| this.mul_add(from_foot, d[k], -foot[k]));
+        let squared = self.dot(&mut outward.map(|x| (x, x)));
+        let length = self.sqrt(squared);
+        self.vector(|this, k| this.divide(outward[k], length))
+    }
+
+    /// A picture of headlight-lit spheres. `made` is a recording of the same view: of it only what the device is
+    /// given is used.
+    pub(crate) fn record(&mut self, scene: &Scene, made: &Recording) -> Recording {
+        let Recording { camera, uploaded, film, settings, .. } = made;
+        let mut layers = Vec::new();
+        let mut pixels = Vec::new();
+        for j in 0..film.height() {
+            for i in 0..film.width() {
+                let (ray, is_inside) = self.ray(camera.kind, uploaded, film, [i, j]);
+                let (mut t, mut id) = (NO_HIT, NO_ID);
+                for (sphere, place) in scene.spheres().iter().zip(0..) {
+                    let is_first = !scene.spheres()[..place as usize].contains(sphere);
+                    if is_inside && is_first {
+                        let here = self.intersect((ray.origin, ray.direction), *sphere);
+                        if here < t {
+                            (t, id) = (here, place);
+                        }
+                    }
+                }
+                pixels.push(TracedPixel { ray: Some(ray), t, id });
+                layers.push(if id == NO_ID {
+                    let color = settings.background().to_array();
+                    Pixel { color, depth: f32::INFINITY, normal: [0.0; 3], id }
+                } else {
+                    // Another kernel makes the ray anew.
+                    let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
+                    let normal = self.normal(&again, scene.spheres()[id as usize]);
+                    let d = again.direction;
+                    let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
+                    let color = scene.color(id).to_array().map(|c| self.mul(c, cosine));
+                    Pixel { color, depth: self.add(again.distance, t), normal, id }
+                });
+            }
+        }
+        let image = Image::from_pixels(film.width(), film.height(), &layers).unwrap();
+        Recording { pixels, image, ..made.clone() }
+    }
+}

@@ -1,0 +1,211 @@
+//! The checker by itself: it accuses no device that does what WGSL lets it do, and overlooks nothing that is
+//! planted in a recording.
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::film::YAxis;
+use pinhole::glam::DVec3;
+use pinhole::image::NO_ID;
+use pinhole::verify::{
+    Certificate, Checker, Recording, RequestedCamera, TracedPixel, UploadedView, Verdict,
+    ViolationKind,
+};
+use pinhole::{Film, Image, LinearRgb, Scene, Settings, Sphere};
+
+use crate::legal_device::{Habit, LegalDevice, NO_HIT};
+use crate::support::spheres;
+
+/// What a device is given; it has made nothing of it yet.
+fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
+    let vectors = camera.vectors();
+    let bounds = scene.bounds_to_frame();
+    let margin = 1e-4 * bounds.size().length();
+    let (low, high) =
+        (bounds.min() - scene.origin() - margin, bounds.max() - scene.origin() + margin);
+    let origin = vectors.origin - scene.origin();
+    let forward = vectors.forward;
+    let nearest = bounds
+        .corners()
+        .map(|corner| (corner - vectors.origin).dot(forward) / forward.length_squared())
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    // Not quite up to the box, which is wider by the margin.
+    let advance = (0.99 * nearest.max(0.0)) as f32;
+    let narrow = |v: DVec3| v.as_vec3().to_array();
+    Recording {
+        camera: RequestedCamera { kind: camera.kind(), vectors },
+        uploaded: UploadedView {
+            origin: narrow(origin + f64::from(advance) * forward),
+            advance,
+            right: narrow(vectors.right),
+            up: narrow(vectors.up),
+            forward: narrow(forward),
+            scene_min: narrow(low),
+            scene_max: narrow(high),
+        },
+        film,
+        settings: Settings::default(),
+        pixels: Vec::new(),
+        image: Image::from_pixels(0, 0, &[]).unwrap(),
+    }
+}
+
+fn scene(spheres: &[[f32; 4]]) -> Scene {
+    let colored = |(i, s): (usize, &[f32; 4])| {
+        let level = |k: usize| ((i * k) % 17) as f32 / 16.0;
+        let [x, y, z, radius] = s.map(f64::from);
+        Sphere::new([x, y, z], radius, LinearRgb::new([level(3), level(5), level(7)]).unwrap())
+    };
+    Scene::new(&spheres.iter().enumerate().map(colored).collect::<Vec<_>>()).unwrap()
+}
+
+/// From outside, from far away, from within, and in parallel.
+fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
+    let bounds = scene.bounds_to_frame();
+    let (center, size) = (bounds.center(), bounds.size().max_element());
+    let up = [0.1, 1.0, 0.2];
+    let outside = Pose::looking_at(center + DVec3::new(1.2, 0.7, 1.9) * size, center, up).unwrap();
+    let far = Pose::looking_at(center + DVec3::new(60.0, 30.0, -70.0) * size, center, up).unwrap();
+    let within = Pose::looking_along(center, [0.3, -0.4, 0.8], up).unwrap();
+    vec![
+        Box::new(PinholeCamera::with_vertical_fov(outside, 0.7, 1.3).unwrap()),
+        Box::new(PinholeCamera::new(far, 100.0 * size, [0.6 * size, 0.5 * size]).unwrap()),
+        Box::new(PinholeCamera::with_vertical_fov(within, 1.9, 1.3).unwrap()),
+        Box::new(OrthographicCamera::new(outside, [0.9 * size, 0.7 * size]).unwrap()),
+    ]
+}
+
+fn scenes() -> Vec<Scene> {
+    let far_from_the_origin = spheres::random(40, 3, |rng| 0.02 + 0.1 * rng.f32())
+        .iter()
+        .map(|[x, y, z, r]| [x + 1e6, y - 2e6, z + 3e6, *r])
+        .collect();
+    [
+        spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()),
+        spheres::four_decades(60),
+        spheres::twice(20),
+        spheres::nested(12),
+        spheres::lattice(4),
+        spheres::scaled(&spheres::random(40, 2, |_| 0.1), 2_f32.powi(40)),
+        spheres::scaled(&spheres::random(40, 2, |_| 0.1), 2_f32.powi(-40)),
+        far_from_the_origin,
+        vec![[0.0, -1e5, 0.0, 1e5], [0.3, 0.2, 0.1, 0.2]],
+        Vec::new(),
+    ]
+    .map(|spheres: Vec<[f32; 4]>| scene(&spheres))
+    .into()
+}
+
+fn certify(scene: &Scene, recording: &Recording) -> Certificate {
+    Checker::new(scene).unwrap().certify(recording)
+}
+
+#[test]
+fn no_picture_of_a_conforming_device_is_accused() {
+    let mut pixels = 0;
+    for (number, scene) in scenes().iter().enumerate() {
+        for camera in cameras(scene) {
+            for (habit, seed) in [
+                (Habit::Nearest, 0),
+                (Habit::Up, 0),
+                (Habit::Down, 0),
+                (Habit::Random, 1),
+                (Habit::Random, 2),
+            ] {
+                let y_axis = if seed == 2 { YAxis::Down } else { YAxis::Up };
+                let film = Film::new(41, 33).unwrap().with_y_axis(y_axis);
+                let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(seed) };
+                let recording = device.record(scene, &given(scene, camera.as_ref(), film));
+                let certificate = certify(scene, &recording);
+                assert!(
+                    certificate.is_legal(),
+                    "scene {number}, {camera:?}, {habit:?}:\n{certificate}"
+                );
+                pixels += certificate.verdicts.len();
+            }
+        }
+    }
+    assert!(pixels > 200_000);
+}
+
+/// A recording of a device that rounds to the nearest.
+fn legal_recording() -> (Scene, Recording) {
+    let scene = scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()));
+    let camera = &cameras(&scene)[0];
+    let film = Film::new(61, 47).unwrap();
+    let mut device = LegalDevice { habit: Habit::Nearest, random: fastrand::Rng::with_seed(0) };
+    let recording = device.record(&scene, &given(&scene, camera.as_ref(), film));
+    assert!(certify(&scene, &recording).is_legal());
+    (scene, recording)
+}
+
+/// What is found where a pixel with a hit, or one with a miss, was spoilt.
+fn spoilt(of_hit: bool, spoil: impl Fn(&mut TracedPixel)) -> Vec<&'static str> {
+    let (scene, mut recording) = legal_recording();
+    let hits = recording.pixels.iter().filter(|pixel| (pixel.id != NO_ID) == of_hit).count();
+    let mut which = recording.pixels.iter_mut().filter(|pixel| (pixel.id != NO_ID) == of_hit);
+    let pixel = which.nth(hits / 2).unwrap();
+    spoil(pixel);
+    let certificate = certify(&scene, &recording);
+    assert_eq!(certificate.violations.len(), certificate.count(Verdict::Violation));
+    certificate.violations.iter().map(|violation| violation.kind.stage()).collect()
+}
+
+#[test]
+fn what_is_not_a_number_is_no_legal_answer() {
+    assert_eq!(spoilt(true, |pixel| pixel.t = f32::NAN), ["hit"]);
+    assert_eq!(spoilt(true, |pixel| pixel.t = f32::INFINITY), ["hit"]);
+    for value in [f32::NAN, f32::INFINITY, f32::MAX] {
+        for axis in 0..3 {
+            let origin = spoilt(true, |pixel| pixel.ray.as_mut().unwrap().origin[axis] = value);
+            assert_eq!(origin, ["camera"]);
+            let turned = spoilt(false, |pixel| pixel.ray.as_mut().unwrap().direction[axis] = value);
+            assert_eq!(turned, ["camera"]);
+        }
+        assert_eq!(spoilt(true, |pixel| pixel.ray.as_mut().unwrap().distance = value), ["camera"]);
+    }
+}
+
+#[test]
+fn an_id_that_no_sphere_has_is_no_legal_answer() {
+    for id in [40, u32::MAX - 1] {
+        assert_eq!(spoilt(true, |pixel| pixel.id = id), ["hit"]);
+        assert_eq!(spoilt(false, |pixel| pixel.id = id), ["hit"]);
+    }
+}
+
+#[test]
+fn a_hit_that_is_made_a_miss_is_found_and_the_other_way_round() {
+    assert_eq!(spoilt(true, |pixel| (pixel.t, pixel.id) = (NO_HIT, NO_ID)), ["hit"]);
+    assert_eq!(spoilt(false, |pixel| (pixel.t, pixel.id) = (1.0, 3)), ["hit"]);
+    assert_eq!(spoilt(true, |pixel| pixel.ray = None), ["cull"]);
+}
+
+#[test]
+fn a_violation_is_told_with_both_values() {
+    let (scene, mut recording) = legal_recording();
+    let index = recording.pixels.iter().position(|pixel| pixel.id != NO_ID).unwrap();
+    recording.pixels[index].t *= 1.001;
+    let certificate = certify(&scene, &recording);
+    let [violation] = &certificate.violations[..] else { panic!("{certificate}") };
+    let ViolationKind::Hit { id, t, legal } = &violation.kind else { panic!("{violation}") };
+    assert_eq!((*id, *t), (recording.pixels[index].id, recording.pixels[index].t));
+    assert!(legal.of(*id).is_some() && !legal.allows(*id, (*t).into()));
+    let text = certificate.to_string();
+    let [i, j] = violation.pixel;
+    assert!(
+        text.contains(&format!("pixel ({i}, {j}), hit: sphere {id} at {t:?}; legal is")),
+        "{text}"
+    );
+}
+
+#[test]
+fn of_too_many_violations_all_are_counted() {
+    let (scene, mut recording) = legal_recording();
+    for pixel in &mut recording.pixels {
+        pixel.id = 77;
+    }
+    let certificate = certify(&scene, &recording);
+    assert_eq!(certificate.count(Verdict::Violation), 61 * 47);
+    assert_eq!(certificate.violations.len(), 1000);
+    assert_eq!(certificate.violations[0].pixel, [0, 0]);
+}

@@ -1,0 +1,112 @@
+//! On lavapipe, which rounds to the nearest and fuses nothing, kernels do what plain f32 does, to the bit: a
+//! stricter wall than legality, where it stands.
+
+use std::ops::ControlFlow;
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{Accel, AccelChoice, Nearest, RayF32};
+use pinhole::camera::CameraKind;
+use pinhole::film::YAxis;
+use pinhole::glam::{UVec2, Vec2, Vec3};
+use pinhole::image::NO_ID;
+use pinhole::verify::{Recording, TracedRay, UploadedView};
+use pinhole::{Film, LinearRgb, Settings, Shading};
+
+use crate::support::View;
+use crate::{headless, scenes};
+
+pub(crate) fn trials() -> Vec<Trial> {
+    scenes::all()
+        .into_iter()
+        .map(|(name, view)| Trial::test(format!("twin::{name}"), move || check(&view)))
+        .collect()
+}
+
+/// `relative_location` of shaders/film.wgsl.
+fn location(film: &Film, pixel: UVec2) -> Vec2 {
+    let size = UVec2::new(film.width(), film.height()).as_ivec2();
+    let location = (pixel.as_ivec2() * 2 + 1 - size).as_vec2() / size.as_vec2();
+    let sign = if film.y_axis() == YAxis::Up { -1.0 } else { 1.0 };
+    Vec2::new(location.x, sign * location.y)
+}
+
+/// `camera_ray` and `enter_scene`; `None` where the ray does not meet the box.
+fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (TracedRay, bool) {
+    let [origin, right, up, forward, min, max] =
+        [view.origin, view.right, view.up, view.forward, view.scene_min, view.scene_max]
+            .map(Vec3::from);
+    let location = location(film, pixel);
+    let aside = location.x * right + location.y * up;
+    let (origin, direction, distance) = if kind == CameraKind::Orthographic {
+        (origin + aside, forward, view.advance)
+    } else {
+        let toward = aside + forward;
+        let length = toward.dot(toward).sqrt();
+        (origin + view.advance * aside, toward * (1.0 / length), view.advance * length)
+    };
+    let size = direction.abs().max(Vec3::splat(2_f32.powi(-40)));
+    let inverse = 1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size);
+    let (a, b) = ((min - origin) * inverse, (max - origin) * inverse);
+    let near = a.min(b).max_element().max(0.0);
+    let far = a.max(b).min_element();
+    let ray = TracedRay {
+        origin: (origin + near * direction).to_array(),
+        direction: direction.to_array(),
+        distance: distance + near,
+    };
+    (ray, near <= far)
+}
+
+/// `surface_color` of shaders/shading.wgsl.
+fn color(settings: &Settings, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
+    if settings.shading() == Shading::Flat {
+        return of.to_array();
+    }
+    let cosine = Vec3::from(normal).dot(Vec3::from(ray.direction)).abs();
+    (Vec3::from(of.to_array()) * cosine).to_array()
+}
+
+fn check(view: &View) -> Result<(), Failed> {
+    let headless = headless()?;
+    if !headless.adapter_info().name.contains("llvmpipe") {
+        println!("the adapter is not lavapipe: nothing to compare");
+        return Ok(());
+    }
+    let View { scene, camera, film, settings } = view;
+    let accel = headless.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
+    let buffers = headless.upload(scene, &accel)?;
+    let go_on = |_| ControlFlow::Continue(());
+    let recording = headless.record(&buffers, camera.as_ref(), film, settings, &mut { go_on })?;
+    let differing = (0..film.height())
+        .flat_map(|j| (0..film.width()).map(move |i| UVec2::new(i, j)))
+        .filter(|pixel| !is_same(view, &accel, &recording, *pixel))
+        .count();
+    match differing {
+        0 => Ok(()),
+        count => Err(format!("{count} pixels differ").into()),
+    }
+}
+
+fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> bool {
+    let Recording { camera, uploaded, film, settings, pixels, image } = recording;
+    let index = (pixel.y * film.width() + pixel.x) as usize;
+    let (id, depth) = (image.id().unwrap()[index], image.depth().unwrap()[index]);
+    let traced = &pixels[index];
+    let (ray, meets_box) = ray(camera.kind, uploaded, film, pixel);
+    let mut nearest = Nearest::NONE;
+    if meets_box {
+        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        nearest = accel.find_nearest(&RayF32 { origin, direction });
+    }
+    let same_ray = traced.ray.is_none_or(|found| found == ray);
+    if nearest.id == NO_ID {
+        return same_ray && id == NO_ID && traced.id == NO_ID && depth == f32::INFINITY;
+    }
+    let normal = image.normal().unwrap()[index];
+    same_ray
+        && traced.ray.is_some()
+        && (traced.id, id) == (nearest.id, nearest.id)
+        && traced.t.to_bits() == nearest.t.to_bits()
+        && depth.to_bits() == (ray.distance + nearest.t).to_bits()
+        && image.color()[index] == color(settings, view.scene.color(id), normal, &ray)
+}

@@ -1,0 +1,133 @@
+//! Small views for the checker, each with something that a fault of its kind would show in.
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere};
+
+use crate::support::View;
+use crate::support::spheres;
+
+fn colored(center: [f64; 3], radius: f64, i: usize) -> Sphere {
+    let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
+    let color = LinearRgb::new([level(3), level(5), level(7)]).unwrap();
+    Sphere::new(center, radius, color)
+}
+
+fn view(spheres: &[Sphere], camera: impl Camera + 'static, size: [u32; 2]) -> View {
+    let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
+    View {
+        scene: Scene::new(spheres).unwrap(),
+        camera: Box::new(camera),
+        film: Film::new(size[0], size[1]).unwrap(),
+        settings: Settings::default().with_shading(Shading::Headlight).with_background(background),
+    }
+}
+
+fn pose(eye: [f64; 3], look_at: [f64; 3]) -> Pose {
+    Pose::looking_at(eye, look_at, [0.1, 1.0, 0.2]).unwrap()
+}
+
+fn pinhole(eye: [f64; 3], look_at: [f64; 3], degrees: f64) -> PinholeCamera {
+    PinholeCamera::with_vertical_fov(pose(eye, look_at), f64::to_radians(degrees), 1.2).unwrap()
+}
+
+fn random(count: usize, seed: u64) -> Vec<Sphere> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    (0..count)
+        .map(|i| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            colored(center, 0.08 + 0.1 * random.f64(), i)
+        })
+        .collect()
+}
+
+/// From outside, in several colours, and sky around them.
+pub(crate) fn balls() -> View {
+    view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+}
+
+/// With pixels so small that slivers show.
+pub(crate) fn along_an_axis() -> View {
+    let pose = Pose::looking_along([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    view(&random(400, 31), OrthographicCamera::new(pose, [2.4, 2.0]).unwrap(), [768, 640])
+}
+
+pub(crate) fn parallel() -> View {
+    let camera =
+        OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();
+    view(&random(400, 31), camera, [96, 80])
+}
+
+/// In a large sphere, with others in and around it.
+pub(crate) fn inside() -> View {
+    let mut spheres = random(60, 32);
+    spheres.push(colored([0.0; 3], 5.0, 3));
+    view(&spheres, pinhole([0.5, 1.0, 3.9], [0.0; 3], 90.0), [96, 80])
+}
+
+/// All around the eye, most of them behind it.
+pub(crate) fn behind() -> View {
+    view(&random(100, 33), pinhole([0.0, 0.0, 1.6], [0.0, 0.0, 4.0], 60.0), [96, 80])
+}
+
+/// Every cell of a grid is as full as the next, of spheres that reach into others.
+pub(crate) fn lattice() -> View {
+    let spheres: Vec<Sphere> = spheres::lattice(12)
+        .iter()
+        .enumerate()
+        .map(|(i, [x, y, z, r])| {
+            let radius = f64::from(*r) * (0.2 + 0.3 * (i % 5) as f64);
+            colored([*x, *y, *z].map(f64::from), radius, i)
+        })
+        .collect();
+    view(&spheres, pinhole([-9.0, 15.0, -12.0], [5.0, 5.0, 5.0], 40.0), [96, 80])
+}
+
+fn in_clusters() -> Vec<Sphere> {
+    let mut random = fastrand::Rng::with_seed(34);
+    (0..12)
+        .flat_map(|_| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            let size = 10_f64.powf(-2.0 * random.f64());
+            (0..120)
+                .map(|i| {
+                    let near = center.map(|x| x + (random.f64() - 0.5) * size);
+                    colored(near, size * 0.08 * (0.2 + random.f64()), i)
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Dense in a few places.
+pub(crate) fn clusters() -> View {
+    view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+}
+
+/// The same, small in a large box.
+pub(crate) fn far_clusters() -> View {
+    let mut spheres = in_clusters();
+    spheres.push(colored([40.0, 60.0, 120.0], 0.5, 5));
+    view(&spheres, pinhole([63.0, 42.0, 126.0], [0.0; 3], 1.8), [96, 80])
+}
+
+/// Eight of each, in the order of a shuffle.
+pub(crate) fn copies() -> View {
+    let mut random = fastrand::Rng::with_seed(35);
+    let mut places: Vec<usize> = (0..40 * 8).map(|i| i % 40).collect();
+    random.shuffle(&mut places);
+    let spheres: Vec<Sphere> = places
+        .into_iter()
+        .enumerate()
+        .map(|(i, place)| {
+            let center = [(place % 8) as f64 - 3.5, (place / 8) as f64 - 2.0, 0.0];
+            colored(center, 0.45, i)
+        })
+        .collect();
+    view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0), [96, 80])
+}
+
+/// Larger than one tile.
+pub(crate) fn two_tiles() -> View {
+    let spheres = [colored([-1.0, 0.0, 0.0], 0.9, 1), colored([1.0, 0.0, 0.0], 0.9, 2)];
+    view(&spheres, pinhole([0.0, 0.5, 5.0], [0.0; 3], 16.0), [1100, 1000])
+}
