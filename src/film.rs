@@ -13,6 +13,17 @@ pub enum YAxis {
     Down,
 }
 
+impl YAxis {
+    /// The name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Up => "up",
+            Self::Down => "down",
+        }
+    }
+}
+
 /// Width and height in pixels, and the direction of y. Row 0 is the top row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Film {

@@ -175,6 +175,18 @@ impl Image {
         })
     }
 
+    /// An image of all layers, each of as many pixels as the sides say.
+    #[cfg(feature = "run-file")]
+    pub(crate) fn from_layers(
+        [width, height]: [u32; 2],
+        color: Vec<[f32; 3]>,
+        depth: Vec<f32>,
+        normal: Vec<[f32; 3]>,
+        id: Vec<u32>,
+    ) -> Self {
+        Self { width, height, color, depth: Some(depth), normal: Some(normal), id: Some(id) }
+    }
+
     /// An image of all layers, from its pixels, row by row from the top. `None` if they are not as many as the
     /// sides say.
     #[must_use]

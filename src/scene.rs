@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
+#[cfg(feature = "run-file")]
+use crate::math::MAX_LENGTH;
 use crate::parallel;
 use crate::sphere::{self, Sphere, SphereError};
 
@@ -41,6 +43,20 @@ pub enum SceneError {
     Memory {
         /// How many were given.
         count: usize,
+    },
+    /// The frame's origin is NaN, infinite or too far away.
+    #[error("its origin {:?} is not finite, or too far away", origin.to_array())]
+    Origin {
+        /// The origin as given.
+        origin: DVec3,
+    },
+    /// A sphere has no colour.
+    #[error("sphere {index} has no color; the palette has {colors}")]
+    Color {
+        /// Index in input order.
+        index: usize,
+        /// How many colours there are.
+        colors: usize,
     },
     /// More spheres than ids.
     #[error("{count} spheres are too many; ids are u32 and {} means a miss", u32::MAX)]
@@ -86,6 +102,44 @@ impl Scene {
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let spheres = narrowed(spheres, |s| *s, origin)?;
         Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+    }
+
+    /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
+    ///
+    /// # Errors
+    /// As [`Scene::new`]; if the origin is out of range; if a sphere has no colour.
+    #[cfg(feature = "run-file")]
+    pub(crate) fn from_parts(
+        origin: DVec3,
+        spheres: Vec<[f32; 4]>,
+        palette: Vec<LinearRgb>,
+        color_indices: Option<Vec<u32>>,
+    ) -> Result<Self, SceneError> {
+        // False for NaN as well.
+        if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
+            return Err(SceneError::Origin { origin });
+        }
+        let colors = palette.len();
+        let without_color = match &color_indices {
+            None => (colors == 0).then_some(0),
+            Some(places) => {
+                let bad = places.iter().position(|place| *place as usize >= colors);
+                bad.or((places.len() < spheres.len()).then_some(places.len()))
+            }
+        };
+        if let Some(index) = without_color.filter(|index| *index < spheres.len()) {
+            return Err(SceneError::Color { index, colors });
+        }
+        // In its frame: what rounding the offset adds is no reason to refuse a sphere at the very edge.
+        let in_frame = |sphere: &[f32; 4]| {
+            let [x, y, z, radius] = sphere.map(f64::from);
+            [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
+        };
+        bounds_of_checked(&spheres, in_frame)?;
+        let in_world =
+            |[x, y, z, radius]: [f64; 4]| Bounds::of_sphere(origin + DVec3::new(x, y, z), radius);
+        let bounds = spheres.iter().map(|s| in_world(s.map(f64::from))).reduce(Bounds::union);
+        Ok(Self { origin, spheres, palette, color_indices, bounds })
     }
 
     /// Where the scene's frame lies in the world.
@@ -150,6 +204,10 @@ impl Scene {
         self.spheres.is_empty()
     }
 }
+
+/// Offsets are shorter than this times them by no more than rounding.
+#[cfg(feature = "run-file")]
+const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;
 
 fn f64_parts(sphere: &Sphere) -> [f64; 4] {
     let [x, y, z] = sphere.center;

@@ -15,6 +15,17 @@ pub enum Shading {
     Headlight,
 }
 
+impl Shading {
+    /// The name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Headlight => "headlight",
+        }
+    }
+}
+
 /// What a render needs to know beside scene, camera and film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {

@@ -15,7 +15,7 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// The text, cut off where it becomes too long for a message.
-#[cfg(any(feature = "scene-file", feature = "xyz", feature = "npy"))]
+#[cfg(any(feature = "scene-file", feature = "xyz", feature = "npy", feature = "run-file"))]
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {

@@ -60,6 +60,25 @@ pub struct CameraVectors {
     pub forward: DVec3,
 }
 
+#[cfg(feature = "run-file")]
+impl CameraVectors {
+    /// Vectors as [`Camera::vectors`] gives them, in the order of the fields, checked as far as every camera
+    /// keeps to it.
+    pub(crate) fn checked([origin, right, up, forward]: [DVec3; 4]) -> Result<Self, CameraError> {
+        pose::checked_point("the origin", origin)?;
+        for (parameter, value) in
+            [("length of right", right), ("length of up", up), ("length of forward", forward)]
+        {
+            // They are products of a length in range and a vector of unit length up to rounding.
+            let length = value.length();
+            if !(0.5 * MIN_LENGTH..=2.0 * MAX_LENGTH).contains(&length) {
+                return Err(CameraError::Length { parameter, value: length });
+            }
+        }
+        Ok(Self { origin, right, up, forward })
+    }
+}
+
 /// The one list of cameras. A row is: variant, type, name in files and of the WGSL part, and the
 /// type that reads the camera's table in a scene file.
 macro_rules! camera_table {

@@ -145,7 +145,7 @@ impl Pose {
     }
 }
 
-fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
+pub(super) fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
     // False for NaN as well.
     if value.to_array().iter().all(|x| x.abs() <= MAX_LENGTH) {
         Ok(())

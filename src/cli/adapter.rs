@@ -2,8 +2,11 @@
 
 use serde::Serialize;
 
+#[cfg(feature = "gpu")]
 use super::bench_report::{DEVICE_CLOCK, HOST_CLOCK};
+#[cfg(feature = "gpu")]
 use crate::gpu::Headless;
+use crate::verify::run_file::Provenance;
 
 #[derive(Serialize)]
 pub(super) struct AdapterReport {
@@ -15,6 +18,7 @@ pub(super) struct AdapterReport {
 }
 
 impl AdapterReport {
+    #[cfg(feature = "gpu")]
     pub(super) fn of(headless: &Headless) -> Self {
         let info = headless.adapter_info();
         Self {
@@ -26,7 +30,20 @@ impl AdapterReport {
         }
     }
 
+    /// The one that a run comes from.
+    pub(super) fn of_run(provenance: &Provenance) -> Self {
+        let Provenance { adapter, backend, device_type, driver, driver_info, .. } = provenance;
+        Self {
+            name: adapter.clone(),
+            backend: backend.clone(),
+            device_type: device_type.clone(),
+            driver: driver.clone(),
+            driver_info: driver_info.clone(),
+        }
+    }
+
     /// Which clock tells how long it works.
+    #[cfg(feature = "gpu")]
     pub(super) fn clock(&self) -> &'static str {
         if self.device_type == "Cpu" { HOST_CLOCK } else { DEVICE_CLOCK }
     }

@@ -25,6 +25,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Render a scene file or a data file
     Render(Box<RenderArgs>),
+    /// Render on an adapter, and decide of every pixel whether a conforming device may have made it
+    Verify(Box<VerifyArgs>),
     /// Say what a render would take of the device and the machine, and whether it fits
     #[cfg(feature = "gpu")]
     Plan(Box<PlanArgs>),
@@ -61,7 +63,14 @@ pub(super) struct InputArgs {
     /// A scene file (.toml), or a data file (.xyz, .extxyz, .npy, .npz; .bin with --format), which is framed by
     /// itself
     #[arg(value_name = "SCENE_OR_DATA")]
-    pub(super) input: PathBuf,
+    pub(super) path: PathBuf,
+    #[command(flatten)]
+    pub(super) view: ViewArgs,
+}
+
+/// What flags say of an input.
+#[derive(Debug, Args)]
+pub(super) struct ViewArgs {
     /// What a data file is, whatever its extension says
     #[arg(long, value_enum)]
     pub(super) format: Option<DataFormat>,
@@ -164,6 +173,65 @@ impl From<Structure> for AccelChoice {
     }
 }
 
+/// Arguments of `verify` that say what is rendered, and by what; a recording has all that in it.
+const RENDERING: [&str; 18] = [
+    "path",
+    "format",
+    "radius",
+    "color",
+    "frame",
+    "size",
+    "camera",
+    "eye",
+    "look_at",
+    "direction",
+    "up",
+    "fov",
+    "distance",
+    "half_extent",
+    "adapter",
+    "limits",
+    "accel",
+    "save",
+];
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "What is checked, in f64 and with a bound for every rounding that WGSL leaves open: the numbers \
+    that the device was given, every ray, hit, depth, normal and color. Where several answers are legal, the one \
+    given must be among them. The CPU reference never stands in for an adapter.\n\n\
+    Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
+    or RUN is damaged; 2 wrong usage; 3 the picture is not legal.\n\n\
+    JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
+    `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
+    `decided_fraction`, `worst_depth` and `worst_normal` (of their bounds), `upload` (null, or what is wrong), \
+    `violations` (the first hundred: pixel, stage, message), `legal`, `command`. `version` and `command` are those \
+    of the program that rendered. Keys may be added, not changed."
+)]
+pub(super) struct VerifyArgs {
+    /// A scene file or a data file, as `render` takes them
+    #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]
+    pub(super) path: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) view: ViewArgs,
+    #[command(flatten)]
+    pub(super) adapter: AdapterArgs,
+    #[command(flatten)]
+    pub(super) accel: AccelArgs,
+    /// Also write what was found as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+    /// Also write a page for people, report.html, into this folder; it is created if it is missing
+    #[arg(long, value_name = "DIR")]
+    pub(super) report: Option<PathBuf>,
+    /// Also keep scene and recording in a file, for --replay
+    #[arg(long, value_name = "RUN")]
+    pub(super) save: Option<PathBuf>,
+    /// Check a recording that was saved; needs no adapter
+    #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING)]
+    pub(super) replay: Option<PathBuf>,
+}
+
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
@@ -259,4 +327,22 @@ pub(super) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn a_recording_excludes_whatever_says_what_is_rendered() {
+        let arguments = Arguments::command();
+        let verify = arguments.find_subcommand("verify").unwrap();
+        let others = ["json", "report", "replay", "help"];
+        let ids = verify.get_arguments().map(|argument| argument.get_id().as_str());
+        let rendering: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
+        assert!(rendering.iter().all(|id| RENDERING.contains(id)), "{rendering:?}");
+        assert_eq!(rendering.len(), RENDERING.len());
+    }
 }

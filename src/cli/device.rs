@@ -169,11 +169,24 @@ impl WantedAdapter {
 /// The line for an error of a device, with its name and what may help.
 #[cfg(feature = "gpu")]
 pub(super) fn explained(headless: &Headless, error: &GpuError) -> Failure {
-    let adapter = &headless.adapter_info().name;
     let remedy = match error {
-        GpuError::Stopped => return Failure::Stopped,
         GpuError::Limit { .. } => "; --backend cpu has no such limit",
         _ => "",
     };
-    Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}"))
+    named(headless, error, remedy)
+}
+
+/// As [`explained`], where the CPU reference is no remedy.
+#[cfg(feature = "gpu")]
+pub(super) fn explained_alone(headless: &Headless, error: &GpuError) -> Failure {
+    named(headless, error, "")
+}
+
+#[cfg(feature = "gpu")]
+fn named(headless: &Headless, error: &GpuError, remedy: &str) -> Failure {
+    let adapter = &headless.adapter_info().name;
+    match error {
+        GpuError::Stopped => Failure::Stopped,
+        _ => Failure::Job(anyhow::anyhow!("{adapter}: {error}{remedy}")),
+    }
 }

@@ -26,7 +26,6 @@ pub(super) enum Failure {
     /// The job could not be done.
     Job(anyhow::Error),
     /// The job was done, and what was checked is not as it must be.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "devices are checked"))]
     Unproven(anyhow::Error),
     /// The user stopped it while a device was at work.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "elsewhere the program exits"))]

@@ -7,7 +7,7 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
-use super::args::InputArgs;
+use super::args::{InputArgs, ViewArgs};
 use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
 use super::memory;
@@ -89,17 +89,22 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn new(args: &InputArgs) -> Result<Self, Failure> {
+    pub(super) fn new(InputArgs { path, view }: &InputArgs) -> Result<Self, Failure> {
+        Self::of_view(path, view)
+    }
+
+    /// Of a path with flags.
+    pub(super) fn of_view(path: &Path, args: &ViewArgs) -> Result<Self, Failure> {
         let format = match args.format {
             Some(format) => Format::Data(format),
-            None => Format::of(&args.input).map_err(Failure::Usage)?,
+            None => Format::of(path).map_err(Failure::Usage)?,
         };
         let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
         let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
         let options = DataOptions { frame: args.frame, radius: args.radius, color };
         check_flags(format, &options)?;
         Ok(Self {
-            path: args.input.clone(),
+            path: path.to_path_buf(),
             format,
             size: args.size.as_deref().map(parse_size).transpose()?,
             options,
@@ -254,7 +259,7 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
 const FIRST_PIECE: u64 = 1 << 20;
 
 /// All of a file, in one piece of memory of its size.
-fn read(path: &Path) -> Result<Vec<u8>> {
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
         bail!("{}: this is a folder; name a file", path.display());
     }

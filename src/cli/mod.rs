@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-#[cfg(feature = "gpu")]
 mod adapter;
 mod args;
 #[cfg(feature = "gpu")]
@@ -38,6 +37,13 @@ mod speak;
 #[cfg(feature = "gpu")]
 mod table;
 mod threads;
+mod verify;
+mod verify_output;
+mod verify_page;
+mod verify_pictures;
+mod verify_report;
+#[cfg(feature = "gpu")]
+mod with_scene;
 
 use args::{Arguments, Command};
 use speak::{answer, tell, tell_all};
@@ -52,6 +58,7 @@ pub fn main() -> ExitCode {
     };
     let result = interrupt::install().and_then(|()| match arguments.command {
         Command::Render(args) => render::run(&args),
+        Command::Verify(args) => verify::run(&args),
         #[cfg(feature = "gpu")]
         Command::Plan(args) => plan::run(&args),
         #[cfg(feature = "gpu")]

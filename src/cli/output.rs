@@ -34,29 +34,18 @@ impl Outputs {
             Some(picture.to_path_buf())
         };
         let layers = layers.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>, _>>()?;
-        let mut seen = HashSet::new();
-        for path in picture.iter().chain(layers.iter().map(|(_, path)| path)) {
-            if !seen.insert(real(path)) {
-                return Err(Failure::usage(format!(
-                    "{}: two outputs are this file",
-                    path.display()
-                )));
-            }
-        }
-        Ok(Self { picture, layers })
+        let outputs = Self { picture, layers };
+        check_distinct(outputs.paths())?;
+        Ok(outputs)
+    }
+
+    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
     }
 
     /// Refuses to overwrite what was read.
     pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        let inputs: Vec<PathBuf> = inputs.iter().map(|path| real(path)).collect();
-        let mut outputs = self.picture.iter().chain(self.layers.iter().map(|(_, path)| path));
-        match outputs.find(|path| inputs.contains(&real(path))) {
-            None => Ok(()),
-            Some(path) => Err(Failure::usage(format!(
-                "{}: this output is an input as well; give it another name",
-                path.display()
-            ))),
-        }
+        spare(self.paths(), inputs)
     }
 
     /// The layers to render.
@@ -87,6 +76,72 @@ impl Outputs {
             answer(&picture).context("standard output: cannot be written")?;
         }
         Ok(())
+    }
+}
+
+/// Refuses one file for two outputs.
+pub(super) fn check_distinct<'a>(
+    outputs: impl Iterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    let mut seen = HashSet::new();
+    for path in outputs {
+        if !seen.insert(real(path)) {
+            return Err(Failure::usage(format!("{}: two outputs are this file", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to overwrite what was read.
+pub(super) fn spare<'a>(
+    mut outputs: impl Iterator<Item = &'a PathBuf>,
+    inputs: &[PathBuf],
+) -> Result<(), Failure> {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| real(path)).collect();
+    match outputs.find(|path| inputs.contains(&real(path))) {
+        None => Ok(()),
+        Some(path) => Err(Failure::usage(format!(
+            "{}: this output is an input as well; give it another name",
+            path.display()
+        ))),
+    }
+}
+
+/// A folder that will be made if it is not there.
+#[derive(Debug)]
+pub(super) struct NewFolder(PathBuf);
+
+impl NewFolder {
+    /// Refuses what is no folder and cannot become one, and one in which `file` cannot be written.
+    pub(super) fn new(path: &Path, file: &str) -> Result<Self, Failure> {
+        // Without a separator at the end.
+        let path: PathBuf = path.components().collect();
+        if path.is_dir() {
+            check_place(&path.join(file))?;
+        } else if path.exists() {
+            return Err(Failure::usage(format!(
+                "{}: this is a file; name a folder",
+                path.display()
+            )));
+        } else {
+            check_place(&path)?;
+        }
+        Ok(Self(path))
+    }
+
+    /// Makes it while files are written into it; if they are not, it is as it was.
+    pub(super) fn with<T>(&self, write: impl FnOnce() -> Result<T>) -> Result<T> {
+        let is_new = !self.0.is_dir();
+        if is_new {
+            std::fs::create_dir(&self.0)
+                .with_context(|| format!("{}: cannot be created", self.0.display()))?;
+        }
+        write().inspect_err(|_| {
+            if is_new {
+                // What holds something stays.
+                let _ = std::fs::remove_dir(&self.0);
+            }
+        })
     }
 }
 
@@ -152,11 +207,11 @@ fn without_name(error: &io::Error) -> anyhow::Error {
     anyhow!("{reason}")
 }
 
-fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
+pub(super) fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
     unnamed_with(path, |file| file.write_all(contents))
 }
 
-fn unnamed_with(
+pub(super) fn unnamed_with(
     path: &Path,
     write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
 ) -> Result<NamedTempFile> {
@@ -171,7 +226,7 @@ fn unnamed_with(
 }
 
 /// Gives complete files their names. If one cannot have its name, those that were new are removed again.
-fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
+pub(super) fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let any = !files.is_empty();
     interrupt::all_or_nothing(any, || name_each(files))
 }
@@ -233,7 +288,7 @@ fn check_file(path: &Path, wanted: &str) -> Result<(), Failure> {
 }
 
 /// Refuses folders, and files in folders that are not there or cannot be written.
-fn check_place(path: &Path) -> Result<(), Failure> {
+pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
     let ends_with_separator = path
         .as_os_str()
         .as_encoded_bytes()

@@ -8,18 +8,18 @@ use super::device::explained;
 use super::device::{Device, Opened};
 use super::failure::Failure;
 use super::input::{Input, Source};
-#[cfg(feature = "gpu")]
-use super::interrupt;
 use super::memory;
 use super::output::Outputs;
 use super::progress;
 use super::speak::tell;
 use super::threads;
 #[cfg(feature = "gpu")]
-use crate::accel::{AccelChoice, AccelPlan};
+use super::with_scene::with_scene;
+#[cfg(feature = "gpu")]
+use crate::accel::AccelChoice;
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::{GpuError, Headless, Progress};
+use crate::gpu::Headless;
 use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
@@ -90,49 +90,11 @@ fn on_gpu(
     layers: LayerSet,
     choice: AccelChoice,
 ) -> Result<Image, Failure> {
-    let mut tried = choice;
-    loop {
-        let accel = headless.plan_once(&input.scene, tried, &input.film);
-        let structure = accel.structure;
-        match (with_structure(headless, input, layers, accel)?, structure.instead()) {
-            (Err(GpuError::Steps), Some(other)) if choice == AccelChoice::Auto => {
-                tell(format_args!(
-                    "note: rays take more steps in the {} than this device may loop for; \
-                     trying the structure `{other}`, which takes longer",
-                    structure.name()
-                ));
-                tried = other;
-            }
-            (image, _) => return image.map_err(|error| explained(headless, &error)),
-        }
-    }
-}
-
-/// Renders by a structure. The errors within are the device's.
-#[cfg(feature = "gpu")]
-fn with_structure(
-    headless: &Headless,
-    input: &Input,
-    layers: LayerSet,
-    accel: AccelPlan,
-) -> Result<Result<Image, GpuError>, Failure> {
     let Input { scene, camera, film, settings, .. } = input;
-    progress::stage("planning");
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let plan = headless.plan_render(scene, accel, film, layers, encoding);
-    let limits = headless.device().limits();
-    plan.check(&limits, memory::available()).map_err(|error| explained(headless, &error))?;
-    progress::stage(format!("building: {}", plan.accel.structure.name()));
-    let accel = plan.accel.build(scene.spheres());
-    progress::stage("copying to the device");
-    interrupt::on_device(|| {
-        let buffers = headless.upload(scene, &accel)?;
-        drop(accel);
-        progress::stage("preparing");
-        let mut watch = |Progress { done, total }| {
-            progress::tracing(done, total);
-            interrupt::decide()
-        };
-        headless.render_uploaded(&buffers, camera.as_ref(), film, settings, layers, &mut watch)
-    })
+    let plan = |accel| headless.plan_render(scene, accel, film, layers, encoding);
+    let rendered = with_scene(headless, input, choice, plan, |buffers, watch| {
+        headless.render_uploaded(buffers, camera.as_ref(), film, settings, layers, watch)
+    })?;
+    Ok(rendered.map_err(|error| explained(headless, &error))?.0)
 }

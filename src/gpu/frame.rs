@@ -353,9 +353,10 @@ pub(super) fn rows_per_band(
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 
-/// Bytes of the hits of targets of a size.
-pub(super) fn hit_bytes(limits: &wgpu::Limits, size: [u32; 2]) -> u64 {
-    u64::from(size[0]) * u64::from(rows_per_band(limits, size, false)) * HIT_BYTES
+/// Bytes of the hits of targets of a size, and of their rays if they are kept.
+pub(super) fn band_bytes(limits: &wgpu::Limits, size: [u32; 2], keeps_rays: bool) -> [u64; 2] {
+    let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
+    [pixels * HIT_BYTES, if keeps_rays { pixels * RAY_BYTES } else { 0 }]
 }
 
 /// How many iterations of loops an invocation may take.

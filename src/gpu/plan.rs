@@ -3,7 +3,7 @@
 use wgpu::{DeviceType, Limits};
 
 use super::error::GpuError;
-use super::frame::hit_bytes;
+use super::frame::{band_bytes, rows_per_band};
 use super::headless::Headless;
 use super::records;
 use super::tile_textures;
@@ -12,6 +12,7 @@ use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::film::Film;
 use crate::image::LayerSet;
 use crate::scene::Scene;
+use crate::verify::{Checker, TracedPixel, Verdict};
 
 /// What a render by [`Headless`] takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
 /// records for each brick come on top.
@@ -46,6 +47,8 @@ pub enum HostPeak {
     Uploading,
     /// Once there is the picture.
     Picture,
+    /// While a recording is checked.
+    Checking,
 }
 
 impl RenderPlan {
@@ -61,11 +64,56 @@ impl RenderPlan {
         (limits, device_type): (&Limits, DeviceType),
         host_bytes_per_pixel: u64,
     ) -> Self {
+        let device = (limits, device_type);
+        Self::planned(scene, film, layers, accel, device, host_bytes_per_pixel, false)
+    }
+
+    /// As [`RenderPlan::new`], of all layers and with every ray and hit, and of checking them.
+    #[must_use]
+    pub fn of_recording(
+        scene: &Scene,
+        film: &Film,
+        accel: AccelPlan,
+        device: (&Limits, DeviceType),
+        host_bytes_per_pixel: u64,
+    ) -> Self {
+        // The verdicts are gathered from parts.
+        let judged = (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64;
+        let per_pixel = host_bytes_per_pixel.saturating_add(judged);
+        let mut plan = Self::planned(scene, film, LayerSet::ALL, accel, device, per_pixel, true);
+        let picture =
+            film.pixel_count().saturating_mul(LayerSet::ALL.bytes_per_pixel() + per_pixel);
+        let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
+        let checking = picture.saturating_add(checker);
+        if checking > plan.host_bytes {
+            (plan.host_peak, plan.host_bytes) = (HostPeak::Checking, checking);
+        }
+        plan
+    }
+
+    fn planned(
+        scene: &Scene,
+        film: &Film,
+        layers: LayerSet,
+        accel: AccelPlan,
+        (limits, device_type): (&Limits, DeviceType),
+        host_bytes_per_pixel: u64,
+        keeps_rays: bool,
+    ) -> Self {
         let scene_buffers = scene_buffers(scene, &accel);
-        let tile_size = tile_size(film, limits.max_texture_dimension_2d);
-        let hits = hit_bytes(limits, tile_size);
-        let tile_buffers = vec![PlannedBuffer::one("hits", hits)];
-        let tile_textures = tile_textures::planned(tile_size, layers != LayerSet::COLOR);
+        let mut tile_size = tile_size(film, limits.max_texture_dimension_2d);
+        let mut tile_textures = Vec::new();
+        if keeps_rays {
+            tile_size[1] = tile_size[1].min(rows_per_band(limits, tile_size, true));
+        }
+        let [hits, rays] = band_bytes(limits, tile_size, keeps_rays);
+        let mut tile_buffers = vec![PlannedBuffer::one("hits", hits)];
+        if keeps_rays {
+            tile_buffers.push(PlannedBuffer::one("rays", rays));
+            tile_textures.push(PlannedBuffer::one("hits read-back", hits));
+            tile_textures.push(PlannedBuffer::one("rays read-back", rays));
+        }
+        tile_textures.extend(tile_textures::planned(tile_size, layers != LayerSet::COLOR));
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| if device_type == DeviceType::Cpu { bytes } else { 0 };
@@ -154,6 +202,20 @@ impl Headless {
         let device = (&limits, self.adapter_info().device_type);
         RenderPlan::new(scene, film, layers, accel, device, host_bytes_per_pixel)
     }
+
+    /// What [`Headless::record`] will take, and checking what it gives; otherwise as [`Headless::plan_render`].
+    #[must_use]
+    pub fn plan_record(
+        &self,
+        scene: &Scene,
+        accel: AccelPlan,
+        film: &Film,
+        host_bytes_per_pixel: u64,
+    ) -> RenderPlan {
+        let limits = self.device().limits();
+        let device = (&limits, self.adapter_info().device_type);
+        RenderPlan::of_recording(scene, film, accel, device, host_bytes_per_pixel)
+    }
 }
 
 impl HostPeak {
@@ -164,13 +226,14 @@ impl HostPeak {
             Self::Building => "building the structure",
             Self::Uploading => "copying the scene to the device",
             Self::Picture => "the picture",
+            Self::Checking => "checking the picture",
         }
     }
 
     /// What to choose if there is not enough.
     const fn instead(self, structure: Structure) -> &'static str {
         match (self, structure) {
-            (Self::Picture, _) => "a smaller size",
+            (Self::Picture | Self::Checking, _) => "a smaller size",
             (_, Structure::Grid(_)) => "fewer spheres, or the structure `tree`",
             _ => "fewer spheres",
         }
@@ -202,6 +265,7 @@ fn in_words(name: &str) -> &'static str {
         "colors" => "the buffer of colors",
         "palette" => "the palette",
         "hits" => "the buffer of hits",
+        "rays" => "the buffer of rays",
         "nodes" | "cells" | "references" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
@@ -253,6 +317,21 @@ mod tests {
             software.check(&Limits::default(), Some(software.host_bytes - 1)),
             Err(GpuError::HostMemory { what: "the picture", .. })
         ));
+    }
+
+    #[test]
+    fn a_recording_keeps_rays_and_hits() {
+        let plan = plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
+        let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]; 1000], LinearRgb::WHITE).unwrap();
+        let film = Film::new(1024, 1024).unwrap();
+        let device = (&Limits::default(), DeviceType::DiscreteGpu);
+        let recording = RenderPlan::of_recording(&scene, &film, plan.accel.clone(), device, 16);
+        assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
+        // A ray, and both read back.
+        assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));
+        assert_eq!(recording.host_peak, HostPeak::Checking);
+        assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2) << 20) + 40_000);
+        assert_eq!(recording.check(&Limits::default(), None), Ok(()));
     }
 
     #[test]

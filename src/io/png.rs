@@ -15,14 +15,14 @@ const CHUNK: usize = 1 << 14;
 /// # Errors
 /// If the picture cannot be encoded, which for sizes that PNG allows does not happen.
 pub fn encode(picture: &Image) -> Result<Vec<u8>, PngError> {
+    encode_rgb8([picture.width(), picture.height()], &srgb8(picture.color()))
+}
+
+/// A PNG file of so many pixels, of three bytes each.
+pub(crate) fn encode_rgb8([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
-        .write_image(
-            &srgb8(picture.color()),
-            picture.width(),
-            picture.height(),
-            ExtendedColorType::Rgb8,
-        )
+        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
         .map_err(|error| PngError { message: error.to_string() })?;
     Ok(bytes)
 }

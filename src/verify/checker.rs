@@ -31,6 +31,11 @@ struct Part {
     worst_normal: f64,
 }
 
+impl Checker<'_> {
+    /// The most bytes that it takes for a sphere.
+    pub const BYTES_PER_SPHERE: u64 = 40;
+}
+
 impl<'a> Checker<'a> {
     /// Prepares a scene: 24 bytes a sphere, and 8 to 16 of boxes.
     ///

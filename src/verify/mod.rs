@@ -35,6 +35,8 @@ mod line;
 mod pixel;
 mod recording;
 mod rounding;
+#[cfg(feature = "run-file")]
+pub mod run_file;
 mod shading;
 mod sphere;
 mod upload;

@@ -39,6 +39,18 @@ fn the_reference_and_the_gpu_do_not_know_each_other() {
     assert_absent("src/gpu", &["crate::cpu", "cpu::"], &[]);
 }
 
+/// What judges shares nothing with what is judged, and nothing with what judged it before.
+#[test]
+fn the_checker_knows_no_structure_and_no_renderer() {
+    for (path, text) in sources("src/verify") {
+        for line in text.lines() {
+            let words = ["crate::accel", "crate::cpu", "crate::gpu"];
+            let names = words.iter().any(|word| line.contains(word));
+            assert!(!names || line.trim_start().starts_with("//"), "{}: {line}", path.display());
+        }
+    }
+}
+
 #[test]
 fn only_the_gpu_module_and_the_program_name_wgpu() {
     for (path, text) in sources("src") {

@@ -25,6 +25,7 @@ mod npy;
 mod perspective;
 mod rays;
 mod reference;
+mod run_file;
 mod scene;
 mod scene_file;
 mod soundness;

@@ -19,6 +19,7 @@ mod self_test;
 mod structures;
 mod twin;
 mod verify;
+mod verify_program;
 mod verify_views;
 
 use std::sync::LazyLock;
@@ -65,6 +66,7 @@ fn main() {
         self_test::trials(),
         twin::trials(),
         verify::trials(),
+        verify_program::trials(),
     ];
     let trials =
         groups.into_iter().flatten().map(|trial| trial.with_ignored_flag(without_gpu)).collect();

@@ -13,3 +13,4 @@ mod generate;
 mod good_input;
 mod interrupt;
 mod support;
+mod verify;

@@ -1,0 +1,140 @@
+//! `pinhole verify`: renders on an adapter, or reads what one rendered, and decides whether it is legal.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+
+use super::args::VerifyArgs;
+use super::failure::Failure;
+use super::input::read;
+use super::speak::answer;
+use super::verify_output::VerifyOutputs;
+use super::verify_report::Report;
+use super::{progress, threads};
+use crate::verify::run_file::{self, Run};
+use crate::verify::{Certificate, Checker, Verdict};
+
+pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let (run, outputs) = match (&args.replay, &args.path) {
+        (Some(path), _) => replayed(path, args)?,
+        (None, Some(path)) => recorded::recorded(path, args)?,
+        (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
+    };
+    progress::stage("checking");
+    let checker = Checker::new(&run.scene).context("the checker")?;
+    let certificate = checker.certify(&run.recording);
+    drop(checker);
+    let report = Report::new(&run, &certificate);
+    progress::clear();
+    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    outputs.write(&run, &certificate, &report)?;
+    verdict(&certificate)
+}
+
+/// What somebody saved.
+fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
+    let outputs = VerifyOutputs::new(args)?;
+    outputs.spare(&[path.to_path_buf()])?;
+    threads::start()?;
+    progress::stage(format!("reading {}", path.display()));
+    let bytes = read(path)?;
+    let run = run_file::read(&bytes).with_context(|| path.display().to_string())?;
+    Ok((run, outputs))
+}
+
+fn verdict(certificate: &Certificate) -> Result<(), Failure> {
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::Unproven(anyhow!("the picture is not legal: {error}")));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::Unproven(anyhow!(
+            "the picture is not legal: {} of {} pixels; the first is {first}",
+            certificate.count(Verdict::Violation),
+            certificate.verdicts.len()
+        ))),
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+mod recorded {
+    use super::*;
+
+    pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
+        Err(Failure::usage(
+            "this program was built without the feature `gpu`; it has only `pinhole verify --replay RUN`",
+        ))
+    }
+}
+
+#[cfg(feature = "gpu")]
+mod recorded {
+    use super::*;
+    use crate::accel::Structure;
+    use crate::cli::adapter::AdapterReport;
+    use crate::cli::device::{WantedAdapter, choice, explained_alone};
+    use crate::cli::input::Source;
+    use crate::cli::memory;
+    use crate::cli::speak::tell;
+    use crate::cli::verify_report::command_line;
+    use crate::cli::with_scene::with_scene;
+    use crate::gpu::Headless;
+    use crate::verify::run_file::Provenance;
+
+    /// What an adapter makes of a scene now.
+    pub(super) fn recorded(
+        path: &Path,
+        args: &VerifyArgs,
+    ) -> Result<(Run, VerifyOutputs), Failure> {
+        let source = Source::of_view(path, &args.view)?;
+        let outputs = VerifyOutputs::new(args)?;
+        let wanted = WantedAdapter::new(&args.adapter);
+        threads::start()?;
+        let input = source.load()?;
+        outputs.spare(&input.files)?;
+        for note in &input.notes {
+            tell(format_args!("note: {note}"));
+        }
+        let headless = wanted.open_any()?;
+        check_adapter(&headless)?;
+        let (scene, film, settings) = (&input.scene, &input.film, &input.settings);
+        let camera = input.camera.as_ref();
+        let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+        let plan = |accel| headless.plan_record(scene, accel, film, encoding);
+        let done =
+            with_scene(&headless, &input, choice(args.accel.accel), plan, |buffers, watch| {
+                headless.record(buffers, camera, film, settings, watch)
+            })?;
+        let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
+        let provenance = provenance(&headless, structure);
+        Ok((Run { scene: input.scene, recording, provenance }, outputs))
+    }
+
+    /// Whether the adapter computes as the checker's bounds assume. The place for the adapter's self-test.
+    #[expect(clippy::unnecessary_wraps, reason = "the self-test will fail")]
+    fn check_adapter(_headless: &Headless) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn provenance(headless: &Headless, structure: Structure) -> Provenance {
+        let AdapterReport { name, backend, device_type, driver, driver_info } =
+            AdapterReport::of(headless);
+        let limits = headless.device().limits();
+        let limits = [
+            ("max_buffer_size", limits.max_buffer_size),
+            ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+            ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
+        ];
+        Provenance {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            command: command_line(),
+            adapter: name,
+            backend,
+            device_type,
+            driver,
+            driver_info,
+            structure: structure.name().to_owned(),
+            limits: limits.map(|(name, limit)| (name.to_owned(), limit)).into(),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! A scene on a device, in the structure that suits it, and work with it.
+
+use super::failure::Failure;
+use super::input::Input;
+use super::speak::tell;
+use super::{interrupt, memory, progress};
+use crate::accel::{AccelChoice, AccelPlan, Structure};
+use crate::gpu::{GpuError, Headless, Progress, RenderPlan, SceneBuffers, Watch};
+
+/// Does some work, of which `plan` says what it takes, and says by which structure it was done. Where rays take
+/// too many steps in the structure, and the choice was free, it is done once more with another. The errors within
+/// are the device's.
+pub(super) fn with_scene<T>(
+    headless: &Headless,
+    input: &Input,
+    choice: AccelChoice,
+    plan: impl Fn(AccelPlan) -> RenderPlan,
+    work: impl Fn(&SceneBuffers, &mut Watch<'_>) -> Result<T, GpuError>,
+) -> Result<Result<(T, Structure), GpuError>, Failure> {
+    let mut tried = choice;
+    loop {
+        let accel = headless.plan_once(&input.scene, tried, &input.film);
+        let structure = accel.structure;
+        progress::stage("planning");
+        let plan = plan(accel);
+        match (with_plan(headless, input, &plan, &work)?, structure.instead()) {
+            (Err(GpuError::Steps), Some(other)) if choice == AccelChoice::Auto => {
+                tell(format_args!(
+                    "note: rays take more steps in the {} than this device may loop for; \
+                     trying the structure `{other}`, which takes longer",
+                    structure.name()
+                ));
+                tried = other;
+            }
+            (done, _) => return Ok(done.map(|done| (done, structure))),
+        }
+    }
+}
+
+fn with_plan<T>(
+    headless: &Headless,
+    input: &Input,
+    plan: &RenderPlan,
+    work: impl Fn(&SceneBuffers, &mut Watch<'_>) -> Result<T, GpuError>,
+) -> Result<Result<T, GpuError>, Failure> {
+    if let Err(error) = plan.check(&headless.device().limits(), memory::available()) {
+        return Ok(Err(error));
+    }
+    progress::stage(format!("building: {}", plan.accel.structure.name()));
+    let accel = plan.accel.build(input.scene.spheres());
+    progress::stage("copying to the device");
+    interrupt::on_device(|| {
+        let buffers = headless.upload(&input.scene, &accel)?;
+        drop(accel);
+        progress::stage("preparing");
+        let mut watch = |Progress { done, total }| {
+            progress::tracing(done, total);
+            interrupt::decide()
+        };
+        work(&buffers, &mut watch)
+    })
+}

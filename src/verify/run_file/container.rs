@@ -1,0 +1,214 @@
+//! The file around the arrays: `safetensors`, with a digest of every byte.
+//!
+//! A header's length in eight bytes; the header, in JSON; the arrays, one behind the other. The crate's own writer
+//! puts metadata into a random order, and its reader adds up lengths unchecked, so that hostile ones would panic;
+//! so of it only the header's types and their checks are used.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use safetensors::tensor::{Metadata, TensorInfo};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use super::numbers::{Array, Number, Sink};
+use super::{RunFileError, VERSION, hex};
+use crate::parallel::try_map;
+use crate::text::shortened;
+
+/// How every header begins.
+const START: &[u8] = br#"{"__metadata__":{"#;
+
+/// Bytes before the header.
+const LENGTH: usize = size_of::<u64>();
+
+/// What stands in the place of the digest while it is computed.
+const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+
+/// The file's digest, among the metadata.
+const DIGEST: &str = "sha256";
+
+/// The format's version, among the metadata.
+const FORMAT: &str = "pinhole_run";
+
+#[derive(Serialize)]
+struct Header<'a> {
+    #[serde(rename = "__metadata__")]
+    metadata: &'a BTreeMap<String, String>,
+    #[serde(flatten)]
+    arrays: BTreeMap<&'a str, TensorInfo>,
+}
+
+/// Feeds a digest.
+pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<()> {
+    |bytes| {
+        digest.update(bytes);
+        Ok(())
+    }
+}
+
+/// Writes a file of texts and arrays.
+pub(super) fn write(
+    mut metadata: BTreeMap<String, String>,
+    arrays: &[Array<'_>],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    metadata.insert(FORMAT.to_owned(), VERSION.to_owned());
+    metadata.insert(DIGEST.to_owned(), NO_DIGEST.to_owned());
+    let mut end = 0;
+    let infos = arrays.iter().map(|array| {
+        let start = end;
+        end += array.bytes();
+        let (dtype, shape) = (array.dtype, array.shape.clone());
+        (array.name, TensorInfo { dtype, shape, data_offsets: (start, end) })
+    });
+    let header = Header { metadata: &metadata, arrays: infos.collect() };
+    let mut header = serde_json::to_vec(&header)?;
+    header.resize(header.len().next_multiple_of(LENGTH), b' ');
+    let length = (header.len() as u64).to_le_bytes();
+
+    let mut digest = Sha256::new();
+    emit(&length, &header, arrays, &mut sink_into(&mut digest))?;
+    let digest = hex(digest);
+    let place = digest_in(&header, NO_DIGEST).ok_or_else(|| io::Error::other("no digest"))?;
+    header[place..place + digest.len()].copy_from_slice(digest.as_bytes());
+    emit(&length, &header, arrays, &mut |bytes| out.write_all(bytes))
+}
+
+fn emit(length: &[u8], header: &[u8], arrays: &[Array<'_>], sink: &mut Sink<'_>) -> io::Result<()> {
+    sink(length)?;
+    sink(header)?;
+    arrays.iter().try_for_each(|array| array.emit(sink))
+}
+
+/// Where a header has its digest. No other text of it reads so, because a quote within a text is escaped.
+fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
+    let before = format!("\"{DIGEST}\":\"");
+    let wanted = format!("{before}{digest}\"");
+    let place = header.windows(wanted.len()).position(|window| window == wanted.as_bytes())?;
+    Some(place + before.len())
+}
+
+/// A file that is whole and unaltered. What is in it may still be anything.
+pub(super) struct Container<'a> {
+    header: Metadata,
+    arrays: &'a [u8],
+}
+
+fn text<'a>(header: &'a Metadata, key: &str) -> Option<&'a str> {
+    Some(header.metadata().as_ref()?.get(key)?.as_str())
+}
+
+pub(super) fn contradiction(message: impl Into<String>) -> RunFileError {
+    RunFileError::Contents { message: message.into() }
+}
+
+impl<'a> Container<'a> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, RunFileError> {
+        let (length, rest) = bytes.split_first_chunk::<LENGTH>().ok_or(RunFileError::NotRun)?;
+        if !rest.starts_with(START) {
+            return Err(RunFileError::NotRun);
+        }
+        let truncated = |expected: u64| RunFileError::Truncated {
+            found: bytes.len() as u64,
+            expected: expected.saturating_add(LENGTH as u64),
+        };
+        let header_length = u64::from_le_bytes(*length);
+        let (header, arrays) = usize::try_from(header_length)
+            .ok()
+            .and_then(|length| rest.split_at_checked(length))
+            .ok_or_else(|| truncated(header_length))?;
+        let parsed: Metadata = serde_json::from_slice(header)
+            .map_err(|error| contradiction(format!("its header cannot be read: {error}")))?;
+        match text(&parsed, FORMAT) {
+            None => return Err(RunFileError::NotRun),
+            Some(VERSION) => {}
+            Some(other) => return Err(RunFileError::Version { found: shortened(other) }),
+        }
+        if parsed.data_len() > arrays.len() {
+            return Err(truncated(header_length.saturating_add(parsed.data_len() as u64)));
+        }
+        let digest = text(&parsed, DIGEST).unwrap_or_default();
+        let place = digest_in(header, digest).filter(|_| digest.len() == NO_DIGEST.len());
+        let place = LENGTH + place.ok_or(RunFileError::Altered)?;
+        let mut found = Sha256::new();
+        found.update(&bytes[..place]);
+        found.update(NO_DIGEST);
+        found.update(&bytes[place + digest.len()..]);
+        if hex(found) != digest {
+            return Err(RunFileError::Altered);
+        }
+        if parsed.data_len() < arrays.len() {
+            return Err(contradiction("there are bytes behind the last array"));
+        }
+        Ok(Self { header: parsed, arrays })
+    }
+
+    /// All texts, with their keys, in no order.
+    pub(super) fn texts(&self) -> impl Iterator<Item = (&String, &String)> {
+        self.header.metadata().iter().flatten()
+    }
+
+    pub(super) fn text(&self, key: &str) -> Result<&str, RunFileError> {
+        text(&self.header, key).ok_or_else(|| contradiction(format!("the text `{key}` is missing")))
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.header.info(name).is_some()
+    }
+
+    /// The shape of an array.
+    pub(super) fn shape(&self, name: &str) -> Result<&[usize], RunFileError> {
+        Ok(&self.info(name)?.shape)
+    }
+
+    fn info(&self, name: &str) -> Result<&TensorInfo, RunFileError> {
+        let info = self.header.info(name);
+        info.ok_or_else(|| contradiction(format!("the array `{name}` is missing")))
+    }
+
+    /// The items of an array whose shape is that of the items, with one axis more if they have several numbers.
+    pub(super) fn items<E: Number, const N: usize>(
+        &self,
+        name: &str,
+        shape: &[usize],
+    ) -> Result<Vec<[E; N]>, RunFileError> {
+        let info = self.info(name)?;
+        let expected: Vec<usize> = shape.iter().copied().chain((N > 1).then_some(N)).collect();
+        if (info.dtype, &info.shape) != (E::DTYPE, &expected) {
+            return Err(contradiction(format!(
+                "the array `{name}` is {} {}; it must be {} {expected:?}",
+                info.dtype,
+                shortened(&format!("{:?}", info.shape)),
+                E::DTYPE
+            )));
+        }
+        let (start, end) = info.data_offsets;
+        let bytes = self.arrays.get(start..end).unwrap_or_default();
+        let item = |i: usize| {
+            let item = &bytes[i * N * E::WIDTH..];
+            std::array::from_fn(|column| E::read(&item[column * E::WIDTH..]))
+        };
+        // The header's reader has made sure that shape and length agree.
+        try_map(bytes.len() / (N * E::WIDTH), item)
+            .map_err(|_| RunFileError::Memory { name: name.to_owned(), bytes: bytes.len() as u64 })
+    }
+
+    /// As [`Container::items`], one number each.
+    pub(super) fn numbers<E: Number>(
+        &self,
+        name: &str,
+        shape: &[usize],
+    ) -> Result<Vec<E>, RunFileError> {
+        Ok(self.items::<E, 1>(name, shape)?.into_iter().map(|[number]| number).collect())
+    }
+
+    /// As [`Container::items`], of which there are so many, known beforehand.
+    pub(super) fn fixed<E: Number, const N: usize, const M: usize>(
+        &self,
+        name: &str,
+    ) -> Result<[[E; N]; M], RunFileError> {
+        let items = self.items(name, if M > 1 { &[M] } else { &[] })?;
+        items.try_into().map_err(|_| contradiction(format!("the array `{name}` is too short")))
+    }
+}

@@ -1,0 +1,150 @@
+//! From bytes to a run.
+
+use glam::DVec3;
+
+use super::container::{Container, contradiction};
+use super::numbers::Flag;
+use super::{LIMIT, Provenance, Run, RunFileError, scene_sha256};
+use crate::camera::{CameraKind, CameraVectors};
+use crate::color::LinearRgb;
+use crate::film::{Film, YAxis};
+use crate::image::Image;
+use crate::parallel::try_map;
+use crate::scene::Scene;
+use crate::settings::{Settings, Shading};
+use crate::text::shortened;
+use crate::verify::{Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+
+/// Reads a run file.
+///
+/// # Errors
+/// If it is none, is of another version, or is not what was written; or if what it says of scene, film, camera or
+/// settings is what they refuse.
+pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
+    let file = Container::open(bytes)?;
+    Ok(Run { scene: scene(&file)?, recording: recording(&file)?, provenance: provenance(&file)? })
+}
+
+fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
+    let count = |name| file.shape(name).map(|shape| shape.first().copied().unwrap_or_default());
+    let spheres = count("spheres")?;
+    let [origin] = file.fixed::<f64, 3, 1>("scene_origin")?;
+    let palette = file.items::<f32, 3>("palette", &[count("palette")?])?;
+    let palette = palette.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
+    let places = file.has("color_index").then(|| file.numbers::<u32>("color_index", &[spheres]));
+    let scene = Scene::from_parts(
+        DVec3::from(origin),
+        file.items::<f32, 4>("spheres", &[spheres])?,
+        palette,
+        places.transpose()?,
+    )
+    .map_err(|error| contradiction(format!("the scene: {error}")))?;
+    if file.text("scene_sha256")? != scene_sha256(&scene) {
+        return Err(contradiction("`scene_sha256` is of other spheres"));
+    }
+    Ok(scene)
+}
+
+fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
+    let film = film(file)?;
+    let shape = [film.height() as usize, film.width() as usize];
+    let [origin, right, up, forward, scene_min, scene_max] = file.fixed::<f32, 3, 6>("view")?;
+    let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
+    let [background] = file.fixed::<f32, 3, 1>("background")?;
+    let settings = Settings::default()
+        .with_shading(named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?)
+        .with_background(color("background", background)?);
+    let image = Image::from_layers(
+        [film.width(), film.height()],
+        file.items("color", &shape)?,
+        file.numbers("depth", &shape)?,
+        file.items("normal", &shape)?,
+        file.numbers("id", &shape)?,
+    );
+    Ok(Recording {
+        camera: camera(file)?,
+        uploaded: UploadedView { origin, advance, right, up, forward, scene_min, scene_max },
+        film,
+        settings,
+        pixels: pixels(file, &shape)?,
+        image,
+    })
+}
+
+fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
+    let [height, width, _] = *file.shape("color")? else {
+        return Err(contradiction("the array `color` has not the shape (H, W, 3)"));
+    };
+    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+    let film = Film::new(side(width), side(height))
+        .map_err(|error| contradiction(format!("the picture: {error}")))?;
+    Ok(film.with_y_axis(named(file, "y_axis", &[YAxis::Up, YAxis::Down], YAxis::name)?))
+}
+
+fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
+    let vectors = CameraVectors::checked(file.fixed::<f64, 3, 4>("camera")?.map(DVec3::from))
+        .map_err(|error| contradiction(format!("the camera: {error}")))?;
+    Ok(RequestedCamera { kind: named(file, "camera", CameraKind::ALL, CameraKind::name)?, vectors })
+}
+
+fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, RunFileError> {
+    let traced = file.numbers::<Flag>("traced", shape)?;
+    if let Some(index) = traced.iter().position(|traced| traced.0 > 1) {
+        return Err(contradiction(format!("the array `traced` has no truth value at {index}")));
+    }
+    let origins = file.items("ray_origin", shape)?;
+    let directions = file.items("ray_direction", shape)?;
+    let distances = file.numbers("ray_distance", shape)?;
+    let (t, ids) = (file.numbers("hit_t", shape)?, file.numbers("hit_id", shape)?);
+    let pixel = |index: usize| {
+        let ray = TracedRay {
+            origin: origins[index],
+            direction: directions[index],
+            distance: distances[index],
+        };
+        TracedPixel { ray: (traced[index].0 == 1).then_some(ray), t: t[index], id: ids[index] }
+    };
+    try_map(traced.len(), pixel).map_err(|_| RunFileError::Memory {
+        name: "pixels".to_owned(),
+        bytes: (traced.len() * size_of::<TracedPixel>()) as u64,
+    })
+}
+
+fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
+    let text = |key| file.text(key).map(str::to_owned);
+    let limits = file.texts().filter_map(|(key, value)| {
+        Some(match (key.strip_prefix(LIMIT)?, value.parse()) {
+            (name, Ok(limit)) => Ok((name.to_owned(), limit)),
+            (name, Err(_)) => Err(contradiction(format!("the limit `{name}` is no number"))),
+        })
+    });
+    Ok(Provenance {
+        version: text("version")?,
+        command: text("command")?,
+        adapter: text("adapter")?,
+        backend: text("backend")?,
+        device_type: text("device_type")?,
+        driver: text("driver")?,
+        driver_info: text("driver_info")?,
+        structure: text("structure")?,
+        limits: limits.collect::<Result<_, _>>()?,
+    })
+}
+
+fn color(name: &str, rgb: [f32; 3]) -> Result<LinearRgb, RunFileError> {
+    LinearRgb::new(rgb).map_err(|error| contradiction(format!("the array `{name}`: {error}")))
+}
+
+/// The one that a text names.
+fn named<T: Copy>(
+    file: &Container<'_>,
+    key: &str,
+    all: &[T],
+    name: fn(T) -> &'static str,
+) -> Result<T, RunFileError> {
+    let text = file.text(key)?;
+    all.iter()
+        .copied()
+        .find(|one| name(*one) == text)
+        .ok_or_else(|| contradiction(format!("there is no {key} `{}`", shortened(text))))
+}

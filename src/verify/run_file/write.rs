@@ -1,0 +1,85 @@
+//! From a run to bytes.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use super::container;
+use super::numbers::{Array, Flag};
+use super::{LIMIT, Provenance, scene_sha256};
+use crate::scene::Scene;
+use crate::verify::{Recording, TracedPixel};
+
+/// Writes a run file: 69 bytes a pixel and 16 or 20 a sphere, in small pieces.
+///
+/// # Errors
+/// If they cannot be written, or if the recording is of another size than its film or lacks a layer.
+pub fn write(
+    scene: &Scene,
+    recording: &Recording,
+    provenance: &Provenance,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let Recording { camera, uploaded, film, settings, pixels, image } = recording;
+    let shape = [film.height() as usize, film.width() as usize];
+    let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id()) else {
+        return Err(io::Error::other("the recording lacks a layer"));
+    };
+    let count = film.pixel_count();
+    if pixels.len() as u64 != count || [image.height(), image.width()].map(|n| n as usize) != shape
+    {
+        return Err(io::Error::other("the recording is of another size than its film"));
+    }
+
+    let mut texts: BTreeMap<String, String> =
+        provenance.texts().map(|(key, text)| (key.to_owned(), text.clone())).into();
+    for (name, limit) in &provenance.limits {
+        texts.insert(format!("{LIMIT}{name}"), limit.to_string());
+    }
+    for (key, text) in [
+        ("camera", camera.kind.name()),
+        ("y_axis", film.y_axis().name()),
+        ("shading", settings.shading().name()),
+    ] {
+        texts.insert(key.to_owned(), text.to_owned());
+    }
+    texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
+
+    let vectors = &camera.vectors;
+    let camera = [vectors.origin, vectors.right, vectors.up, vectors.forward];
+    let view = [
+        uploaded.origin,
+        uploaded.right,
+        uploaded.up,
+        uploaded.forward,
+        uploaded.scene_min,
+        uploaded.scene_max,
+    ];
+    let (origin, advance) = ([scene.origin()], [uploaded.advance]);
+    let background = [settings.background()];
+    let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
+    // The widest numbers first, so that all are aligned.
+    let mut arrays = vec![
+        Array::new("camera", &[4], &camera, |vector| vector.to_array()),
+        Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
+        Array::spheres(scene),
+        Array::new("palette", &[scene.palette().len()], scene.palette(), |c| c.to_array()),
+        Array::new("background", &[], &background, |color| color.to_array()),
+        Array::new("view", &[6], &view, |vector| *vector),
+        Array::new("advance", &[1], &advance, |advance| [*advance]),
+        Array::new("ray_origin", &shape, pixels, move |pixel| ray(pixel).origin),
+        Array::new("ray_direction", &shape, pixels, move |pixel| ray(pixel).direction),
+        Array::new("ray_distance", &shape, pixels, move |pixel| [ray(pixel).distance]),
+        Array::new("hit_t", &shape, pixels, |pixel| [pixel.t]),
+        Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
+        Array::new("color", &shape, image.color(), |color| *color),
+        Array::new("depth", &shape, depth, |depth| [*depth]),
+        Array::new("normal", &shape, normal, |normal| *normal),
+        Array::new("id", &shape, id, |id| [*id]),
+    ];
+    if let Some(places) = scene.color_indices() {
+        arrays.push(Array::new("color_index", &[scene.len()], places, |place| [*place]));
+    }
+    let is_traced = |pixel: &TracedPixel| [Flag(pixel.ray.is_some().into())];
+    arrays.push(Array::new("traced", &shape, pixels, is_traced));
+    container::write(texts, &arrays, out)
+}

@@ -1,0 +1,298 @@
+//! Run files: what is written is read again, and nothing else is.
+
+use std::collections::BTreeMap;
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::film::YAxis;
+use pinhole::image::NO_ID;
+use pinhole::verify::run_file::{self, Provenance, RunFileError};
+use pinhole::verify::{Checker, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Shading, Sphere, cpu};
+use sha2::{Digest, Sha256};
+
+/// A recording by hand: the numbers are of no device, and every kind of number is there.
+fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
+    let grey = LinearRgb::new([0.25, 0.5, 1.5]).unwrap();
+    let settings = Settings::default().with_shading(Shading::Flat).with_background(grey);
+    let image = cpu::render(scene, camera, &film, &settings, LayerSet::ALL).unwrap();
+    let pixels = image.id().unwrap().iter().zip(image.depth().unwrap()).map(|(id, depth)| {
+        let direction = [-0.0, f32::from_bits(1), -1.0];
+        let ray = TracedRay { origin: [1.0, f32::NAN, *depth], direction, distance: 0.1 };
+        let ray = (*id != NO_ID).then_some(ray);
+        TracedPixel { ray, t: 0.3 * depth, id: *id }
+    });
+    let vectors = camera.vectors();
+    Recording {
+        camera: RequestedCamera { kind: camera.kind(), vectors },
+        uploaded: UploadedView {
+            origin: (vectors.origin - scene.origin()).as_vec3().to_array(),
+            advance: 0.0,
+            right: vectors.right.as_vec3().to_array(),
+            up: vectors.up.as_vec3().to_array(),
+            forward: vectors.forward.as_vec3().to_array(),
+            scene_min: [-1e3; 3],
+            scene_max: [1e3; 3],
+        },
+        film,
+        settings,
+        pixels: pixels.collect(),
+        image,
+    }
+}
+
+fn provenance() -> Provenance {
+    Provenance {
+        version: "0.1.0".to_owned(),
+        command: "pinhole verify 'a \"sha256\":\"b' --size 3x2 \u{e9}\n".to_owned(),
+        adapter: "An adapter".to_owned(),
+        backend: "Vulkan".to_owned(),
+        limits: BTreeMap::from([("max_buffer_size".to_owned(), u64::MAX)]),
+        ..Provenance::default()
+    }
+}
+
+fn pose() -> Pose {
+    Pose::looking_at([3.0, 2.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap()
+}
+
+fn written(scene: &Scene, recording: &Recording) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    run_file::write(scene, recording, &provenance(), &mut bytes).unwrap();
+    bytes
+}
+
+/// Three spheres of two colours, in a frame of its own, 3 by 2 pixels.
+fn small() -> Vec<u8> {
+    let far = |x: f64, color| Sphere::new([4e6 + x, 0.1, 0.0], 1.5, color);
+    let scene = Scene::new(&[
+        far(0.0, LinearRgb::WHITE),
+        far(0.4, LinearRgb::BLACK),
+        far(2.0, LinearRgb::WHITE),
+    ]);
+    let eye = [4e6, 0.0, 9.0];
+    let pose = Pose::looking_along(eye, [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let camera = PinholeCamera::new(pose, 2.0, [0.9, 0.6]).unwrap();
+    let film = Film::new(3, 2).unwrap().with_y_axis(YAxis::Down);
+    let scene = scene.unwrap();
+    written(&scene, &made(&scene, &camera, film))
+}
+
+/// One pixel, and nothing in it.
+fn smallest() -> Vec<u8> {
+    let scene = Scene::new(&[]).unwrap();
+    let camera = OrthographicCamera::new(pose(), [1.0, 1.0]).unwrap();
+    written(&scene, &made(&scene, &camera, Film::new(1, 1).unwrap()))
+}
+
+/// As if it had been written so.
+fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let before = b"\"sha256\":\"";
+    let Some(place) = bytes.windows(before.len()).position(|window| window == before) else {
+        return bytes;
+    };
+    let digits = place + before.len()..place + before.len() + 64;
+    bytes[digits.clone()].fill(b'0');
+    let digest = data_encoding::HEXLOWER.encode(&Sha256::digest(&bytes));
+    bytes[digits].copy_from_slice(digest.as_bytes());
+    bytes
+}
+
+/// With another header of any length, signed.
+fn with_header(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    let length = u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
+    let header = str::from_utf8(&bytes[8..8 + length]).unwrap();
+    assert!(header.contains(from), "{header} lacks {from}");
+    let header = header.replacen(from, to, 1);
+    let length = (header.len() as u64).to_le_bytes();
+    signed([&length, header.as_bytes(), &bytes[8 + bytes_of_header(bytes)..]].concat())
+}
+
+fn bytes_of_header(bytes: &[u8]) -> usize {
+    u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize
+}
+
+#[track_caller]
+fn contradicts(bytes: &[u8], words: &str) {
+    let error = run_file::read(bytes).unwrap_err();
+    let RunFileError::Contents { message } = &error else { panic!("{error}") };
+    assert!(message.contains(words), "{message} lacks {words}");
+    assert_eq!(error.to_string().lines().count(), 1, "{error}");
+}
+
+#[test]
+fn what_is_read_is_what_was_written_to_the_bit() {
+    for bytes in [small(), smallest()] {
+        let run = run_file::read(&bytes).unwrap();
+        assert_eq!(run.provenance, provenance());
+        // Of everything that the file has; NaN equals nothing.
+        assert!(written(&run.scene, &run.recording) == bytes);
+        // What others do not alter stays as it is.
+        assert!(signed(bytes.clone()) == bytes);
+    }
+    let run = run_file::read(&small()).unwrap();
+    assert_eq!(run.recording.film.y_axis(), YAxis::Down);
+    assert!(run.scene.origin().x > 3.9e6, "the scene has a frame of its own");
+    assert_eq!(run.scene.color(1), LinearRgb::BLACK);
+    assert!(run.recording.pixels.iter().any(|pixel| pixel.ray.is_some()));
+    assert!(run.recording.pixels.iter().any(|pixel| pixel.ray.is_none()));
+}
+
+/// The format's own reader takes the whole file.
+#[test]
+fn others_read_it() {
+    let bytes = small();
+    let file = safetensors::SafeTensors::deserialize(&bytes).unwrap();
+    assert_eq!(file.tensor("normal").unwrap().shape(), [2, 3, 3]);
+    assert_eq!(file.tensor("traced").unwrap().dtype(), safetensors::Dtype::BOOL);
+    let run = run_file::read(&bytes).unwrap();
+    let spheres: Vec<u8> =
+        run.scene.spheres().as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    assert_eq!(file.tensor("spheres").unwrap().data(), spheres);
+    let digest = data_encoding::HEXLOWER.encode(&Sha256::digest(&spheres));
+    assert_eq!(run_file::scene_sha256(&run.scene), digest);
+}
+
+#[test]
+fn what_is_cut_off_is_refused() {
+    let bytes = small();
+    for length in 0..bytes.len() {
+        let error = run_file::read(&bytes[..length]).unwrap_err();
+        let expected = if length < 8 + 17 {
+            RunFileError::NotRun
+        } else {
+            let expected = if length < 8 + bytes_of_header(&bytes) {
+                8 + bytes_of_header(&bytes)
+            } else {
+                bytes.len()
+            };
+            RunFileError::Truncated { found: length as u64, expected: expected as u64 }
+        };
+        assert_eq!(error, expected, "{length}");
+    }
+    let longer = [&bytes[..], b"x"].concat();
+    assert_eq!(run_file::read(&longer).unwrap_err(), RunFileError::Altered);
+    contradicts(&signed(longer), "bytes behind the last array");
+}
+
+#[test]
+fn every_byte_that_is_another_is_noticed() {
+    let bytes = smallest();
+    for place in 0..bytes.len() {
+        for flip in [1, 0x20, 0x80] {
+            let mut altered = bytes.clone();
+            altered[place] ^= flip;
+            assert!(run_file::read(&altered).is_err(), "{place} ^ {flip}");
+        }
+    }
+    let mut altered = bytes;
+    *altered.last_mut().unwrap() ^= 1;
+    assert_eq!(run_file::read(&altered).unwrap_err(), RunFileError::Altered);
+}
+
+#[test]
+fn other_files_and_other_versions() {
+    for other in [&b""[..], b"PK\x03\x04", b"{}", &[0; 100], b"\x02\0\0\0\0\0\0\0{}"] {
+        assert_eq!(run_file::read(other).unwrap_err(), RunFileError::NotRun);
+    }
+    let bytes = small();
+    let other = with_header(&bytes, "\"pinhole_run\":\"1\"", "\"pinhole_run\":\"2\"");
+    let error = run_file::read(&other).unwrap_err();
+    assert_eq!(error, RunFileError::Version { found: "2".to_owned() });
+    assert!(error.to_string().contains("version 2"), "{error}");
+    let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");
+    assert_eq!(run_file::read(&foreign).unwrap_err(), RunFileError::NotRun);
+}
+
+#[test]
+fn hostile_contents_with_a_right_digest() {
+    let bytes = small();
+    for (from, to, words) in [
+        ("\"hit_t\"", "\"hit_u\"", "the array `hit_t` is missing"),
+        ("\"command\"", "\"commend\"", "the text `command` is missing"),
+        ("\"pinhole\"", "\"fisheye\"", "there is no camera `fisheye`"),
+        ("\"shading\":\"flat\"", "\"shading\":\"round\"", "there is no shading `round`"),
+        ("[3,4]", "[4,3]", "the array `spheres` is F32 [4, 3]; it must be F32 [4, 4]"),
+        ("[2,3,3]", "[3,2,3]", "it must be"),
+        ("[2,3,3]", "[18]", "has not the shape (H, W, 3)"),
+        ("[2,3,3]", "[18,0,3]", "header"),
+        ("\"U32\"", "\"F32\"", "it must be U32"),
+        ("18446744073709551615", "many", "the limit `max_buffer_size` is no number"),
+    ] {
+        contradicts(&with_header(&bytes, from, to), words);
+    }
+    // A header that adds up to more than there is.
+    let most = u64::MAX / 9;
+    let arrays: Vec<String> = (0..9)
+        .map(|i| {
+            let (start, end) = (i * most, (i + 1) * most);
+            format!(
+                "\"{i}\":{{\"dtype\":\"U8\",\"shape\":[{most}],\"data_offsets\":[{start},{end}]}}"
+            )
+        })
+        .collect();
+    let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"1\"}},{}}}", arrays.join(","));
+    let length = (header.len() as u64).to_le_bytes();
+    let error = run_file::read(&[&length, header.as_bytes()].concat()).unwrap_err();
+    assert!(matches!(error, RunFileError::Truncated { .. }), "{error}");
+}
+
+/// Puts numbers into an array.
+fn with_numbers(bytes: &[u8], name: &str, at: usize, numbers: &[u8]) -> Vec<u8> {
+    let file = safetensors::SafeTensors::deserialize(bytes).unwrap();
+    let data = file.tensor(name).unwrap().data();
+    let start = data.as_ptr() as usize - bytes.as_ptr() as usize + at;
+    let mut altered = bytes.to_vec();
+    altered[start..start + numbers.len()].copy_from_slice(numbers);
+    signed(altered)
+}
+
+#[test]
+fn what_scenes_cameras_and_settings_refuse() {
+    let bytes = small();
+    let nan = f32::NAN.to_le_bytes();
+    for (name, at, numbers, words) in [
+        ("spheres", 12, &0_f32.to_le_bytes()[..], "`scene_sha256`|sphere 0: its radius is 0.0"),
+        ("spheres", 16, &nan, "sphere 1: its center"),
+        ("scene_origin", 0, &f64::INFINITY.to_le_bytes(), "the scene: its origin"),
+        ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is of other spheres"),
+        ("color_index", 8, &2_u32.to_le_bytes(), "sphere 2 has no color; the palette has 2"),
+        ("palette", 4, &(-1_f32).to_le_bytes(), "the array `palette`: the color"),
+        ("background", 4, &nan, "the array `background`: the color"),
+        ("camera", 24, &[0; 24], "the camera: the length of right is 0.0"),
+        ("camera", 0, &f64::NAN.to_le_bytes(), "the camera: the origin is"),
+        ("traced", 5, &[2], "the array `traced` has no truth value at 5"),
+    ] {
+        let words = words.split('|').next_back().unwrap();
+        contradicts(&with_numbers(&bytes, name, at, numbers), words);
+    }
+    // An empty scene needs no colour; one with spheres does.
+    let scene = Scene::from_f32(Vec::new(), LinearRgb::BLACK).unwrap();
+    let camera = OrthographicCamera::new(pose(), [1.0, 1.0]).unwrap();
+    let bytes = written(&scene, &made(&scene, &camera, Film::new(1, 1).unwrap()));
+    assert!(run_file::read(&bytes).is_ok());
+}
+
+/// Whatever the device answered is for the checker to judge, and none of it makes it stumble.
+#[test]
+fn noise_with_a_right_digest_is_judged_or_refused() {
+    let bytes = small();
+    let start = 8 + bytes_of_header(&bytes);
+    let mut random = fastrand::Rng::with_seed(11);
+    let mut read = 0;
+    for _ in 0..4000 {
+        let mut altered = bytes.clone();
+        for _ in 0..random.usize(1..6) {
+            let first = if random.bool() { start } else { 0 };
+            let place = random.usize(first..altered.len());
+            let length = random.usize(1..=8).min(altered.len() - place);
+            let filled = [0, 0xff, 0x7f, random.u8(..)][random.usize(..4)];
+            altered[place..place + length].fill(filled);
+        }
+        if let Ok(run) = run_file::read(&signed(altered)) {
+            read += 1;
+            let certificate = Checker::new(&run.scene).unwrap().certify(&run.recording);
+            assert!(!certificate.is_legal());
+        }
+    }
+    assert!(read > 100, "{read}");
+}

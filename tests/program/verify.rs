@@ -1,0 +1,233 @@
+//! `pinhole verify` without an adapter: replays of recordings made by hand, and what is refused.
+
+use pinhole::camera::{Camera, OrthographicCamera, Pose};
+use pinhole::verify::run_file::{self, Provenance, Run};
+use pinhole::verify::{Recording, RequestedCamera, TracedPixel, UploadedView};
+use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, cpu};
+
+use crate::support::{Folder, SCENE};
+
+/// Nothing to be seen: what a device does with that is the same to the bit on every one.
+fn nothing([width, height]: [u32; 2]) -> Run {
+    let scene = Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap();
+    let pose = Pose::looking_along([0.0, 0.0, 4.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let camera = OrthographicCamera::new(pose, [1.0, 1.0]).unwrap();
+    let film = Film::new(width, height).unwrap();
+    let settings = Settings::default();
+    let vectors = camera.vectors();
+    let narrow = |v: pinhole::glam::DVec3| v.as_vec3().to_array();
+    let recording = Recording {
+        camera: RequestedCamera { kind: camera.kind(), vectors },
+        uploaded: UploadedView {
+            origin: narrow(vectors.origin),
+            advance: 0.0,
+            right: narrow(vectors.right),
+            up: narrow(vectors.up),
+            forward: narrow(vectors.forward),
+            // No ray meets it.
+            scene_min: [10.0; 3],
+            scene_max: [11.0; 3],
+        },
+        film,
+        settings,
+        pixels: vec![TracedPixel { ray: None, t: 1e30, id: u32::MAX }; (width * height) as usize],
+        image: cpu::render(&scene, &camera, &film, &settings, LayerSet::ALL).unwrap(),
+    };
+    let text = str::to_owned;
+    let provenance = Provenance {
+        version: text("0.1.0"),
+        command: text("pinhole verify <b>.toml"),
+        adapter: text("By <i>hand</i> & \u{1b}[31m"),
+        structure: text("list"),
+        ..Provenance::default()
+    };
+    Run { scene, recording, provenance }
+}
+
+fn bytes(Run { scene, recording, provenance }: &Run) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    run_file::write(scene, recording, provenance, &mut bytes).unwrap();
+    bytes
+}
+
+fn folder() -> Folder {
+    let folder = Folder::with(&[("scene.toml", SCENE)]);
+    std::fs::write(folder.path("run"), bytes(&nothing([3, 2]))).unwrap();
+    std::fs::write(folder.path("one"), bytes(&nothing([1, 1]))).unwrap();
+    // White, where black was asked for.
+    let mut wrong = nothing([30, 20]);
+    wrong.recording.settings = wrong.recording.settings.with_background(LinearRgb::BLACK);
+    std::fs::write(folder.path("wrong"), bytes(&wrong)).unwrap();
+    let mut other_view = nothing([3, 2]);
+    other_view.recording.uploaded.right[0] *= 1.5;
+    std::fs::write(folder.path("other-view"), bytes(&other_view)).unwrap();
+    folder
+}
+
+#[test]
+fn a_replay_needs_no_adapter() {
+    let folder = folder();
+    let run = folder.run_without_drivers("verify --replay run --json a.json --report a/");
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    let table = String::from_utf8(run.stdout).unwrap();
+    for line in [
+        "adapter: By <i>hand</i> & \\u{1b}[31m (, ), driver:",
+        "scene: 0 spheres, 0 bytes, sha256 e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
+        "picture: 3x2, orthographic camera",
+        "structure: list",
+        "decided                6  100.0000 %",
+        "legal: every pixel is as a conforming device may have made it",
+    ] {
+        assert!(table.lines().any(|found| found.trim_end() == line), "{table} lacks {line}");
+    }
+    assert_eq!(table.lines().last(), table.lines().find(|line| line.starts_with("legal: ")));
+
+    let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
+    assert_eq!(json["version"], "0.1.0");
+    assert_eq!(json["adapter"]["name"], "By <i>hand</i> & \u{1b}[31m");
+    assert_eq!(json["scene"]["spheres"], 0);
+    assert_eq!(json["picture"]["width"], 3);
+    assert_eq!(json["counts"]["decided"], 6);
+    assert_eq!(json["decided_fraction"], 1.0);
+    assert_eq!((&json["legal"], &json["upload"]), (&true.into(), &serde_json::Value::Null));
+    assert_eq!(json["violations"].as_array().unwrap().len(), 0);
+    assert_eq!(json["command"], "pinhole verify <b>.toml");
+    for key in ["worst_depth", "worst_normal"] {
+        assert!(json[key].is_f64(), "{key}");
+    }
+}
+
+#[test]
+fn the_page_stands_alone_and_escapes_what_is_foreign() {
+    let folder = folder();
+    folder.run("verify --replay run --report a").succeeded();
+    let page = String::from_utf8(folder.read("a/report.html")).unwrap();
+    assert!(page.contains("<h1>Legal</h1>"), "{page}");
+    assert!(page.contains("By &lt;i&gt;hand&lt;&#x2f;i&gt; &amp;"), "{page}");
+    assert!(page.contains("pinhole verify &lt;b&gt;.toml"), "{page}");
+    assert!(page.contains("pinhole verify --replay run"), "{page}");
+    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 3);
+    for outside in ["http:", "https:", "src=\"/", "url(", "@import", "<script", "<link"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    // Into a folder that is there, over a page that is there.
+    folder.run("verify --replay one --report a").succeeded();
+    assert_eq!(folder.files(), ["a", "one", "other-view", "run", "scene.toml", "wrong"]);
+}
+
+#[test]
+fn what_is_not_legal_is_exit_3_with_all_files() {
+    let folder = folder();
+    let run = folder.run("verify --replay wrong --json a.json --report a");
+    assert_eq!(run.code, 3, "{}", run.stderr);
+    let line = "error: the picture is not legal: 600 of 600 pixels; the first is pixel (0, 0), color: \
+                red is 1.0; legal is 0.0\n";
+    assert_eq!(run.stderr, line);
+    let table = String::from_utf8(run.stdout).unwrap();
+    assert!(table.ends_with("NOT legal: 600 violations\n"), "{table}");
+    let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
+    assert_eq!((&json["legal"], &json["counts"]["violation"]), (&false.into(), &600.into()));
+    let violations = json["violations"].as_array().unwrap();
+    assert_eq!(violations.len(), 100);
+    assert_eq!(violations[31]["pixel"], serde_json::json!([1, 1]));
+    assert_eq!(violations[31]["stage"], "color");
+    assert_eq!(violations[31]["message"], "red is 1.0; legal is 0.0");
+    let page = String::from_utf8(folder.read("a/report.html")).unwrap();
+    assert!(page.contains("<h1>Not legal</h1>") && page.contains("The first 12 of 600"), "{page}");
+    assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 3 + 2 * 12);
+
+    let run = folder.run("verify --replay other-view --json b.json --report b");
+    assert_eq!(run.code, 3, "{}", run.stderr);
+    let words = "error: the picture is not legal: the camera's vector right is [1.5, 0.0, 0.0] on the device";
+    assert!(run.stderr.starts_with(words), "{}", run.stderr);
+    let json: serde_json::Value = serde_json::from_slice(&folder.read("b.json")).unwrap();
+    assert!(json["upload"].as_str().unwrap().contains("vector right"));
+    let page = String::from_utf8(folder.read("b/report.html")).unwrap();
+    assert!(page.contains("no pixel was judged"), "{page}");
+}
+
+#[track_caller]
+fn refused(folder: &Folder, arguments: &str, code: i32, words: &str) {
+    let before = folder.files();
+    let run = folder.run_without_drivers(arguments);
+    assert_eq!((run.code, run.stderr.lines().count()), (code, 1), "{arguments}: {}", run.stderr);
+    let expected = format!("error: {words}");
+    assert!(run.stderr.starts_with(&expected), "{arguments}: {}", run.stderr);
+    assert!(run.stdout.is_empty(), "{arguments}");
+    assert_eq!(folder.files(), before, "{arguments}");
+}
+
+#[test]
+fn runs_that_are_damaged() {
+    let folder = folder();
+    let whole = folder.read("run");
+    let mut altered = whole.clone();
+    *altered.last_mut().unwrap() ^= 1;
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"1\"").unwrap();
+    // All of the length is text.
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"1\""));
+    let mut other = whole.clone();
+    other[version + 15] = b'7';
+    for (name, contents, words) in [
+        ("cut", &whole[..whole.len() - 1], "cut: the run file is cut off: it has "),
+        ("altered", &altered, "altered: the run file was altered after it was written"),
+        (
+            "other",
+            &other,
+            "other: this is a run file of version 7, and this program reads version 1",
+        ),
+        (
+            "none",
+            b"PK\x03\x04 something else",
+            "none: this is no run file; `pinhole verify --save`",
+        ),
+        ("empty", b"", "empty: this is no run file"),
+    ] {
+        std::fs::write(folder.path(name), contents).unwrap();
+        refused(&folder, &format!("verify --replay {name} --json a.json --report a"), 1, words);
+    }
+    refused(&folder, "verify --replay no", 1, "no: cannot be read");
+}
+
+#[test]
+fn wrong_usage() {
+    let folder = folder();
+    let conflict = "the argument '--replay <RUN>' cannot be used with";
+    for flags in [
+        "scene.toml",
+        "--save b",
+        "--size 3x3",
+        "--radius 1",
+        "--camera pinhole",
+        "--eye 0,0,1",
+        "--adapter x",
+        "--limits webgpu",
+        "--accel grid",
+    ] {
+        refused(&folder, &format!("verify --replay run {flags}"), 2, conflict);
+    }
+    refused(&folder, "verify", 2, "the following required arguments were not provided: <SCENE");
+    for (flags, words) in [
+        ("--json run", "run: this output is an input as well"),
+        ("--json no/a.json", "no/a.json: the folder no does not exist"),
+        ("--report scene.toml", "scene.toml: this is a file; name a folder"),
+        ("--report no/a", "no/a: the folder no does not exist"),
+        ("--json a --report a", "a: two outputs are this file"),
+    ] {
+        refused(&folder, &format!("verify --replay run {flags}"), 2, words);
+    }
+    refused(&folder, "verify scene.toml --save a --json ./a", 2, "a: two outputs are this file");
+    refused(
+        &folder,
+        "verify scene.toml --save scene.toml",
+        2,
+        "scene.toml: this output is an input",
+    );
+}
+
+/// The reference judges nobody.
+#[test]
+fn without_an_adapter_there_is_nothing_to_verify() {
+    let words = "no Vulkan, Metal or DX12 adapter was found";
+    refused(&folder(), "verify scene.toml --json a.json --save b", 1, words);
+}
