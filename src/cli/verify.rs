@@ -74,11 +74,12 @@ mod recorded {
     use crate::cli::adapter::AdapterReport;
     use crate::cli::device::{WantedAdapter, choice, explained_alone};
     use crate::cli::input::Source;
+    use crate::cli::interrupt;
     use crate::cli::memory;
     use crate::cli::speak::tell;
     use crate::cli::verify_report::command_line;
     use crate::cli::with_scene::with_scene;
-    use crate::gpu::Headless;
+    use crate::gpu::{Headless, SelfTestExtent};
     use crate::verify::run_file::Provenance;
 
     /// What an adapter makes of a scene now.
@@ -110,10 +111,18 @@ mod recorded {
         Ok((Run { scene: input.scene, recording, provenance }, outputs))
     }
 
-    /// Whether the adapter computes as the checker's bounds assume. The place for the adapter's self-test.
-    #[expect(clippy::unnecessary_wraps, reason = "the self-test will fail")]
-    fn check_adapter(_headless: &Headless) -> Result<(), Failure> {
-        Ok(())
+    /// Whether the adapter computes as the checker's bounds assume.
+    fn check_adapter(headless: &Headless) -> Result<(), Failure> {
+        progress::stage("testing the adapter");
+        let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?;
+        let report = tested.map_err(|error| explained_alone(headless, &error))?;
+        match report.first_failure() {
+            None => Ok(()),
+            Some(property) => Err(Failure::Unproven(anyhow!(
+                "{}: the self-test fails: {property}",
+                headless.adapter_info().name
+            ))),
+        }
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

@@ -7,7 +7,7 @@ use crate::scene::Scene;
 
 /// Plans with what suits the data, unless the driver is known to get that wrong.
 ///
-/// SwiftShader, of Chromium 156: where invocations that run together leave a loop by `break` at different times,
+/// `SwiftShader`, of Chromium 156: where invocations that run together leave a loop by `break` at different times,
 /// those that left first lose what they found in it. Grids are walked in such loops; trees are not.
 pub(super) fn plan(
     info: &AdapterInfo,
