@@ -17,8 +17,16 @@ use crate::support::View;
 use crate::verify_views as views;
 use crate::{headless, scenes};
 
+/// What the README shows for the tests of others.
+#[path = "../../examples/legal.rs"]
+#[allow(dead_code, reason = "an example has a main function")]
+mod example;
+
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
+    trials.push(Trial::test("verify::the_example", || {
+        example::this_adapter_renders_legally().map_err(Into::into)
+    }));
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(&view)));
     }
