@@ -10,6 +10,7 @@
 
 @compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
+    zero_bits = frame.zero;
     if (any(invocation.xy >= frame.tile_size)) {
         return;
     }

@@ -3,6 +3,7 @@
 
 @compute @workgroup_size(64)
 fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    zero_bits = frame.zero;
     let pixel = pixel_in_tile(group.xy, lane);
     if (any(pixel >= frame.tile_size)) {
         return;

@@ -319,6 +319,19 @@ mod tests {
         }
     }
 
+    /// A zero that a kernel has not set is one that the compiler knows.
+    #[test]
+    fn every_kernel_sets_what_fences_need() {
+        let uses_frame =
+            |kernel: &Kernel| kernel.parts.iter().any(|part| part.file == "frame.wgsl");
+        for kernel in all_kernels().iter().filter(|kernel| uses_frame(kernel)) {
+            let source = kernel.source();
+            let entry = source.split(&format!("fn {}(", kernel.entry_point)).nth(1).unwrap();
+            let first = entry.lines().nth(1).unwrap();
+            assert_eq!(first.trim(), "zero_bits = frame.zero;", "{}", kernel.name());
+        }
+    }
+
     #[test]
     fn an_error_names_the_part_and_its_line() {
         let broken =
