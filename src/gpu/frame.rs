@@ -361,12 +361,13 @@ pub(super) fn band_bytes(limits: &wgpu::Limits, size: [u32; 2], keeps_rays: bool
 
 /// How many iterations of loops an invocation may take.
 ///
-/// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the eight invocations that it
-/// runs together, so that an eighth of that is safe; the self-test's nested loops try that. Elsewhere it is only
-/// a bound on what a kernel that is wrong could do.
+/// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the invocations that it runs
+/// together, which are eight by default, so that an eighth of that is safe; the self-test's nested loops try
+/// that. Elsewhere it is only a bound on what a kernel that is wrong could do.
 pub(super) fn iteration_limit(device: &Device) -> u32 {
-    match device.adapter_info().device_type {
-        wgpu::DeviceType::Cpu => 8_000,
+    let info = device.adapter_info();
+    match info.device_type {
+        wgpu::DeviceType::Cpu => 64_000 / info.subgroup_max_size.max(8),
         _ => 1 << 24,
     }
 }
