@@ -30,5 +30,5 @@ fn enter_scene(camera_ray: CameraRay) -> Entry {
     let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
     let t_far = min(far.x, min(far.y, far.z));
     let entered = Ray(fence3(ray.origin + t_near * ray.direction), ray.direction);
-    return Entry(entered, inverse, camera_ray.distance + t_near, t_near <= t_far);
+    return Entry(entered, inverse, fence(camera_ray.distance + t_near), t_near <= t_far);
 }

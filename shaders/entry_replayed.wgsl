@@ -5,7 +5,7 @@
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
     let first = 2u * hit_index(pixel_in_tile);
     let origin = rays[first];
-    let direction = rays[first + 1u].xyz;
-    let made = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel_in_tile)));
-    return Entry(Ray(origin.xyz, direction), inverse_direction(direction), origin.w, made.is_inside);
+    let direction = rays[first + 1u];
+    let inverse = inverse_direction(direction.xyz);
+    return Entry(Ray(origin.xyz, direction.xyz), inverse, origin.w, direction.w > 1.5);
 }

@@ -2,5 +2,5 @@
 // reads what a branch that is not taken would read.
 
 fn hit_before(index: u32) -> Hit {
-    return Hit(NO_HIT, NO_ID, 0u);
+    return Hit(NO_HIT, NO_ID, 0u, 0.0);
 }

@@ -14,10 +14,12 @@ struct Hit {
     id: u32,
     // Index into the spheres of all bricks.
     place: u32,
+    // How far from the camera the ray starts.
+    distance: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-// Row by row, of the tile: the bits of t, id, place, and nothing. One vector, because a software device reads
+// Row by row, of the tile: the bits of t, id, place, and of distance. One vector, because a software device reads
 // and writes a structure word by word.
 @group(0) @binding(1) var<storage, read_write> hits: array<vec4u>;
 
@@ -35,9 +37,9 @@ fn hit_index(pixel_in_tile: vec2u) -> u32 {
 
 fn load_hit(index: u32) -> Hit {
     let bits = hits[index];
-    return Hit(bitcast<f32>(bits.x), bits.y, bits.z);
+    return Hit(bitcast<f32>(bits.x), bits.y, bits.z, bitcast<f32>(bits.w));
 }
 
 fn store_hit(index: u32, hit: Hit) {
-    hits[index] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, 0u);
+    hits[index] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, bitcast<u32>(hit.distance));
 }

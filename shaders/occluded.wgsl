@@ -15,6 +15,6 @@ fn occluded(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     if (entry.is_inside && !is_known && find_any(entry.ray, entry.inverse, NO_HIT)) {
         t = 0.0;
     }
-    store_hit(index, Hit(t, NO_ID, 0u));
+    store_hit(index, Hit(t, NO_ID, 0u, 0.0));
     report_spent();
 }

@@ -18,7 +18,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     let group = invocation.xy / WORKGROUP_SIDE - frame.traced_first;
     // What lies before the first has become a large number.
     if (any(group >= frame.traced_size)) {
-        hit = Hit(NO_HIT, NO_ID, 0u);
+        hit = Hit(NO_HIT, NO_ID, 0u, 0.0);
     }
     let pixel = frame.target_origin + invocation.xy;
     if (hit.id == NO_ID) {
@@ -38,5 +38,6 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     let normal = sphere_normal(entry.ray, intersect_sphere(entry.ray, spheres[place]));
     let color = palette[color_indices[min(place, brick.last_color)]].rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));
-    write_layers(pixel, entry.distance + hit.t, normal, hit.id);
+    // The distance that belongs to this `t`: another kernel's ray may enter the box a little elsewhere.
+    write_layers(pixel, hit.distance + hit.t, normal, hit.id);
 }

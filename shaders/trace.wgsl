@@ -17,7 +17,7 @@ fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
         find_nearest(entry.ray, entry.inverse, &nearest);
     }
     if (nearest.id != hit.id) {
-        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place);
+        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place, entry.distance);
     }
     store_hit(index, hit);
     report_spent();

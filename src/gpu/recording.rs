@@ -10,7 +10,7 @@ use super::frame::Frame;
 use super::headless::Headless;
 use super::options::Watch;
 use super::readback::ReadableBuffer;
-use super::records::{self, NO_HIT, SceneSpace};
+use super::records::{self, SceneSpace};
 use super::renderers::RendererKey;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Tile;
@@ -20,7 +20,7 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::verify::{
-    Certificate, Checker, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+    Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
 };
 
 /// A recording in which nothing is traced yet.

@@ -55,7 +55,7 @@ pub(super) struct Brick {
     pub(super) _pad: u32,
 }
 
-/// The bits of distance, id and place, and nothing: one `vec4u`.
+/// The bits of t, id and place, and of where the ray starts: one `vec4u`.
 pub(super) type Hit = [u32; 4];
 
 /// Origin and distance, direction and whether there is one: two `vec4f`.

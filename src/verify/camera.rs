@@ -4,9 +4,10 @@
 use glam::DVec3;
 
 use super::line::Line;
-use super::recording::UploadedView;
-use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use super::recording::{TracedRay, UploadedView};
+use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma, length_error};
 use super::sphere::Slack;
+use super::violation::ViolationKind;
 use crate::camera::CameraKind;
 use crate::film::Film;
 
@@ -74,8 +75,8 @@ impl CameraModel {
         let toward_error =
             location_error + gamma(3) * (terms + location_error + self.forward.abs()) + 4.0 * FLUSH;
         let length = toward.length();
-        // |d(length)| is no longer than the vector's change; three products and their sum, and the root.
-        let length_error = PAD * (toward_error.length() + (gamma(3) + SQRT) * length) + FLUSH;
+        // No longer than the vector's change, and what the length itself adds.
+        let length_error = PAD * toward_error.length() + length_error(length);
         let shortest = (length - length_error).max(f64::MIN_POSITIVE);
         // One over the length, and a product.
         let direction_error = (toward_error
@@ -150,63 +151,100 @@ struct BoxCrossing {
 /// What a ray of a device must be, given the direction that it had.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EnteredRay {
+    exact: CameraRay,
+    direction_had: DVec3,
+    /// Where it enters the box.
+    enter: Interval,
     /// Of the direction, component by component.
     pub(super) direction: [Interval; 3],
-    /// Of the point where the ray enters the box.
-    pub(super) origin: [Interval; 3],
-    /// From the camera to there.
-    pub(super) distance: Interval,
     /// Whether the device may find that the ray meets the box, and that it does not.
     pub(super) may_meet_box: bool,
     pub(super) may_miss_box: bool,
-    /// By how much another kernel's ray may differ from this one's.
-    pub(super) slack: Slack,
 }
 
 impl CameraRay {
     /// For the direction that the device had; the exact one's, if it traced nothing.
     pub(super) fn entered(&self, model: &CameraModel, direction: DVec3) -> EnteredRay {
         let BoxCrossing { enter, leave } = model.slabs(self, direction);
-        let may_meet_box = enter.low <= leave.high;
-        let axis = |axis: usize| {
-            let (d, start) = (direction[axis], self.line.origin[axis]);
-            let (a, b) = (enter.low * d, enter.high * d);
-            let (low, high) = (start + a.min(b), start + a.max(b));
-            let largest = a.abs().max(b.abs());
-            // A product and a sum; the distance may be multiplied out.
-            let error = self.origin_error[axis]
-                + gamma(4) * largest
-                + U * (low.abs().max(high.abs()) + self.origin_error[axis])
-                + FLUSH * (2.0 + d.abs());
-            Interval { low: low - PAD * error, high: high + PAD * error }
-        };
-        let origin = [0, 1, 2].map(axis);
-        let farthest = (self.distance.abs() + self.distance_error) + enter.high;
-        let distance = Interval {
-            low: self.distance + enter.low - self.distance_error - U * farthest * PAD - FLUSH,
-            high: self.distance + enter.high + self.distance_error + U * farthest * PAD + FLUSH,
-        };
-        // Two rays, each off by so much; across, what rounding the origin adds.
-        let rounded = DVec3::from(origin.map(|axis| U * axis.low.abs().max(axis.high.abs())));
-        let turned = self.direction_error.length();
-        let slack = Slack {
-            across: 2.0
-                * (self.origin_error.length()
-                    + rounded.length()
-                    + gamma(4) * enter.high
-                    + enter.high * turned),
-            along: enter.high - enter.low + 2.0 * self.origin_error.length(),
-            direction: 2.0 * turned,
-        };
-        let direction = [0, 1, 2]
-            .map(|axis| Interval::around(self.line.direction[axis], self.direction_error[axis]));
         EnteredRay {
-            direction,
-            origin,
-            distance,
-            may_meet_box,
+            exact: *self,
+            direction_had: direction,
+            enter,
+            direction: [0, 1, 2].map(|axis| {
+                Interval::around(self.line.direction[axis], self.direction_error[axis])
+            }),
+            may_meet_box: enter.low <= leave.high,
             may_miss_box: enter.high > leave.low,
-            slack,
+        }
+    }
+}
+
+impl EnteredRay {
+    /// Judges where the device's ray starts. That point and its distance from the camera must agree on where the
+    /// ray enters the box.
+    pub(super) fn check_start(&self, ray: &TracedRay) -> Result<(), ViolationKind> {
+        let mut enter = self.enter;
+        for axis in 0..3 {
+            let found = ray.origin[axis];
+            let legal = self.origin(axis, enter);
+            if !legal.contains(found.into()) {
+                return Err(ViolationKind::Origin { axis, found, legal });
+            }
+            enter = enter.intersection(self.enter_by(axis, found.into()));
+        }
+        let (found, legal) = (ray.distance, self.distance(enter));
+        if !legal.contains(found.into()) {
+            return Err(ViolationKind::Distance { found, legal });
+        }
+        Ok(())
+    }
+
+    /// What an entry's component may be off by: a product and a sum; the distance may be multiplied out.
+    fn origin_error(&self, axis: usize) -> f64 {
+        let (d, start) = (self.direction_had[axis].abs(), self.exact.line.origin[axis].abs());
+        let along = self.enter.high * d;
+        let before = self.exact.origin_error[axis];
+        PAD * (before + gamma(4) * along + U * (start + along + before) + FLUSH * (2.0 + d))
+    }
+
+    fn origin(&self, axis: usize, enter: Interval) -> Interval {
+        let (d, start) = (self.direction_had[axis], self.exact.line.origin[axis]);
+        let (a, b) = (start + enter.low * d, start + enter.high * d);
+        let error = self.origin_error(axis);
+        Interval { low: a.min(b) - error, high: a.max(b) + error }
+    }
+
+    /// Where a ray enters whose origin has this component.
+    fn enter_by(&self, axis: usize, found: f64) -> Interval {
+        let (d, error) = (self.direction_had[axis], self.origin_error(axis));
+        // Of a ray along the others, it says nothing.
+        if d.abs() < SMALLEST_COMPONENT {
+            return self.enter;
+        }
+        let away = found - self.exact.line.origin[axis];
+        let (a, b) = ((away - error) / d, (away + error) / d);
+        Interval { low: a.min(b), high: a.max(b) }
+    }
+
+    fn distance(&self, enter: Interval) -> Interval {
+        let CameraRay { distance, distance_error, .. } = self.exact;
+        let error =
+            distance_error + PAD * U * (distance.abs() + distance_error + enter.high) + FLUSH;
+        Interval { low: distance + enter.low - error, high: distance + enter.high + error }
+    }
+
+    /// By how much the ray of another kernel may differ from this one's.
+    pub(super) fn slack(&self) -> Slack {
+        let turned = self.exact.direction_error.length();
+        let moved = self.exact.origin_error.length();
+        let rounded = DVec3::from([0, 1, 2].map(|axis| self.origin_error(axis))).length();
+        Slack {
+            // Two rays, each off by so much.
+            across: 2.0 * (moved + rounded + self.enter.high * turned),
+            // It may enter the box elsewhere; but all of the box's wall is outside of all spheres, and only
+            // on which side of a sphere's wall it starts depends on this.
+            along: self.enter.high - self.enter.low + 2.0 * moved,
+            direction: 2.0 * turned,
         }
     }
 }

@@ -93,9 +93,9 @@ impl LegalHits {
         self.drop_copies();
     }
 
-    /// Of spheres that are the same to the bit, a kernel finds the same distance to the bit, because it has
-    /// but one sphere test; and of equal distances the smaller id wins. This is a promise of this crate's, and
-    /// not one of WGSL's.
+    /// Of spheres that are the same to the bit, kernels find the same distance to the bit, because they have one
+    /// sphere test; and of equal distances the smaller id wins. This is a promise of this crate's. WGSL does not
+    /// promise that two kernels compile it alike, as those of two bricks.
     fn drop_copies(&mut self) {
         if self.spheres.len() > 1 {
             self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));

@@ -12,8 +12,9 @@
 //! kernels' twins and knows nothing of the structure that found the spheres.
 //!
 //! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/fence.wgsl` keeps a compiler from
-//! looking through it, which [`Headless::self_test`](crate::gpu::Headless::self_test) checks; and of spheres
-//! that are the same to the bit, the smallest id wins.
+//! looking through it, and the square root of zero is zero: both of which
+//! [`Headless::self_test`](crate::gpu::Headless::self_test) checks. And of spheres that are the same to the bit the
+//! smallest id wins, also where they are in different bricks: all kernels of a picture find the same for the same.
 //!
 //! ```no_run
 //! # use pinhole::{Scene, Film, Settings, camera::PinholeCamera, gpu::{Headless, HeadlessOptions}};
@@ -45,7 +46,7 @@ mod violation;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
-pub use recording::{Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+pub use recording::{NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 pub use rounding::Interval;
 pub use upload::UploadError;
 pub use violation::{Violation, ViolationKind};

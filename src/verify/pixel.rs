@@ -7,9 +7,9 @@ use super::certificate::Verdict;
 use super::checker::Checker;
 use super::hit::LegalHits;
 use super::line::Line;
-use super::recording::{Recording, TracedPixel, TracedRay};
-use super::rounding::Interval;
-use super::shading::{LegalNormals, UNIT_ERROR, exactly, legal_color, legal_depth};
+use super::recording::{NO_HIT, Recording, TracedPixel, TracedRay};
+use super::rounding::{Interval, unit_error};
+use super::shading::{LegalNormals, exactly, legal_color, legal_depth};
 use super::violation::ViolationKind;
 use crate::image::NO_ID;
 
@@ -53,7 +53,11 @@ impl PixelCheck<'_> {
             if !exact.may_miss_box {
                 return Err(ViolationKind::NotTraced);
             }
-            self.check_miss(&layers, NO_ID)?;
+            legal.clear();
+            if id != NO_ID {
+                return Err(ViolationKind::Hit { id, t, legal: legal.clone() });
+            }
+            self.check_miss(&layers, t)?;
             return Ok(Judged { verdict: Verdict::Decided, depth: 0.0, normal: 0.0 });
         };
         let line = Line::new(ray.origin, ray.direction);
@@ -75,7 +79,7 @@ impl PixelCheck<'_> {
             if !legal.miss {
                 return Err(illegal(legal));
             }
-            self.check_miss(&layers, id)?;
+            self.check_miss(&layers, t)?;
             return Ok(Judged { verdict, depth: 0.0, normal: 0.0 });
         }
         if !legal.allows(id, t.into()) {
@@ -83,7 +87,8 @@ impl PixelCheck<'_> {
         }
         let wall = legal.of(id).and_then(|hit| hit.wall_at(t.into()));
         let depth = wall.map_or(0.0, |wall| wall.fraction(t.into()));
-        let normal = self.check_hit(&layers, &entered, &line, t, id)?;
+        let depths = legal_depth(ray.distance, t);
+        let normal = self.check_hit(&layers, &entered, &line, depths, id)?;
         Ok(Judged { verdict, depth, normal })
     }
 
@@ -98,9 +103,12 @@ impl PixelCheck<'_> {
         }
     }
 
-    fn check_miss(&self, layers: &Layers, traced: u32) -> Result<(), ViolationKind> {
-        if layers.id != traced {
-            return Err(ViolationKind::Id { found: layers.id, traced });
+    fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), ViolationKind> {
+        if t.to_bits() != NO_HIT.to_bits() {
+            return Err(ViolationKind::MissDistance { found: t });
+        }
+        if layers.id != NO_ID {
+            return Err(ViolationKind::Id { found: layers.id, traced: NO_ID });
         }
         let infinity = Interval { low: f64::INFINITY, high: f64::INFINITY };
         if layers.depth != f32::INFINITY {
@@ -120,21 +128,21 @@ impl PixelCheck<'_> {
         layers: &Layers,
         entered: &EnteredRay,
         line: &Line,
-        t: f32,
+        depths: Interval,
         id: u32,
     ) -> Result<f64, ViolationKind> {
         if layers.id != id {
             return Err(ViolationKind::Id { found: layers.id, traced: id });
         }
-        let depth = legal_depth(entered.distance, t);
-        if !depth.contains(layers.depth.into()) {
-            return Err(ViolationKind::Depth { found: layers.depth, legal: depth });
+        if !depths.contains(layers.depth.into()) {
+            return Err(ViolationKind::Depth { found: layers.depth, legal: depths });
         }
         let scene = self.checker.scene;
-        let normals = LegalNormals::new(line, scene.spheres()[id as usize], entered.slack);
+        let sphere = scene.spheres()[id as usize];
+        let normals = LegalNormals::new(line, sphere, entered.slack());
         let normal = DVec3::from(layers.normal.map(f64::from));
         let fraction = normals.fraction(normal);
-        let is_unit = (normal.length() - 1.0).abs() <= UNIT_ERROR;
+        let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
         if !(fraction <= 1.0 && is_unit) {
             let (exact, error) = normals.walls().next().unwrap_or_default();
             let (found, exact) = (layers.normal, exact.to_array());
@@ -154,17 +162,7 @@ fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), ViolationKind>
             return Err(ViolationKind::Direction { axis, found, legal });
         }
     }
-    for axis in 0..3 {
-        let (found, legal) = (ray.origin[axis], entered.origin[axis]);
-        if !legal.contains(found.into()) {
-            return Err(ViolationKind::Origin { axis, found, legal });
-        }
-    }
-    let (found, legal) = (ray.distance, entered.distance);
-    if !legal.contains(found.into()) {
-        return Err(ViolationKind::Distance { found, legal });
-    }
-    Ok(())
+    entered.check_start(ray)
 }
 
 fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), ViolationKind> {

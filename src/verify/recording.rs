@@ -51,12 +51,15 @@ pub struct UploadedView {
     pub scene_max: [f32; 3],
 }
 
+/// The distance of a miss: kernels have no infinity.
+pub const NO_HIT: f32 = 1e30;
+
 /// The ray that a device traced for a pixel, and its answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TracedPixel {
-    /// The ray; `None` where the device was told that no ray can meet the scene's box.
+    /// The ray; `None` where the device was told that no ray can meet the scene's box. Then there is no hit.
     pub ray: Option<TracedRay>,
-    /// Distance along the ray to the nearest sphere, if it hit one.
+    /// Distance along the ray to the nearest sphere, or [`NO_HIT`].
     pub t: f32,
     /// Index of that sphere in input order; [`NO_ID`](crate::image::NO_ID) for a miss.
     pub id: u32,

@@ -29,6 +29,17 @@ pub(super) const fn gamma(k: u32) -> f64 {
     sum / (1.0 - sum)
 }
 
+/// What the length of a fenced vector, the root of three squares' sum, may be off by.
+pub(super) fn length_error(length: f64) -> f64 {
+    // Squares may become zero, each operation's at most: 8 times, halved by the root.
+    PAD * ((gamma(3) + SQRT) * length + 4.0 * FLUSH / length)
+}
+
+/// How far a vector that was divided by its length may be from unit length.
+pub(super) fn unit_error(length: f64) -> f64 {
+    length_error(length) / length + PAD * (DIVIDE + 2.0 * U)
+}
+
 /// Numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -48,6 +59,11 @@ impl Interval {
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
+    }
+
+    /// What lies in both; `low` is above `high` if nothing does.
+    pub(super) fn intersection(self, other: Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
     /// The smallest that holds both.

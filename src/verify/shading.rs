@@ -4,12 +4,9 @@
 use glam::DVec3;
 
 use super::line::Line;
-use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use super::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use super::sphere::{Slack, SphereTest};
 use crate::settings::Shading;
-
-/// How far a normal's length may be from one: the dot product under the root, the root, the quotient.
-pub(super) const UNIT_ERROR: f64 = gamma(3) + SQRT + DIVIDE + 2.0 * U;
 
 /// The unit normals that a device may write: all within a distance of one of these.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,6 +20,8 @@ impl LegalNormals {
         let Some(test) = SphereTest::new(line, sphere, slack) else {
             return Self::default();
         };
+        // The legs of a triangle whose hypotenuse is the radius, nearly.
+        let radius = f64::from(sphere[3]);
         let wall = |from_foot: f64| {
             let exact = test.exact_half();
             let half_error = (test.half.high - exact).max(exact - test.half.low);
@@ -37,7 +36,8 @@ impl LegalNormals {
             // than |x| − |x − y|.
             let turned = 2.0 * error / (2.0 * length - error).max(error);
             let normal = if length > 0.0 { outward / length } else { DVec3::ZERO };
-            (normal, (PAD * turned + 2.0 * UNIT_ERROR).min(2.0 + UNIT_ERROR))
+            let unit = unit_error(radius);
+            (normal, (PAD * turned + 2.0 * unit).min(2.0 + unit))
         };
         Self {
             walls: [
@@ -61,11 +61,10 @@ impl LegalNormals {
     }
 }
 
-/// The depths that may be written for a hit at the distance `t` of a ray.
-pub(super) fn legal_depth(distance: Interval, t: f32) -> Interval {
-    let t = f64::from(t);
-    let rounding = PAD * gamma(2) * (distance.low.abs().max(distance.high.abs()) + t) + FLUSH;
-    Interval { low: distance.low + t - rounding, high: distance.high + t + rounding }
+/// The depths that may be written for a hit at `t` of a ray that starts `distance` away: their sum.
+pub(super) fn legal_depth(distance: f32, t: f32) -> Interval {
+    let sum = f64::from(distance) + f64::from(t);
+    Interval::around(sum, PAD * U * sum.abs() + 2.0 * FLUSH)
 }
 
 /// The colours that may be written for a normal that was written.

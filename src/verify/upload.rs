@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::candidates::Candidates;
 use super::recording::Recording;
-use super::rounding::U;
+use super::rounding::{Interval, U};
 use crate::scene::Scene;
 
 /// Spheres must lie inside the box that rays are moved to by at least this, of the box's diagonal: twice what
@@ -25,14 +25,14 @@ pub enum UploadError {
         /// What it should have been given.
         expected: [f32; 3],
     },
-    /// The camera was moved past a part of the scene.
+    /// The camera was not moved up to the scene's box, or past a part of it.
     #[error(
         "rays start {advance} times the forward vector into the picture; the scene's box is {nearest:?} times away"
     )]
     Advance {
         /// What the device was given.
         advance: f32,
-        /// The most that it may be given.
+        /// What it should have been given.
         nearest: f64,
     },
     /// The box that rays are moved to does not hold the spheres.
@@ -46,13 +46,18 @@ pub enum UploadError {
         spheres: [[f32; 3]; 2],
     },
     /// The recording is of another size than its film.
-    #[error("there are {found} pixels; the film has {expected}")]
+    #[error("there are {pixels} pixels, and a picture of {}x{}; the film is {}x{}", image[0], image[1], film[0], film[1])]
     Size {
-        /// How many the recording has.
-        found: u64,
-        /// How many the film has.
-        expected: u64,
+        /// How many pixels were traced.
+        pixels: u64,
+        /// Width and height of the picture.
+        image: [u32; 2],
+        /// Width and height of the film.
+        film: [u32; 2],
     },
+    /// A layer of the picture is missing.
+    #[error("the picture has not all of its layers: color, depth, normal and id")]
+    Layers,
 }
 
 /// Compares them, in f64.
@@ -71,13 +76,16 @@ pub(super) fn check(
         ("forward", view.forward, vectors.forward),
         ("origin", view.origin, moved),
     ] {
-        let expected = asked.as_vec3();
         // Of the origin, what f64 itself may round where large numbers cancel.
-        let slack = f64::EPSILON * 4.0 * (origin.abs() + (advance * vectors.forward).abs());
-        let off = (Vec3::from(found) - expected).as_dvec3().abs();
-        let allowed = if name == "origin" { slack + U * asked.abs() } else { DVec3::ZERO };
-        if !off.cmple(allowed).all() {
-            return Err(UploadError::Vector { name, found, expected: expected.to_array() });
+        let slack = match name {
+            "origin" => f64::EPSILON * 4.0 * (origin.abs() + (advance * vectors.forward).abs()),
+            _ => DVec3::ZERO,
+        };
+        let legal = (asked - slack).as_vec3()..=(asked + slack).as_vec3();
+        let vector = Vec3::from(found);
+        if !(vector.cmpge(*legal.start()) & vector.cmple(*legal.end())).all() {
+            let expected = asked.as_vec3().to_array();
+            return Err(UploadError::Vector { name, found, expected });
         }
     }
     let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
@@ -90,7 +98,11 @@ pub(super) fn check(
             (corner - origin).dot(vectors.forward) / vectors.forward.length_squared()
         })
         .fold(f64::INFINITY, f64::min);
-    if !(advance >= 0.0 && advance <= nearest.max(0.0) * (1.0 + U)) {
+    let nearest = nearest.max(0.0);
+    // A rounding to f32, and those of f64 where the box lies far from the camera.
+    let far = f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length()))
+        / vectors.forward.length();
+    if !Interval::around(nearest, U * nearest + far).contains(advance) {
         return Err(UploadError::Advance { advance: view.advance, nearest });
     }
     if !scene.is_empty() {
@@ -105,10 +117,14 @@ pub(super) fn check(
             });
         }
     }
-    let expected = recording.film.pixel_count();
-    let found = recording.pixels.len() as u64;
-    if found != expected || recording.image.color().len() as u64 != expected {
-        return Err(UploadError::Size { found, expected });
+    let Recording { film, pixels, image, .. } = recording;
+    let film = [film.width(), film.height()];
+    let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
+    if size != film || count != recording.film.pixel_count() {
+        return Err(UploadError::Size { pixels: count, image: size, film });
+    }
+    if image.depth().is_none() || image.normal().is_none() || image.id().is_none() {
+        return Err(UploadError::Layers);
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::hit::LegalHits;
+use super::recording::NO_HIT;
 use super::rounding::Interval;
 use crate::image::NO_ID;
 
@@ -55,6 +56,11 @@ pub enum ViolationKind {
         /// What it may answer.
         legal: LegalHits,
     },
+    /// The distance of a miss, which must be [`NO_HIT`](super::NO_HIT).
+    MissDistance {
+        /// What the device answered.
+        found: f32,
+    },
     /// The id in the picture is not the id that was found.
     Id {
         /// The one in the picture.
@@ -96,7 +102,7 @@ impl ViolationKind {
         match self {
             Self::NotTraced => "cull",
             Self::Direction { .. } | Self::Origin { .. } | Self::Distance { .. } => "camera",
-            Self::Hit { .. } => "hit",
+            Self::Hit { .. } | Self::MissDistance { .. } => "hit",
             Self::Id { .. } => "id",
             Self::Depth { .. } => "depth",
             Self::Normal { .. } => "normal",
@@ -130,6 +136,7 @@ impl fmt::Display for ViolationKind {
             }
             Self::Hit { id: NO_ID, legal, .. } => write!(f, "a miss; legal is {legal}"),
             Self::Hit { id, t, legal } => write!(f, "sphere {id} at {t:?}; legal is {legal}"),
+            Self::MissDistance { found } => write!(f, "a miss at {found:?}; legal is {NO_HIT:?}"),
             Self::Id { found, traced } => {
                 write!(f, "the picture has {}; {} was found", name(*found), name(*traced))
             }

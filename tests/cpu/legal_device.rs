@@ -4,7 +4,7 @@ use fastrand::Rng;
 use pinhole::camera::CameraKind;
 use pinhole::film::YAxis;
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
+use pinhole::verify::{NO_HIT, Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
 /// How it rounds.
@@ -24,9 +24,6 @@ pub(crate) struct LegalDevice {
     pub(crate) habit: Habit,
     pub(crate) random: Rng,
 }
-
-/// Where its sphere test ends.
-pub(crate) const NO_HIT: f32 = 1e30;
 
 impl LegalDevice {
     /// One of the neighbours of a number, or the number itself if there is such an f32.
@@ -111,24 +108,25 @@ impl LegalDevice {
         sum
     }
 
-    /// `intersect_sphere` of shaders/sphere.wgsl.
-    pub(crate) fn intersect(
-        &mut self,
-        (origin, direction): ([f32; 3], [f32; 3]),
-        [x, y, z, radius]: [f32; 4],
-    ) -> f32 {
-        let center = [x, y, z];
-        let d = direction;
-        let l = [0, 1, 2].map(|k| self.add(center[k], -origin[k]));
-        let b = self.dot(&mut [(l[0], d[0]), (l[1], d[1]), (l[2], d[2])]);
-        let f = [0, 1, 2].map(|k| self.mul_add(-b, d[k], l[k]));
+    /// The lines of `intersect_sphere` in shaders/sphere.wgsl that lead to its roots.
+    fn triangle(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> Triangle {
+        let (center, d) = ([x, y, z], ray.direction);
+        let l = [0, 1, 2].map(|k| self.add(center[k], -ray.origin[k]));
+        let b = self.dot(&mut [0, 1, 2].map(|k| (l[k], d[k])));
+        let foot = [0, 1, 2].map(|k| self.mul_add(-b, d[k], l[k]));
         let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
-        let [fx, fy, fz] = squares(f, -1.0);
+        let [fx, fy, fz] = squares(foot, -1.0);
         let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
         let [lx, ly, lz] = squares(l, 1.0);
         let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
         let half_chord = self.sqrt(discriminant.max(0.0));
         let from_foot = if c > 0.0 { -half_chord } else { half_chord };
+        Triangle { b, foot, discriminant, c, from_foot }
+    }
+
+    /// `intersect_sphere` of shaders/sphere.wgsl.
+    pub(crate) fn intersect(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> f32 {
+        let Triangle { b, discriminant, c, from_foot, .. } = self.triangle(ray, sphere);
         let t = if self.mul(b, from_foot) >= 0.0 {
             self.add(b, from_foot)
         } else {
@@ -137,6 +135,15 @@ impl LegalDevice {
         };
         if discriminant >= 0.0 && t > 0.0 { t } else { NO_HIT }
     }
+}
+
+/// Of ray, foot point and hit.
+struct Triangle {
+    b: f32,
+    foot: [f32; 3],
+    discriminant: f32,
+    c: f32,
+    from_foot: f32,
 }
 
 /// The kernels of a picture, one after the other.
@@ -214,18 +221,9 @@ impl LegalDevice {
     }
 
     /// `sphere_normal` of shaders/sphere.wgsl.
-    fn normal(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> [f32; 3] {
-        let (center, d) = ([x, y, z], ray.direction);
-        let l = self.vector(|this, k| this.add(center[k], -ray.origin[k]));
-        let b = self.dot(&mut [0, 1, 2].map(|k| (l[k], d[k])));
-        let foot = self.vector(|this, k| this.mul_add(-b, d[k], l[k]));
-        let squares = |v: [f32; 3], sign: f32| v.map(|x| (sign * x, x));
-        let [fx, fy, fz] = squares(foot, -1.0);
-        let discriminant = self.dot(&mut [(radius, radius), fx, fy, fz]);
-        let [lx, ly, lz] = squares(l, 1.0);
-        let c = self.dot(&mut [lx, ly, lz, (-radius, radius)]);
-        let half = self.sqrt(discriminant.max(0.0));
-        let from_foot = if c > 0.0 { -half } else { half };
+    fn normal(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> [f32; 3] {
+        let Triangle { foot, from_foot, .. } = self.triangle(ray, sphere);
+        let d = ray.direction;
         let outward = self.vector(|this, k| this.mul_add(from_foot, d[k], -foot[k]));
         let squared = self.dot(&mut outward.map(|x| (x, x)));
         let length = self.sqrt(squared);
@@ -245,7 +243,7 @@ impl LegalDevice {
                 for (sphere, place) in scene.spheres().iter().zip(0..) {
                     let is_first = !scene.spheres()[..place as usize].contains(sphere);
                     if is_inside && is_first {
-                        let here = self.intersect((ray.origin, ray.direction), *sphere);
+                        let here = self.intersect(&ray, *sphere);
                         if here < t {
                             (t, id) = (here, place);
                         }
@@ -262,7 +260,7 @@ impl LegalDevice {
                     let d = again.direction;
                     let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
                     let color = scene.color(id).to_array().map(|c| self.mul(c, cosine));
-                    Pixel { color, depth: self.add(again.distance, t), normal, id }
+                    Pixel { color, depth: self.add(ray.distance, t), normal, id }
                 });
             }
         }

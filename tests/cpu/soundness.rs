@@ -4,11 +4,11 @@
 use dashu_float::round::mode;
 use dashu_float::{Context, FBig};
 use fastrand::Rng;
-use pinhole::verify::{Checker, LegalHits};
+use pinhole::verify::{Checker, LegalHits, NO_HIT, TracedRay};
 use pinhole::{LinearRgb, Scene};
 
 use crate::hostile_rays::{Case, case};
-use crate::legal_device::{Habit, LegalDevice, NO_HIT};
+use crate::legal_device::{Habit, LegalDevice};
 
 const CASES: u64 = 1_000_000;
 
@@ -65,14 +65,14 @@ fn holds_exact(case: &Case, scene: &Scene, legal: &LegalHits) -> bool {
 
 /// Whether what a device answers is legal.
 fn allows(device: &mut LegalDevice, case: &Case, scene: &Scene, legal: &LegalHits) -> bool {
-    let ray = (case.origin, case.direction);
+    let ray = TracedRay { origin: case.origin, direction: case.direction, distance: 0.0 };
     let mut nearest = (NO_HIT, u32::MAX);
     for (id, sphere) in (0..).zip(scene.spheres()) {
         // Of spheres that are the same the kernel finds the same, which chance would not.
         if scene.spheres()[..id as usize].contains(sphere) {
             continue;
         }
-        let t = device.intersect(ray, *sphere);
+        let t = device.intersect(&ray, *sphere);
         if t < nearest.0 {
             nearest = (t, id);
         }

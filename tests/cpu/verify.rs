@@ -6,12 +6,12 @@ use pinhole::film::YAxis;
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::verify::{
-    Certificate, Checker, Recording, RequestedCamera, TracedPixel, UploadedView, Verdict,
-    ViolationKind,
+    Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, UploadError,
+    UploadedView, Verdict, ViolationKind,
 };
-use pinhole::{Film, Image, LinearRgb, Scene, Settings, Sphere};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Sphere};
 
-use crate::legal_device::{Habit, LegalDevice, NO_HIT};
+use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
 
 /// What a device is given; it has made nothing of it yet.
@@ -23,13 +23,16 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
         (bounds.min() - scene.origin() - margin, bounds.max() - scene.origin() + margin);
     let origin = vectors.origin - scene.origin();
     let forward = vectors.forward;
-    let nearest = bounds
-        .corners()
-        .map(|corner| (corner - vectors.origin).dot(forward) / forward.length_squared())
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
-    // Not quite up to the box, which is wider by the margin.
-    let advance = (0.99 * nearest.max(0.0)) as f32;
+    let [low, high] = [low, high].map(|corner| corner.as_vec3().as_dvec3());
+    let nearest = (0..8)
+        .map(|i| {
+            let side = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            let corner = DVec3::new(side(0), side(1), side(2));
+            (corner - origin).dot(forward) / forward.length_squared()
+        })
+        .fold(f64::INFINITY, f64::min)
+        .max(0.0);
+    let advance = nearest as f32;
     let narrow = |v: DVec3| v.as_vec3().to_array();
     Recording {
         camera: RequestedCamera { kind: camera.kind(), vectors },
@@ -99,32 +102,69 @@ fn certify(scene: &Scene, recording: &Recording) -> Certificate {
     Checker::new(scene).unwrap().certify(recording)
 }
 
+/// Whatever a device may do, by every habit.
+fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Film) -> usize {
+    let habits = [
+        (Habit::Nearest, 0),
+        (Habit::Up, 0),
+        (Habit::Down, 0),
+        (Habit::Random, 1),
+        (Habit::Random, 2),
+    ];
+    for (habit, seed) in habits {
+        let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(seed) };
+        let recording = device.record(scene, &given(scene, camera, film));
+        let certificate = certify(scene, &recording);
+        assert!(certificate.is_legal(), "{name}, {camera:?}, {habit:?}:\n{certificate}");
+    }
+    habits.len() * film.pixel_count() as usize
+}
+
 #[test]
 fn no_picture_of_a_conforming_device_is_accused() {
     let mut pixels = 0;
     for (number, scene) in scenes().iter().enumerate() {
         for camera in cameras(scene) {
-            for (habit, seed) in [
-                (Habit::Nearest, 0),
-                (Habit::Up, 0),
-                (Habit::Down, 0),
-                (Habit::Random, 1),
-                (Habit::Random, 2),
-            ] {
-                let y_axis = if seed == 2 { YAxis::Down } else { YAxis::Up };
+            for y_axis in [YAxis::Up, YAxis::Down] {
                 let film = Film::new(41, 33).unwrap().with_y_axis(y_axis);
-                let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(seed) };
-                let recording = device.record(scene, &given(scene, camera.as_ref(), film));
-                let certificate = certify(scene, &recording);
-                assert!(
-                    certificate.is_legal(),
-                    "scene {number}, {camera:?}, {habit:?}:\n{certificate}"
-                );
-                pixels += certificate.verdicts.len();
+                pixels += assert_never_accused(&number.to_string(), scene, camera.as_ref(), film);
             }
         }
     }
-    assert!(pixels > 200_000);
+    assert!(pixels > 400_000, "{pixels}");
+}
+
+/// A flat box, along whose wall rays go: where they enter it depends on the last bit of their direction.
+#[test]
+fn rays_that_graze_the_box_are_not_accused() {
+    let plate: Vec<[f32; 4]> = (0..48)
+        .map(|i| [(i / 4) as f32 * 8.0 - 44.0, 0.0, (i % 4) as f32 * 8.0 - 12.0, 1.0])
+        .collect();
+    let scene = scene(&plate);
+    for (height, down) in [(1.5, 10.0), (1.2, 10.0), (2.0, 6.0)] {
+        let (eye, target) = ([-20.0, height, 1.0], [-10.0, height - down, 0.5]);
+        let pose = Pose::looking_at(eye, target, [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 2.3, 1.3).unwrap();
+        assert_never_accused("plate", &scene, &camera, Film::new(61, 501).unwrap());
+    }
+}
+
+/// Squares of such lengths are normal numbers, but those of their components may become zero.
+#[test]
+fn the_smallest_lengths_are_not_accused() {
+    let up = [0.0, 1.0, 0.0];
+    for power in [-56, -55, -54] {
+        let size = 2_f64.powi(power);
+        let two = spheres::scaled(&vec![[0.0, 0.0, 0.0, 1.0], [2.5, 0.0, 0.0, 1.0]], size as f32);
+        let pose = Pose::looking_along([size, 0.0, 6.0 * size], [0.0, 0.0, -1.0], up).unwrap();
+        let camera = OrthographicCamera::new(pose, [3.0 * size, 2.0 * size]).unwrap();
+        assert_never_accused("spheres", &scene(&two), &camera, Film::new(201, 129).unwrap());
+
+        let pose = Pose::looking_along([0.0, 0.0, 6.0], [0.0, 0.0, -1.0], up).unwrap();
+        let camera = PinholeCamera::new(pose, size, [size, size]).unwrap();
+        let one = scene(&[[0.0, 0.0, 0.0, 1.0]]);
+        assert_never_accused("camera", &one, &camera, Film::new(201, 201).unwrap());
+    }
 }
 
 /// A recording of a device that rounds to the nearest.
@@ -178,6 +218,82 @@ fn a_hit_that_is_made_a_miss_is_found_and_the_other_way_round() {
     assert_eq!(spoilt(true, |pixel| (pixel.t, pixel.id) = (NO_HIT, NO_ID)), ["hit"]);
     assert_eq!(spoilt(false, |pixel| (pixel.t, pixel.id) = (1.0, 3)), ["hit"]);
     assert_eq!(spoilt(true, |pixel| pixel.ray = None), ["cull"]);
+}
+
+#[test]
+fn a_miss_has_no_distance() {
+    for t in [1.5, -1.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(spoilt(false, |pixel| pixel.t = t), ["hit"]);
+    }
+    let (scene, recording) = legal_recording();
+    let untraced = |index: usize, t, id| {
+        let mut recording = recording.clone();
+        recording.pixels[index] = TracedPixel { ray: None, t, id };
+        let certificate = certify(&scene, &recording);
+        certificate.violations.first().map(|violation| violation.kind.stage())
+    };
+    // Some ray does not meet the box, and need not be traced.
+    let index = (0..61 * 47).find(|index| untraced(*index, NO_HIT, NO_ID).is_none()).unwrap();
+    assert_eq!(untraced(index, -3.0, 7), Some("hit"));
+    assert_eq!(untraced(index, 1.0, NO_ID), Some("hit"));
+}
+
+/// Each component may be where it is for some entry into the box, but not for the same one.
+#[test]
+fn an_origin_beside_the_ray_is_found() {
+    for axis in 0..3 {
+        let beside = spoilt(true, |pixel| pixel.ray.as_mut().unwrap().origin[axis] += 2e-5);
+        assert_eq!(beside, ["camera"], "{axis}");
+    }
+}
+
+/// What is found in what a device was given, where that was spoilt.
+fn upload(spoil: impl Fn(&mut Recording)) -> Option<UploadError> {
+    let (scene, mut recording) = legal_recording();
+    spoil(&mut recording);
+    certify(&scene, &recording).upload
+}
+
+#[test]
+fn one_bit_of_what_a_device_is_given_is_found() {
+    for axis in 0..3 {
+        for up in [true, false] {
+            let moved = move |x: &mut f32| *x = if up { x.next_up() } else { x.next_down() };
+            for found in [
+                upload(|recording| moved(&mut recording.uploaded.origin[axis])),
+                upload(|recording| moved(&mut recording.uploaded.right[axis])),
+                upload(|recording| moved(&mut recording.uploaded.up[axis])),
+                upload(|recording| moved(&mut recording.uploaded.forward[axis])),
+            ] {
+                assert!(matches!(found, Some(UploadError::Vector { .. })), "{found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_camera_that_is_not_moved_up_to_the_box_is_found() {
+    for factor in [0.0, 0.5, 1.01] {
+        let found = upload(|recording| {
+            let Recording { camera, uploaded, .. } = recording;
+            uploaded.advance *= factor;
+            let moved = f64::from(uploaded.advance) * camera.vectors.forward;
+            uploaded.origin = (camera.vectors.origin + moved).as_vec3().to_array();
+        });
+        assert!(matches!(found, Some(UploadError::Advance { .. })), "{found:?}");
+    }
+}
+
+#[test]
+fn a_recording_of_another_size_is_found() {
+    let fewer = upload(|recording| recording.pixels.truncate(100));
+    assert!(matches!(fewer, Some(UploadError::Size { .. })), "{fewer:?}");
+    let turned = upload(|recording| {
+        recording.image = Image::new(47, 61, LayerSet::ALL).unwrap();
+    });
+    assert!(matches!(turned, Some(UploadError::Size { .. })), "{turned:?}");
+    let flat = upload(|recording| recording.image = Image::new(61, 47, LayerSet::COLOR).unwrap());
+    assert_eq!(flat, Some(UploadError::Layers));
 }
 
 #[test]

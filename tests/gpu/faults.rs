@@ -307,14 +307,14 @@ const SHADE: &[Row] = &[
         "normal, hit.id);",
         "normal, hit.id + 1u);",
     ),
-    ("depth_from_the_box", views::balls, LIST, "shade.wgsl", "entry.distance + hit.t", "hit.t"),
+    ("depth_from_the_box", views::balls, LIST, "shade.wgsl", "hit.distance + hit.t", "hit.t"),
     (
         "depth_not_along_the_ray",
         views::balls,
         LIST,
         "shade.wgsl",
-        "entry.distance + hit.t",
-        "(entry.distance + hit.t) * dot(entry.ray.direction, normalize(frame.camera.forward))",
+        "hit.distance + hit.t",
+        "(hit.distance + hit.t) * dot(entry.ray.direction, normalize(frame.camera.forward))",
     ),
     (
         "color_decoded_twice",
@@ -415,7 +415,7 @@ const TIES: &[Row] = &[
         BRICKS,
         "later_brick.wgsl",
         "return load_hit(index);",
-        "return Hit(NO_HIT, NO_ID, 0u);",
+        "return Hit(NO_HIT, NO_ID, 0u, 0.0);",
     ),
     (
         "later_brick_never_nearer",
