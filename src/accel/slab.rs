@@ -22,14 +22,14 @@
 //!    of `d_i` times that in space. Components of the direction below [`SMALLEST_COMPONENT`] are replaced by
 //!    it, which bends a ray by 2⁻⁴⁰ D at most.
 //!
-//! These are the roundings of a device that rounds to the nearest, as all that were tried do. Where either
-//! neighbour is the result, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u and more, and so
-//! no proof; what a search of such cases attained is 38 u.
-//!
 //! Together less than 40 u: if the sphere test gives t, then the box test of every box around the sphere
 //! gives an entry that is not beyond its exit and not beyond t. A box is left out only if its entry is
 //! *greater* than the nearest distance, so that equal distances are compared by id. The rest of the margin
 //! serves rays that start up to half a diagonal outside the scene's box.
+//!
+//! These are the roundings of a device that rounds to the nearest, as all that were tried do. Where either
+//! neighbour is the result, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u and more, and so
+//! no proof; what a search of such cases attained is 38 u.
 
 use glam::Vec3;
 
