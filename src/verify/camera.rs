@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::line::Line;
 use super::recording::{TracedRay, UploadedView};
-use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma, length_error};
+use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length, gamma};
 use super::sphere::Slack;
 use super::violation::ViolationKind;
 use crate::camera::CameraKind;
@@ -76,7 +76,7 @@ impl CameraModel {
             location_error + gamma(3) * (terms + location_error + self.forward.abs()) + 4.0 * FLUSH;
         let length = toward.length();
         // No longer than the vector's change, and what the length itself adds.
-        let length_error = PAD * toward_error.length() + length_error(length);
+        let length_error = PAD * toward_error.length() + error_of_length(length);
         let shortest = (length - length_error).max(f64::MIN_POSITIVE);
         // One over the length, and a product.
         let direction_error = (toward_error

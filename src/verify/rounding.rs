@@ -30,14 +30,14 @@ pub(super) const fn gamma(k: u32) -> f64 {
 }
 
 /// What the length of a fenced vector, the root of three squares' sum, may be off by.
-pub(super) fn length_error(length: f64) -> f64 {
+pub(super) fn error_of_length(length: f64) -> f64 {
     // Squares may become zero, each operation's at most: 8 times, halved by the root.
     PAD * ((gamma(3) + SQRT) * length + 4.0 * FLUSH / length)
 }
 
 /// How far a vector that was divided by its length may be from unit length.
 pub(super) fn unit_error(length: f64) -> f64 {
-    length_error(length) / length + PAD * (DIVIDE + 2.0 * U)
+    error_of_length(length) / length + PAD * (DIVIDE + 2.0 * U)
 }
 
 /// Numbers from `low` to `high`.
