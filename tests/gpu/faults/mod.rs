@@ -1,0 +1,59 @@
+//! Faults of shaders that the checker must find: each changes a picture, and none by much more than it must.
+
+mod hits;
+mod rays;
+mod search;
+
+use pinhole::accel::AccelChoice;
+
+use crate::support::View;
+
+/// A shader with a fault, and where it shows.
+pub(crate) struct Fault {
+    pub(crate) name: &'static str,
+    pub(crate) view: fn() -> View,
+    pub(crate) how: How,
+    pub(crate) file: &'static str,
+    pub(crate) find: &'static str,
+    pub(crate) replace: &'static str,
+}
+
+/// In which structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct How {
+    pub(crate) choice: AccelChoice,
+    pub(crate) binding_bytes: u64,
+    pub(crate) rays: u64,
+}
+
+const fn how(choice: AccelChoice) -> How {
+    How { choice, binding_bytes: 1 << 27, rays: u64::MAX }
+}
+
+pub(crate) const LIST: How = how(AccelChoice::List);
+const GRID: How = how(AccelChoice::Grid);
+const TREE: How = how(AccelChoice::Tree);
+const BINARY: How = how(AccelChoice::BinaryTree);
+/// So few rays that cells refer to spheres.
+const REFERENCES: How = How { rays: 1, ..GRID };
+/// Bindings so small that there are several bricks.
+pub(crate) const BRICKS: How = How { binding_bytes: 16 * 100, ..LIST };
+
+type Row = (&'static str, fn() -> View, How, &'static str, &'static str, &'static str);
+
+pub(crate) fn all() -> Vec<Fault> {
+    [
+        rays::CAMERA,
+        rays::ENTRY,
+        hits::SPHERE,
+        hits::SHADE,
+        search::TIES,
+        search::GRIDS,
+        search::TREES,
+        search::SCHEDULE,
+    ]
+    .into_iter()
+    .flatten()
+    .map(|&(name, view, how, file, find, replace)| Fault { name, view, how, file, find, replace })
+    .collect()
+}

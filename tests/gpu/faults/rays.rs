@@ -1,0 +1,133 @@
+//! Faults of rays: of the film, of cameras, of the entry into the scene's box.
+
+use super::{LIST, Row};
+use crate::verify_views as views;
+
+pub(super) const CAMERA: &[Row] = &[
+    ("pixel_center_off_by_half", views::balls, LIST, "film.wgsl", "* 2 + 1 - size", "* 2 - size"),
+    (
+        "location_stretched_by_a_hundred_thousandth",
+        views::balls,
+        LIST,
+        "film.wgsl",
+        "fence(location.x)",
+        "fence(location.x * 1.00001)",
+    ),
+    ("y_upside_down", views::balls, LIST, "film.wgsl", "-frame.y_sign", "frame.y_sign"),
+    (
+        "u_and_v_swapped",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "location.x * camera.right + location.y * camera.up",
+        "location.x * camera.up + location.y * camera.right",
+    ),
+    (
+        "u_negated",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "location.x * camera.right",
+        "-location.x * camera.right",
+    ),
+    (
+        "w_negated",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "aside + camera.forward",
+        "aside - camera.forward",
+    ),
+    (
+        "view_plane_too_near",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "aside + camera.forward",
+        "aside + 0.99999 * camera.forward",
+    ),
+    (
+        "direction_not_unit",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "toward * (1.0 / length)",
+        "toward",
+    ),
+    (
+        "one_over_length_to_18_bits",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "(1.0 / length)",
+        "(1.000004 / length)",
+    ),
+    (
+        "eye_on_the_axis",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "camera.origin + camera.advance * aside",
+        "camera.origin",
+    ),
+    (
+        "distance_along_the_axis",
+        views::balls,
+        LIST,
+        "camera_pinhole.wgsl",
+        "camera.advance * length",
+        "camera.advance",
+    ),
+    (
+        "parallel_u_and_v_swapped",
+        views::parallel,
+        LIST,
+        "camera_orthographic.wgsl",
+        "location.x * camera.right + location.y * camera.up",
+        "location.y * camera.right + location.x * camera.up",
+    ),
+    (
+        "parallel_rays_diverge",
+        views::parallel,
+        LIST,
+        "camera_orthographic.wgsl",
+        "camera.forward)",
+        "normalize(camera.forward + 0.00001 * aside))",
+    ),
+];
+
+pub(super) const ENTRY: &[Row] = &[
+    (
+        "entry_without_z",
+        views::balls,
+        LIST,
+        "enter.wgsl",
+        "max(near.x, max(near.y, near.z))",
+        "max(near.x, near.y)",
+    ),
+    (
+        "entry_at_the_exit",
+        views::balls,
+        LIST,
+        "enter.wgsl",
+        "let t_near = max(max(near.x",
+        "let t_near = max(max(far.x",
+    ),
+    (
+        "entry_beyond_the_wall",
+        views::balls,
+        LIST,
+        "enter.wgsl",
+        "ray.origin + t_near * ray.direction",
+        "ray.origin + (t_near + 0.001) * ray.direction",
+    ),
+    ("box_test_inverted", views::balls, LIST, "enter.wgsl", "t_near <= t_far", "t_near > t_far"),
+    (
+        "way_to_the_box_not_counted",
+        views::balls,
+        LIST,
+        "enter.wgsl",
+        "camera_ray.distance + t_near",
+        "camera_ray.distance",
+    ),
+];
