@@ -4,7 +4,7 @@
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
-    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + pixel_in_tile)));
+    let entry = make_entry(pixel_in_tile);
     let first = 2u * hit_index(pixel_in_tile);
     rays[first] = vec4f(entry.ray.origin, entry.distance);
     rays[first + 1u] = vec4f(entry.ray.direction, select(1.0, 2.0, entry.is_inside));

@@ -34,7 +34,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (place >= brick.place_count) {
         return;
     }
-    let entry = enter_scene(camera_ray(relative_location(frame.tile_origin + invocation.xy)));
+    let entry = make_entry(invocation.xy);
     let normal = sphere_normal(entry.ray, intersect_sphere(entry.ray, spheres[place]));
     let color = palette[color_indices[min(place, brick.last_color)]].rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));

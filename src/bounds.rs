@@ -16,6 +16,11 @@ impl Bounds {
         Self { min: center - radius, max: center + radius }
     }
 
+    /// The box between two opposite corners.
+    pub(crate) fn between(min: DVec3, max: DVec3) -> Self {
+        Self { min, max }
+    }
+
     /// The smallest box that holds both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {

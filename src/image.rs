@@ -175,29 +175,24 @@ impl Image {
         })
     }
 
-    /// An image of all layers, each of as many pixels as the sides say.
-    #[cfg(feature = "run-file")]
-    pub(crate) fn from_layers(
+    /// An image of all layers, row by row from the top. `None` if one has not as many pixels as the sides say.
+    #[must_use]
+    pub fn from_layers(
         [width, height]: [u32; 2],
         color: Vec<[f32; 3]>,
         depth: Vec<f32>,
         normal: Vec<[f32; 3]>,
         id: Vec<u32>,
-    ) -> Self {
-        Self { width, height, color, depth: Some(depth), normal: Some(normal), id: Some(id) }
-    }
-
-    /// An image of all layers, from its pixels, row by row from the top. `None` if they are not as many as the
-    /// sides say.
-    #[must_use]
-    pub fn from_pixels(width: u32, height: u32, pixels: &[Pixel]) -> Option<Self> {
-        (pixels.len() as u64 == u64::from(width) * u64::from(height)).then(|| Self {
+    ) -> Option<Self> {
+        let pixels = u64::from(width) * u64::from(height);
+        let lengths = [color.len(), depth.len(), normal.len(), id.len()];
+        lengths.iter().all(|length| *length as u64 == pixels).then_some(Self {
             width,
             height,
-            color: pixels.iter().map(|pixel| pixel.color).collect(),
-            depth: Some(pixels.iter().map(|pixel| pixel.depth).collect()),
-            normal: Some(pixels.iter().map(|pixel| pixel.normal).collect()),
-            id: Some(pixels.iter().map(|pixel| pixel.id).collect()),
+            color,
+            depth: Some(depth),
+            normal: Some(normal),
+            id: Some(id),
         })
     }
 

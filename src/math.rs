@@ -26,6 +26,11 @@ pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
     (v / largest).try_normalize()
 }
 
+/// The same numbers in f64.
+pub(crate) fn wide(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
-use super::device::{WantedAdapter, explained};
+use super::device::{WantedAdapter, explained_alone};
 use super::failure::Failure;
 use super::{interrupt, progress};
 use crate::gpu::{
@@ -37,9 +37,7 @@ impl SelfTested {
     /// Tests all of it.
     pub(super) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
         let headless = wanted.open_any()?;
-        progress::stage("testing");
-        let report = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?
-            .map_err(|error| explained(&headless, &error))?;
+        let report = test(&headless)?;
         progress::clear();
         Ok(Self {
             adapter: AdapterReport::of(&headless),
@@ -59,11 +57,24 @@ impl SelfTested {
 
     /// A failure, if it lacks a property.
     pub(super) fn verdict(&self) -> Result<(), Failure> {
-        match &self.failure {
-            None => Ok(()),
-            Some(failure) => Err(Failure::Unproven(anyhow!("{failure}"))),
-        }
+        unproven(self.failure.as_deref())
     }
+}
+
+/// Tests all of an adapter that is open; a failure, if it lacks a property.
+pub(super) fn check(headless: &Headless) -> Result<(), Failure> {
+    let report = test(headless)?;
+    unproven(failure(&headless.adapter_info().name, &report).as_deref())
+}
+
+fn test(headless: &Headless) -> Result<SelfTestReport, Failure> {
+    progress::stage("testing the adapter");
+    let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?;
+    tested.map_err(|error| explained_alone(headless, &error))
+}
+
+fn unproven(failure: Option<&str>) -> Result<(), Failure> {
+    failure.map_or(Ok(()), |failure| Err(Failure::Unproven(anyhow!("{failure}"))))
 }
 
 impl PropertyReport {

@@ -74,12 +74,11 @@ mod recorded {
     use crate::cli::adapter::AdapterReport;
     use crate::cli::device::{WantedAdapter, choice, explained_alone};
     use crate::cli::input::Source;
-    use crate::cli::interrupt;
-    use crate::cli::memory;
     use crate::cli::speak::tell;
     use crate::cli::verify_report::command_line;
     use crate::cli::with_scene::with_scene;
-    use crate::gpu::{Headless, SelfTestExtent};
+    use crate::cli::{memory, self_test};
+    use crate::gpu::Headless;
     use crate::verify::run_file::Provenance;
 
     /// What an adapter makes of a scene now.
@@ -97,7 +96,7 @@ mod recorded {
             tell(format_args!("note: {note}"));
         }
         let headless = wanted.open_any()?;
-        check_adapter(&headless)?;
+        self_test::check(&headless)?;
         let (scene, film, settings) = (&input.scene, &input.film, &input.settings);
         let camera = input.camera.as_ref();
         let encoding = memory::ENCODING_BYTES_PER_PIXEL;
@@ -109,20 +108,6 @@ mod recorded {
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
         Ok((Run { scene: input.scene, recording, provenance }, outputs))
-    }
-
-    /// Whether the adapter computes as the checker's bounds assume.
-    fn check_adapter(headless: &Headless) -> Result<(), Failure> {
-        progress::stage("testing the adapter");
-        let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?;
-        let report = tested.map_err(|error| explained_alone(headless, &error))?;
-        match report.first_failure() {
-            None => Ok(()),
-            Some(property) => Err(Failure::Unproven(anyhow!(
-                "{}: the self-test fails: {property}",
-                headless.adapter_info().name
-            ))),
-        }
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

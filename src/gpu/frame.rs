@@ -99,10 +99,8 @@ impl Frame {
         let limits = device.limits();
         let keeps_rays = renderer.keeps_rays;
         let rows_per_band = rows_per_band(&limits, size, keeps_rays);
-        let pixels_per_band = u64::from(size[0]) * u64::from(rows_per_band);
-        let hit_bytes = pixels_per_band * HIT_BYTES;
+        let [hit_bytes, ray_bytes] = band_bytes(&limits, size, keeps_rays);
         check_storage_size(device, "the buffer of hits", hit_bytes)?;
-        let ray_bytes = if keeps_rays { pixels_per_band * RAY_BYTES } else { 0 };
         check_storage_size(device, "the buffer of rays", ray_bytes)?;
         let record_size = size_of::<records::Frame>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
@@ -337,20 +335,24 @@ impl Frame {
     }
 }
 
-pub(super) const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
-pub(super) const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
+const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
 
 /// How many rows of targets of a size are traced before they are shaded: their hits, and their rays if they are
 /// kept, fit into one binding.
-pub(super) fn rows_per_band(
-    limits: &wgpu::Limits,
-    [width, height]: [u32; 2],
-    keeps_rays: bool,
-) -> u32 {
+fn rows_per_band(limits: &wgpu::Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
     let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
     let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_PIXELS);
     // At most MAX_PIXELS, so it fits.
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
+}
+
+/// The size of the tiles of a headless render. Where rays are kept, a tile is no more than a band, because what
+/// is kept is that of a frame's last band.
+pub(super) fn tile_size(limits: &wgpu::Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
+    let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
+    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
+    [width, rows]
 }
 
 /// Bytes of the hits of targets of a size, and of their rays if they are kept.

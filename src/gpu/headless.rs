@@ -11,7 +11,7 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, 
 use super::adapter;
 use super::error::{GpuError, scoped};
 use super::faults::Faults;
-use super::frame::{Frame, Part, rows_per_band};
+use super::frame::{Frame, Part, tile_size};
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
 use super::quirks;
 use super::readback::ReadableTexture;
@@ -22,7 +22,7 @@ use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::seen::traced_pixels;
 use super::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use super::tile_textures::TileTextures;
-use super::tiles::{Groups, tile_size, tiles};
+use super::tiles::{Groups, tiles};
 use crate::accel::{Accel, AccelChoice, AccelPlan};
 use crate::camera::Camera;
 use crate::film::Film;
@@ -133,16 +133,13 @@ impl Headless {
     /// # Errors
     /// If the device fails. That it lacks a property is in the report.
     pub fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
-        let _alone = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.faults.forget();
-        SelfTestRun::new(&self.device, extent)
-            .and_then(|run| {
-                let mut encoder = self.encoder();
-                run.record(&mut encoder);
-                self.run(encoder, &run.buffers())?;
-                run.judge()
-            })
-            .map_err(|error| self.explained(error))
+        self.alone(|_| {
+            let run = SelfTestRun::new(&self.device, extent)?;
+            let mut encoder = self.encoder();
+            run.record(&mut encoder);
+            self.run(encoder, &run.buffers())?;
+            run.judge()
+        })
     }
 
     /// Copies a scene to the device, brick by brick.
@@ -150,22 +147,19 @@ impl Headless {
     /// # Errors
     /// If it does not fit the device, or if the device fails.
     pub fn upload(&self, scene: &Scene, accel: &Accel) -> Result<SceneBuffers, GpuError> {
-        let _alone = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.faults.forget();
         // Layouts are all that is needed, and those of one device are the same wherever they are made.
         let options = RendererOptions {
             cameras: Vec::new(),
             structures: vec![accel.structure()],
             ..RendererOptions::default()
         };
-        Renderer::new(&self.device, &options)
-            .and_then(|renderer| {
-                SceneBuffers::upload(&renderer, &self.device, &self.queue, scene, accel, || {
-                    let submission = self.queue.submit([]);
-                    self.wait(&[], submission)
-                })
+        self.alone(|_| {
+            let renderer = Renderer::new(&self.device, &options)?;
+            SceneBuffers::upload(&renderer, &self.device, &self.queue, scene, accel, || {
+                let submission = self.queue.submit([]);
+                self.wait(&[], submission)
             })
-            .map_err(|error| self.explained(error))
+        })
     }
 
     /// Renders a picture with one ray through the centre of every pixel.
@@ -243,12 +237,7 @@ impl Headless {
         mut pixels: Option<&mut Vec<TracedPixel>>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
-        let limits = self.device.limits();
-        let mut tile_size = tile_size(film, limits.max_texture_dimension_2d);
-        if renderer.keeps_rays {
-            // What is kept is that of a tile's last band.
-            tile_size[1] = tile_size[1].min(rows_per_band(&limits, tile_size, true));
-        }
+        let tile_size = tile_size(&self.device.limits(), film, renderer.keeps_rays);
         let textures = scoped(&self.device, || {
             TileTextures::new(&self.device, tile_size, renderer.data_layers)
         })?;
@@ -345,9 +334,17 @@ impl Headless {
         key: RendererKey,
         work: impl FnOnce(&Renderer) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
+        self.alone(|renderers| renderers.of(&self.device, key).and_then(work))
+    }
+
+    /// Works with the device while no other thread does.
+    fn alone<T>(
+        &self,
+        work: impl FnOnce(&mut Renderers) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
         let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
         self.faults.forget();
-        renderers.of(&self.device, key).and_then(work).map_err(|error| self.explained(error))
+        work(&mut renderers).map_err(|error| self.explained(error))
     }
 
     /// Submits, and waits until it is done and the buffers are mapped.

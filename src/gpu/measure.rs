@@ -3,13 +3,13 @@
 use wgpu::ComputePassDescriptor;
 
 use super::error::{GpuError, scoped};
-use super::frame::{Frame, Part};
+use super::frame::{Frame, Part, tile_size};
 use super::headless::Headless;
 use super::renderer::{Query, Renderer};
 use super::renderers::RendererKey;
 use super::scene_buffers::SceneBuffers;
 use super::tile_textures::TileTextures;
-use super::tiles::{Groups, tile_size, tiles};
+use super::tiles::{Groups, tiles};
 use super::timer::{PassTimer, TraceTime};
 use crate::camera::Camera;
 use crate::film::Film;
@@ -38,7 +38,7 @@ impl Headless {
         camera: &dyn Camera,
         film: &Film,
     ) -> Result<TraceTime, GpuError> {
-        let tile_size = tile_size(film, self.device().limits().max_texture_dimension_2d);
+        let tile_size = tile_size(&self.device().limits(), film, renderer.keeps_rays);
         let textures =
             scoped(self.device(), || TileTextures::new(self.device(), tile_size, false))?;
         let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;

@@ -3,11 +3,10 @@
 use wgpu::{DeviceType, Limits};
 
 use super::error::GpuError;
-use super::frame::{band_bytes, rows_per_band};
+use super::frame::{band_bytes, tile_size};
 use super::headless::Headless;
 use super::records;
 use super::tile_textures;
-use super::tiles::tile_size;
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::film::Film;
 use crate::image::LayerSet;
@@ -77,18 +76,7 @@ impl RenderPlan {
         device: (&Limits, DeviceType),
         host_bytes_per_pixel: u64,
     ) -> Self {
-        // The verdicts are gathered from parts.
-        let judged = (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64;
-        let per_pixel = host_bytes_per_pixel.saturating_add(judged);
-        let mut plan = Self::planned(scene, film, LayerSet::ALL, accel, device, per_pixel, true);
-        let picture =
-            film.pixel_count().saturating_mul(LayerSet::ALL.bytes_per_pixel() + per_pixel);
-        let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
-        let checking = picture.saturating_add(checker);
-        if checking > plan.host_bytes {
-            (plan.host_peak, plan.host_bytes) = (HostPeak::Checking, checking);
-        }
-        plan
+        Self::planned(scene, film, LayerSet::ALL, accel, device, host_bytes_per_pixel, true)
     }
 
     fn planned(
@@ -101,11 +89,8 @@ impl RenderPlan {
         keeps_rays: bool,
     ) -> Self {
         let scene_buffers = scene_buffers(scene, &accel);
-        let mut tile_size = tile_size(film, limits.max_texture_dimension_2d);
+        let tile_size = tile_size(limits, film, keeps_rays);
         let mut tile_textures = Vec::new();
-        if keeps_rays {
-            tile_size[1] = tile_size[1].min(rows_per_band(limits, tile_size, true));
-        }
         let [hits, rays] = band_bytes(limits, tile_size, keeps_rays);
         let mut tile_buffers = vec![PlannedBuffer::one("hits", hits)];
         if keeps_rays {
@@ -119,11 +104,19 @@ impl RenderPlan {
         let in_host = |bytes| if device_type == DeviceType::Cpu { bytes } else { 0 };
         // One brick's copy is waiting for the device at a time.
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
-        let per_pixel = layers.bytes_per_pixel().saturating_add(host_bytes_per_pixel);
+        // Rays, hits, and verdicts, which are gathered from parts.
+        let judged = (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64;
+        let per_pixel = layers
+            .bytes_per_pixel()
+            .saturating_add(host_bytes_per_pixel)
+            .saturating_add(if keeps_rays { judged } else { 0 });
         let picture = film.pixel_count().saturating_mul(per_pixel);
+        let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
+        let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let moments = [
             (HostPeak::Building, accel.host_bytes()),
             (HostPeak::Uploading, accel.device_bytes() + queued + in_host(scene_bytes)),
+            (HostPeak::Checking, checking),
             (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
         let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::tiles::{Groups, Tile};
+use crate::bounds::Bounds;
 use crate::camera::CameraVectors;
 use crate::film::{Film, YAxis};
 use crate::settings::{Settings, Shading};
@@ -58,7 +59,7 @@ pub(super) struct Brick {
 /// The bits of t, id and place, and of where the ray starts: one `vec4u`.
 pub(super) type Hit = [u32; 4];
 
-/// Origin and distance, direction and whether there is one: two `vec4f`.
+/// Origin and distance, direction and a number that is not 0 if there is one: two `vec4f`.
 pub(super) type TracedRay = [f32; 8];
 
 /// Where a scene lies: its frame in the world, and in it the box that rays are moved to.
@@ -69,14 +70,21 @@ pub(super) struct SceneSpace {
     pub(super) max: Vec3,
 }
 
+impl SceneSpace {
+    /// The box's corners, in the scene's frame.
+    pub(super) fn corners(&self) -> [DVec3; 8] {
+        Bounds::between(self.min.as_dvec3(), self.max.as_dvec3()).corners()
+    }
+}
+
 /// Centre in the scene's frame, and radius: one `vec4f`.
 pub(super) type Sphere = [f32; 4];
 
 /// Linear red, green and blue, and an unused component: one `vec4f`.
 pub(super) type Color = [f32; 4];
 
-/// The distance of a miss; `NO_HIT` in `shaders/frame.wgsl`. Kernels have no infinity.
-pub(super) const NO_HIT: f32 = 1e30;
+/// `NO_HIT` in `shaders/frame.wgsl`.
+pub(super) use crate::verify::NO_HIT;
 
 impl Camera {
     /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box,
@@ -85,12 +93,11 @@ impl Camera {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
-        let ends = [scene.min.as_dvec3(), scene.max.as_dvec3()];
-        let corners =
-            (0..8).map(|i| DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z));
         // How many times `forward` it is to the plane of the box's nearest corner.
-        let nearest = corners
+        let nearest = scene
+            .corners()
             .map(|corner| (corner - origin).dot(forward) / forward.length_squared())
+            .into_iter()
             .fold(f64::INFINITY, f64::min);
         let advance = f64::from(nearest.max(0.0) as f32);
         Self {

@@ -1,7 +1,5 @@
 //! The part of a picture in which the scene's box lies.
 
-use glam::DVec3;
-
 use super::records::SceneSpace;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
@@ -25,10 +23,8 @@ impl Seen {
     /// A camera maps straight lines to straight lines, so the box lies within its corners.
     pub(super) fn of(camera: &dyn Camera, space: &SceneSpace, film: &Film) -> Self {
         let size = [f64::from(film.width()), f64::from(film.height())];
-        let ends = [space.min.as_dvec3(), space.max.as_dvec3()];
         let mut seen = Self { first: size, end: [0.0; 2] };
-        for i in 0..8 {
-            let corner = DVec3::new(ends[i & 1].x, ends[(i >> 1) & 1].y, ends[(i >> 2) & 1].z);
+        for corner in space.corners() {
             let Some(location) = camera.location_of(space.origin + corner) else {
                 return Self { first: [0.0; 2], end: size };
             };
@@ -79,7 +75,7 @@ pub(super) fn traced_pixels(
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     use super::*;
     use crate::camera::{OrthographicCamera, PinholeCamera, Pose};

@@ -10,6 +10,7 @@ use super::sphere::Slack;
 use super::violation::ViolationKind;
 use crate::camera::CameraKind;
 use crate::film::Film;
+use crate::math::wide;
 
 /// As in `shaders/enter.wgsl`.
 const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
@@ -41,7 +42,6 @@ pub(super) struct CameraModel {
 
 impl CameraModel {
     pub(super) fn new(kind: CameraKind, view: &UploadedView, film: &Film) -> Self {
-        let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         Self {
             kind,
             film: *film,

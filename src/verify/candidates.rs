@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::line::Line;
 use super::rounding::U;
+use crate::math::wide;
 use crate::parallel::{both, try_map};
 use crate::scene::SceneError;
 
@@ -130,7 +131,7 @@ impl Candidates {
 fn build(items: &mut [Candidate], nodes: &mut [Node], level: u32) {
     if level == 0 {
         for Candidate { sphere: [x, y, z, radius], .. } in items {
-            let center = DVec3::new((*x).into(), (*y).into(), (*z).into());
+            let center = wide([*x, *y, *z]);
             let radius = f64::from(*radius);
             nodes[0].low = nodes[0].low.min(rounded(center - radius, f32::next_down));
             nodes[0].high = nodes[0].high.max(rounded(center + radius, f32::next_up));
@@ -187,7 +188,7 @@ impl Slab {
         line: &Line,
         Candidate { sphere: [x, y, z, radius], .. }: &Candidate,
     ) -> bool {
-        let to_center = DVec3::new((*x).into(), (*y).into(), (*z).into()) - line.origin;
+        let to_center = wide([*x, *y, *z]) - line.origin;
         let along = to_center.dot(line.direction);
         let foot = to_center - along * line.direction;
         foot.length_squared() <= (f64::from(*radius) + self.beside).powi(2)

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::math::wide;
+
 /// Components below this count as this: the distance to a plane is then finite.
 const SMALLEST_COMPONENT: f64 = 1e-60;
 
@@ -16,7 +18,6 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         Self::exact(wide(origin), wide(direction))
     }
 

@@ -48,5 +48,7 @@ pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use recording::{NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 pub use rounding::Interval;
+#[cfg(feature = "gpu")]
+pub(crate) use rounding::{DIVIDE_ULP, SQRT_ULP, gamma};
 pub use upload::UploadError;
 pub use violation::{Violation, ViolationKind};

@@ -1,7 +1,5 @@
 //! One pixel, stage by stage.
 
-use glam::DVec3;
-
 use super::camera::{CameraModel, EnteredRay};
 use super::certificate::Verdict;
 use super::checker::Checker;
@@ -12,6 +10,7 @@ use super::rounding::{Interval, unit_error};
 use super::shading::{LegalNormals, exactly, legal_color, legal_depth};
 use super::violation::ViolationKind;
 use crate::image::NO_ID;
+use crate::math::wide;
 
 /// What pixels are judged by.
 pub(super) struct PixelCheck<'a> {
@@ -140,7 +139,7 @@ impl PixelCheck<'_> {
         let scene = self.checker.scene;
         let sphere = scene.spheres()[id as usize];
         let normals = LegalNormals::new(line, sphere, entered.slack());
-        let normal = DVec3::from(layers.normal.map(f64::from));
+        let normal = wide(layers.normal);
         let fraction = normals.fraction(normal);
         let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
         if !(fraction <= 1.0 && is_unit) {

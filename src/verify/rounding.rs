@@ -13,18 +13,24 @@ pub(super) const U: f64 = 1.0 / (1 << 23) as f64;
 /// What is lost where a number below the normal ones becomes zero: 2⁻¹²⁶.
 pub(super) const FLUSH: f64 = f32::MIN_POSITIVE as f64;
 
-/// A quotient, relative.
-pub(super) const DIVIDE: f64 = 2.5 * U;
+/// A quotient, in ULP.
+pub(crate) const DIVIDE_ULP: f64 = 2.5;
 
-/// A square root, relative: two ULP of an inverse square root and 2.5 of one over it, and what is left of
-/// their product.
-pub(super) const SQRT: f64 = 5.0 * U;
+/// A square root, in ULP: two of an inverse square root and 2.5 of one over it, and what is left of their
+/// product.
+pub(crate) const SQRT_ULP: f64 = 5.0;
+
+/// A quotient, relative.
+pub(super) const DIVIDE: f64 = DIVIDE_ULP * U;
+
+/// A square root, relative.
+pub(super) const SQRT: f64 = SQRT_ULP * U;
 
 /// Bounds are themselves computed in f64, whose roundings are 2⁻²⁹ of those that they bound.
 pub(super) const PAD: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// `k` roundings one after the other, relative.
-pub(super) const fn gamma(k: u32) -> f64 {
+pub(crate) const fn gamma(k: u32) -> f64 {
     let sum = k as f64 * U;
     sum / (1.0 - sum)
 }

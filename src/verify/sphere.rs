@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::line::Line;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use crate::math::wide;
 
 /// How far a ray may be from the one that is followed, because another kernel made it anew.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,7 +58,7 @@ impl SphereTest {
     /// `None` for a ray that cannot hit.
     pub(super) fn new(line: &Line, [x, y, z, radius]: [f32; 4], slack: Slack) -> Option<Self> {
         let d = line.direction.abs();
-        let l = DVec3::new(x.into(), y.into(), z.into()) - line.origin;
+        let l = wide([x, y, z]) - line.origin;
         let r2 = f64::from(radius) * f64::from(radius);
         let b = l.dot(line.direction);
         let foot = l - b * line.direction;

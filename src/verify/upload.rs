@@ -5,6 +5,8 @@ use glam::{DVec3, Vec3};
 use super::candidates::Candidates;
 use super::recording::Recording;
 use super::rounding::{Interval, U};
+use crate::bounds::Bounds;
+use crate::math::wide;
 use crate::scene::Scene;
 
 /// Spheres must lie inside the box that rays are moved to by at least this, of the box's diagonal: twice what
@@ -88,17 +90,13 @@ pub(super) fn check(
             return Err(UploadError::Vector { name, found, expected });
         }
     }
-    let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
     let (low, high) = (wide(view.scene_min), wide(view.scene_max));
-    let nearest = (0..8)
-        .map(|i| {
-            let side =
-                |bit: u32, axis: usize| if i >> bit & 1 == 0 { low[axis] } else { high[axis] };
-            let corner = DVec3::new(side(0, 0), side(1, 1), side(2, 2));
-            (corner - origin).dot(vectors.forward) / vectors.forward.length_squared()
-        })
-        .fold(f64::INFINITY, f64::min);
-    let nearest = nearest.max(0.0);
+    let nearest = Bounds::between(low, high)
+        .corners()
+        .map(|corner| (corner - origin).dot(vectors.forward) / vectors.forward.length_squared())
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+        .max(0.0);
     // A rounding to f32, and those of f64 where the box lies far from the camera.
     let far = f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length()))
         / vectors.forward.length();

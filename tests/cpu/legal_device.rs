@@ -264,7 +264,19 @@ impl LegalDevice {
                 });
             }
         }
-        let image = Image::from_pixels(film.width(), film.height(), &layers).unwrap();
+        let image = image_of(film, &layers);
         Recording { pixels, image, ..made.clone() }
     }
+}
+
+/// All layers of pixels, row by row from the top.
+fn image_of(film: &Film, pixels: &[Pixel]) -> Image {
+    Image::from_layers(
+        [film.width(), film.height()],
+        pixels.iter().map(|pixel| pixel.color).collect(),
+        pixels.iter().map(|pixel| pixel.depth).collect(),
+        pixels.iter().map(|pixel| pixel.normal).collect(),
+        pixels.iter().map(|pixel| pixel.id).collect(),
+    )
+    .unwrap()
 }

@@ -48,7 +48,7 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
         film,
         settings: Settings::default(),
         pixels: Vec::new(),
-        image: Image::from_pixels(0, 0, &[]).unwrap(),
+        image: Image::new(0, 0, LayerSet::ALL).unwrap(),
     }
 }
 

@@ -13,6 +13,7 @@ use super::{exactness, inputs, loops, rounding};
 use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::frame::iteration_limit;
 use crate::gpu::layouts;
+use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::renderer::pipeline;
 use crate::gpu::shaders::{Probe, self_test_kernel};
 
@@ -69,7 +70,7 @@ impl SelfTestRun {
 
     /// What must be mapped before it is judged.
     pub(in crate::gpu) fn buffers(&self) -> Vec<&Buffer> {
-        self.dispatches().map(|dispatch| &dispatch.readable).collect()
+        self.dispatches().map(|dispatch| dispatch.readable.buffer()).collect()
     }
 
     /// Judges what the device has computed.
@@ -114,7 +115,7 @@ struct Dispatch {
     pipeline: ComputePipeline,
     group: BindGroup,
     answers: Buffer,
-    readable: Buffer,
+    readable: ReadableBuffer,
     workgroups: u32,
 }
 
@@ -147,21 +148,18 @@ impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
                 buffer.unmap();
                 buffer
             };
-            let empty = |label, usage| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size: (inputs.len() * size_of::<Answer>()) as u64,
-                    usage,
-                    mapped_at_creation: false,
-                })
-            };
             let uniform = filled("pinhole self-test", bytes_of(uniform), BufferUsages::UNIFORM);
             let input =
                 filled("pinhole self-test inputs", cast_slice(inputs), BufferUsages::STORAGE);
-            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let answers = empty("pinhole self-test answers", usage);
-            let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-            let readable = empty("pinhole self-test answers", usage);
+            let (label, size) =
+                ("pinhole self-test answers", (inputs.len() * size_of::<Answer>()) as u64);
+            let answers = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            let readable = ReadableBuffer::new(device, label, size);
             let entries: Vec<_> = (0..)
                 .zip([&uniform, &input, &answers])
                 .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -188,19 +186,12 @@ impl Dispatch {
         pass.set_bind_group(0, &self.group, &[]);
         pass.dispatch_workgroups(self.workgroups, 1, 1);
         drop(pass);
-        encoder.copy_buffer_to_buffer(&self.answers, 0, &self.readable, 0, self.answers.size());
+        self.readable.record_copy(encoder, &self.answers);
     }
 
     /// What was computed; unmaps the buffer, which must be mapped.
     fn read<Answer: Pod>(&self) -> Result<Vec<Answer>, GpuError> {
-        let bytes = self
-            .readable
-            .get_mapped_range(..)
-            .map_err(|error| GpuError::Device { message: error.to_string() })?;
-        let answers = bytemuck::pod_collect_to_vec(&bytes);
-        drop(bytes);
-        self.readable.unmap();
-        Ok(answers)
+        self.readable.read(<[Answer]>::to_vec)
     }
 }
 

@@ -60,7 +60,8 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
         file.numbers("depth", &shape)?,
         file.items("normal", &shape)?,
         file.numbers("id", &shape)?,
-    );
+    )
+    .ok_or_else(|| contradiction("the layers are of different sizes"))?;
     Ok(Recording {
         camera: camera(file)?,
         uploaded: UploadedView { origin, advance, right, up, forward, scene_min, scene_max },
