@@ -29,6 +29,13 @@ impl LinearRgb {
         }
     }
 
+    /// The same of each, clamped to what a colour may be.
+    #[must_use]
+    pub(crate) const fn gray(value: f32) -> Self {
+        // False for NaN as well.
+        if value >= 0.0 && value < f32::INFINITY { Self([value; 3]) } else { Self::BLACK }
+    }
+
     /// Decodes 8-bit sRGB.
     #[must_use]
     pub fn from_srgb8(bytes: [u8; 3]) -> Self {

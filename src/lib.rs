@@ -44,17 +44,22 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
+pub mod filter;
 pub mod generate;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
 pub mod io;
+pub mod lighting;
+pub mod material;
 pub mod math;
 mod parallel;
 pub mod points;
+pub mod range;
 pub mod ray;
 pub mod scene;
 #[cfg(feature = "scene-file")]
@@ -67,6 +72,8 @@ pub mod verify;
 pub use color::LinearRgb;
 pub use film::Film;
 pub use image::{Image, LayerSet};
+pub use lighting::Lighting;
+pub use material::{Finish, Material};
 pub use points::Points;
 pub use scene::Scene;
 pub use settings::{Settings, Shading};

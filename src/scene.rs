@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
+use crate::material::Finish;
 #[cfg(feature = "run-file")]
 use crate::math::MAX_LENGTH;
 use crate::parallel;
@@ -21,6 +22,8 @@ pub struct Scene {
     origin: DVec3,
     spheres: Vec<[f32; 4]>,
     palette: Vec<LinearRgb>,
+    /// Of each place in the palette.
+    finishes: Vec<Finish>,
     /// Of each sphere, its place in the palette; `None` if all have the first colour.
     color_indices: Option<Vec<u32>>,
     bounds: Option<Bounds>,
@@ -75,8 +78,8 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let narrow = narrowed(spheres, f64_parts, origin)?;
-        let (palette, color_indices) = palette(spheres.iter().map(|s| s.color));
-        Ok(Self { origin, spheres: narrow, palette, color_indices, bounds })
+        let (palette, finishes, color_indices) = palette(spheres);
+        Ok(Self { origin, spheres: narrow, palette, finishes, color_indices, bounds })
     }
 
     /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
@@ -90,7 +93,7 @@ impl Scene {
         if origin != DVec3::ZERO {
             parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
         }
-        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+        Ok(Self::of_one_color(origin, spheres, color, bounds))
     }
 
     /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
@@ -101,7 +104,24 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, |s| *s)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let spheres = narrowed(spheres, |s| *s, origin)?;
-        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+        Ok(Self::of_one_color(origin, spheres, color, bounds))
+    }
+
+    fn of_one_color(
+        origin: DVec3,
+        spheres: Vec<[f32; 4]>,
+        color: LinearRgb,
+        bounds: Option<Bounds>,
+    ) -> Self {
+        let (palette, finishes) = (vec![color], vec![Finish::default()]);
+        Self { origin, spheres, palette, finishes, color_indices: None, bounds }
+    }
+
+    /// The same spheres, all of one finish.
+    #[must_use]
+    pub fn with_finish(mut self, finish: Finish) -> Self {
+        self.finishes.fill(finish);
+        self
     }
 
     /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
@@ -139,7 +159,8 @@ impl Scene {
         let in_world =
             |[x, y, z, radius]: [f64; 4]| Bounds::of_sphere(origin + DVec3::new(x, y, z), radius);
         let bounds = spheres.iter().map(|s| in_world(s.map(f64::from))).reduce(Bounds::union);
-        Ok(Self { origin, spheres, palette, color_indices, bounds })
+        let finishes = vec![Finish::default(); palette.len()];
+        Ok(Self { origin, spheres, palette, finishes, color_indices, bounds })
     }
 
     /// Where the scene's frame lies in the world.
@@ -161,16 +182,33 @@ impl Scene {
     #[must_use]
     pub fn color(&self, id: u32) -> LinearRgb {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
-        match &self.color_indices {
-            Some(indices) => self.palette[indices[id as usize] as usize],
-            None => self.palette[0],
-        }
+        self.palette[self.place_in_palette(id)]
     }
 
-    /// Every colour that occurs, once; at least one if there is a sphere.
+    /// The finish of a sphere, by its index in input order.
+    ///
+    /// # Panics
+    /// If there is no such sphere.
+    #[must_use]
+    pub fn finish(&self, id: u32) -> Finish {
+        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        self.finishes[self.place_in_palette(id)]
+    }
+
+    fn place_in_palette(&self, id: u32) -> usize {
+        self.color_indices.as_ref().map_or(0, |indices| indices[id as usize] as usize)
+    }
+
+    /// Every colour that occurs with every finish that it has, once; at least one if there is a sphere.
     #[must_use]
     pub fn palette(&self) -> &[LinearRgb] {
         &self.palette
+    }
+
+    /// The finish of each place in the palette.
+    #[must_use]
+    pub fn finishes(&self) -> &[Finish] {
+        &self.finishes
     }
 
     /// Of every sphere, in input order, the place of its colour in the palette; `None` if all have the
@@ -265,20 +303,23 @@ fn frame_origin(bounds: Bounds) -> DVec3 {
     DVec3::from(bounds.center().to_array().map(along))
 }
 
-/// Every colour once, in the order of first use, and the place of each sphere's; `None` if there is but
+/// Every colour and finish once, in the order of first use, and the place of each sphere's; `None` if there is but
 /// one.
-fn palette(colors: impl Iterator<Item = LinearRgb>) -> (Vec<LinearRgb>, Option<Vec<u32>>) {
-    let mut palette = Vec::new();
+fn palette(spheres: &[Sphere]) -> (Vec<LinearRgb>, Vec<Finish>, Option<Vec<u32>>) {
+    let (mut palette, mut finishes) = (Vec::new(), Vec::new());
     let mut places = HashMap::new();
-    let indices: Vec<u32> = colors
-        .map(|color| {
-            *places.entry(color.to_array().map(f32::to_bits)).or_insert_with(|| {
-                palette.push(color);
+    let indices: Vec<u32> = spheres
+        .iter()
+        .map(|Sphere { color, finish, .. }| {
+            let key = (color.to_array().map(f32::to_bits), finish.bits());
+            *places.entry(key).or_insert_with(|| {
+                palette.push(*color);
+                finishes.push(*finish);
                 // No more than spheres, which are fewer than 2³².
                 palette.len() as u32 - 1
             })
         })
         .collect();
     let several = palette.len() > 1;
-    (palette, several.then_some(indices))
+    (palette, finishes, several.then_some(indices))
 }

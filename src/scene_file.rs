@@ -355,7 +355,7 @@ struct SphereTable {
 
 impl SphereTable {
     fn sphere(self) -> Sphere {
-        Sphere { center: self.center, radius: self.radius, color: self.color.0 }
+        Sphere::new(self.center, self.radius, self.color.0)
     }
 }
 

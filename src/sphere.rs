@@ -1,6 +1,7 @@
 //! The one primitive.
 
 use crate::color::LinearRgb;
+use crate::material::{Finish, Material};
 use crate::math::{MAX_LENGTH, MIN_LENGTH};
 
 /// A sphere in world space, as a caller gives it. [`crate::Scene`] checks it.
@@ -13,6 +14,8 @@ pub struct Sphere {
     pub radius: f64,
     /// Surface colour.
     pub color: LinearRgb,
+    /// What the surface does with light; lit pictures show it.
+    pub finish: Finish,
 }
 
 /// What is wrong with a sphere.
@@ -38,10 +41,24 @@ pub enum SphereError {
 }
 
 impl Sphere {
-    /// A sphere from its three parts.
+    /// A matt, opaque sphere.
     #[must_use]
-    pub const fn new(center: [f64; 3], radius: f64, color: LinearRgb) -> Self {
-        Self { center, radius, color }
+    pub fn new(center: [f64; 3], radius: f64, color: LinearRgb) -> Self {
+        Self { center, radius, color, finish: Finish::default() }
+    }
+
+    /// The sphere of another material.
+    #[must_use]
+    pub fn with_material(mut self, material: Material) -> Self {
+        self.finish.material = material;
+        self
+    }
+
+    /// The sphere with another opacity.
+    #[must_use]
+    pub fn with_opacity(mut self, opacity: f32) -> Self {
+        self.finish.opacity = opacity;
+        self
     }
 
     /// Whether the sphere may be part of a scene.

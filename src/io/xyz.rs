@@ -234,21 +234,20 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         if !look.is_element && seen.insert(species) {
             unknown_species.push(shortened(species));
         }
-        let sphere = Sphere {
-            center: [
-                atom.number(columns.position, "x coordinate")?,
-                atom.number(columns.position + 1, "y coordinate")?,
-                atom.number(columns.position + 2, "z coordinate")?,
-            ],
-            radius: match columns.radius {
-                Some(column) => atom.number(column, "radius")?,
-                None => look.radius,
-            },
-            color: match columns.color {
-                Some(column) => atom.color(column)?,
-                None => look.color,
-            },
+        let center = [
+            atom.number(columns.position, "x coordinate")?,
+            atom.number(columns.position + 1, "y coordinate")?,
+            atom.number(columns.position + 2, "z coordinate")?,
+        ];
+        let radius = match columns.radius {
+            Some(column) => atom.number(column, "radius")?,
+            None => look.radius,
         };
+        let color = match columns.color {
+            Some(column) => atom.color(column)?,
+            None => look.color,
+        };
+        let sphere = Sphere::new(center, radius, color);
         let out_of_range = |error| XyzError::Sphere { line: atom.line, atom: found, error };
         sphere.check().map_err(out_of_range)?;
         spheres.push(sphere);

@@ -1,0 +1,170 @@
+//! What a lighting refuses.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::{Integrator, LightKind, Lighting, SkyLight};
+use crate::color::LinearRgb;
+use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::range::RangeError;
+use crate::scene::Scene;
+
+/// What is wrong with a lighting, or with a scene's materials.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LightingError {
+    /// A parameter is out of range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// A parameter of a light is out of range.
+    #[error("light {index}: {error}")]
+    Light {
+        /// From 0, in input order.
+        index: usize,
+        /// What is wrong.
+        error: RangeError,
+    },
+    /// A light's direction is zero or not finite.
+    #[error("light {index}: its direction has no length")]
+    Direction {
+        /// From 0, in input order.
+        index: usize,
+    },
+    /// A surface would give back more light than it gets.
+    #[error(
+        "{what} has the color {rgb:?}, which creates light; each component of a color that scatters must be at most 1"
+    )]
+    Albedo {
+        /// Which one.
+        what: String,
+        /// Its linear colour.
+        rgb: [f32; 3],
+    },
+    /// The ground's normal is zero, or its point not finite.
+    #[error("the ground's normal must have a length, and its point must be finite")]
+    Ground,
+    /// Paths know no shadow catcher.
+    #[error(
+        "a shadow catcher needs the integrator `studio`; paths light the ground as they find it"
+    )]
+    Catcher,
+}
+
+impl Lighting {
+    /// Whether all of it is in range, and the scene's materials give back no more light than they get.
+    ///
+    /// # Errors
+    /// The first thing that is not.
+    pub fn check(&self, scene: &Scene) -> Result<(), LightingError> {
+        let within = RangeError::unless_within;
+        within("samples", self.sampling.samples.into(), [1.0, 16_777_216.0], "from 1 to 16777216")?;
+        match &self.integrator {
+            Integrator::Path(path) => {
+                within("max_depth", path.max_depth.into(), [1.0, 64.0], "from 1 to 64")?;
+                if self.ground.is_some_and(|ground| ground.is_shadow_catcher) {
+                    return Err(LightingError::Catcher);
+                }
+            }
+            Integrator::Studio(studio) => studio.check()?,
+        }
+        for (index, light) in self.lights.iter().enumerate() {
+            check_light(index, &light.kind)?;
+        }
+        if let SkyLight::Image { strength, rotation, .. } = &self.sky.light {
+            within("strength", (*strength).into(), [0.0, 1e6], "from 0 to 1e6")?;
+            within("rotation", *rotation, [-1e3, 1e3], "from -1000 to 1000 radians")?;
+        }
+        if let Some(ground) = &self.ground {
+            let is_near = ground.point.abs().cmple(glam::DVec3::splat(MAX_LENGTH)).all();
+            if unit(ground.normal).is_none() || !is_near {
+                return Err(LightingError::Ground);
+            }
+            check_albedo(ground.color, || "the ground".to_owned())?;
+        }
+        check_materials(scene)
+    }
+}
+
+impl super::Studio {
+    fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;
+        if let Some(occlusion) = &self.occlusion {
+            within("samples", occlusion.samples.into(), [1.0, 1024.0], "from 1 to 1024")?;
+            if let Some(radius) = occlusion.radius {
+                within("radius", radius, LENGTH, LENGTH_WORDS)?;
+            }
+        }
+        if let Some(cue) = &self.depth_cue {
+            within("near", cue.near, [0.0, MAX_LENGTH], "0 or more, and less than 2^56")?;
+            within("far", cue.far, [cue.near.max(MIN_LENGTH), MAX_LENGTH], "more than `near`")?;
+            if cue.far <= cue.near {
+                let range = "more than `near`";
+                return Err(RangeError { parameter: "far", value: cue.far, range });
+            }
+        }
+        if let Some(outline) = &self.outline {
+            within("width", outline.width.into(), [0.5, 64.0], "from 0.5 to 64 pixels")?;
+            within("depth", outline.depth.into(), [0.0, 1e6], "0 or more")?;
+            within("angle", outline.angle.into(), [0.0, PI + 1e-6], "from 0 to 180 degrees")?;
+        }
+        Ok(())
+    }
+}
+
+const LENGTH: [f64; 2] = [MIN_LENGTH, MAX_LENGTH];
+const LENGTH_WORDS: &str = "a length greater than 0, from 2^-56 to 2^56";
+
+fn check_light(index: usize, light: &LightKind) -> Result<(), LightingError> {
+    let within = |parameter, value, bounds, range| {
+        RangeError::unless_within(parameter, value, bounds, range)
+            .map_err(|error| LightingError::Light { index, error })
+    };
+    match *light {
+        LightKind::Head { .. } => {}
+        LightKind::Directional { toward, angular_radius, .. } => {
+            if unit(toward).is_none() {
+                return Err(LightingError::Direction { index });
+            }
+            if angular_radius != 0.0 {
+                let range = "0, or from 0.06 to 90 degrees";
+                within("angular_radius", angular_radius, [0.001, FRAC_PI_2], range)?;
+            }
+        }
+        LightKind::Point { position, .. } => {
+            for x in position.to_array() {
+                within("position", x, [-MAX_LENGTH, MAX_LENGTH], "finite")?;
+            }
+        }
+        LightKind::Sphere { center, radius, .. } => {
+            for x in center.to_array() {
+                within("center", x, [-MAX_LENGTH, MAX_LENGTH], "finite")?;
+            }
+            within("radius", radius, LENGTH, LENGTH_WORDS)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_materials(scene: &Scene) -> Result<(), LightingError> {
+    for (place, (color, finish)) in scene.palette().iter().zip(scene.finishes()).enumerate() {
+        finish.check()?;
+        if finish.scatters() {
+            check_albedo(*color, || {
+                let id = scene.color_indices().map_or(Some(0), |places| {
+                    places.iter().position(|found| *found as usize == place)
+                });
+                id.map_or_else(|| "a material".to_owned(), |id| format!("sphere {id}"))
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn check_albedo(color: LinearRgb, what: impl Fn() -> String) -> Result<(), LightingError> {
+    let rgb = color.to_array();
+    if rgb.iter().all(|c| *c <= 1.0) {
+        Ok(())
+    } else {
+        Err(LightingError::Albedo { what: what(), rgb })
+    }
+}
