@@ -1,0 +1,38 @@
+// What a surface does with light. Twin: src/material.rs.
+
+const LAMBERT: u32 = 0u;
+const CONDUCTOR: u32 = 1u;
+const DIELECTRIC: u32 = 2u;
+const EMISSIVE: u32 = 3u;
+
+struct Material {
+    kind: u32,
+    // The share of Lambert's lobe, the index of refraction, or the strength of an emitter.
+    parameter: f32,
+    // The square of the roughness; 0 is smooth.
+    alpha: f32,
+    // Where the energies of its lobe start in `tables`.
+    energies: u32,
+    // How much light is absorbed inside, for each unit of length.
+    absorption: vec3f,
+}
+
+fn material_of(vertex: Vertex) -> Material {
+    // The ground is the first.
+    let place = select(vertex.material + 1u, 0u, vertex.sphere.w == 0.0);
+    let a = tables[look.material_first + 2u * place];
+    let b = tables[look.material_first + 2u * place + 1u];
+    return Material(bitcast<u32>(a.x), a.y, a.z, bitcast<u32>(a.w), b.rgb);
+}
+
+// A table of an energy has so many numbers, and starts at the next multiple of four.
+const ENERGIES: u32 = 128u;
+
+// What a lobe keeps of the light that it gets at a cosine. Twin: `lookup` in src/lighting/energy.rs.
+fn energy(first: u32, cosine: f32) -> f32 {
+    let along = sqrt(clamp(cosine, 0.0, 1.0)) * f32(ENERGIES - 1u);
+    let below = min(u32(along), ENERGIES - 2u);
+    let a = tables[first + (below >> 2u)][below & 3u];
+    let b = tables[first + ((below + 1u) >> 2u)][(below + 1u) & 3u];
+    return a + (along - f32(below)) * (b - a);
+}
