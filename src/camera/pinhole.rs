@@ -123,6 +123,7 @@ impl Camera for PinholeCamera {
             right: basis.u() * self.half_extent.x,
             up: basis.v() * self.half_extent.y,
             forward: -self.distance * basis.w(),
+            numbers: [0.0; 3],
         }
     }
 }

@@ -56,6 +56,18 @@ pub enum CameraError {
         /// The value as given.
         value: f64,
     },
+    /// A number is NaN or out of its range.
+    #[error("the {parameter} is {value:?}; it must lie between {low:?} and {high:?}")]
+    Range {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The value as given.
+        value: f64,
+        /// The least that it may be.
+        low: f64,
+        /// The most.
+        high: f64,
+    },
     /// A field of view is not an angle between 0 and π.
     #[error("the vertical field of view is {} degrees; it must lie between 0 and 180", radians.to_degrees())]
     FieldOfView {

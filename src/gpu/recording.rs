@@ -31,7 +31,7 @@ fn new_recording(
     settings: &Settings,
 ) -> Result<Recording, GpuError> {
     let vectors = camera.vectors();
-    let records::Camera { origin, advance, right, up, forward, .. } =
+    let records::Camera { origin, advance, right, up, forward, first, second, third } =
         records::Camera::new(&vectors, space);
     let image = Image::new(film.width(), film.height(), LayerSet::ALL)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
@@ -43,6 +43,7 @@ fn new_recording(
             right,
             up,
             forward,
+            numbers: [first, second, third],
             scene_min: space.min.to_array(),
             scene_max: space.max.to_array(),
         },

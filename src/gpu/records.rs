@@ -15,11 +15,11 @@ pub(super) struct Camera {
     pub(super) origin: [f32; 3],
     pub(super) advance: f32,
     pub(super) right: [f32; 3],
-    _pad1: u32,
+    pub(super) first: f32,
     pub(super) up: [f32; 3],
-    _pad2: u32,
+    pub(super) second: f32,
     pub(super) forward: [f32; 3],
-    _pad3: u32,
+    pub(super) third: f32,
 }
 
 #[repr(C)]
@@ -100,13 +100,16 @@ impl Camera {
             .into_iter()
             .fold(f64::INFINITY, f64::min);
         let advance = f64::from(nearest.max(0.0) as f32);
+        let [first, second, third] = vectors.numbers.map(|number| number as f32);
         Self {
             origin: narrow(origin + advance * forward),
             advance: advance as f32,
             right: narrow(vectors.right),
             up: narrow(vectors.up),
             forward: narrow(forward),
-            ..Self::zeroed()
+            first,
+            second,
+            third,
         }
     }
 }
@@ -211,7 +214,7 @@ mod tests {
     #[test]
     fn records_are_the_same_in_rust_and_wgsl() {
         let records = [
-            layout!(Camera { origin, advance, right, up, forward }),
+            layout!(Camera { origin, advance, right, first, up, second, forward, third }),
             layout!(Frame {
                 camera,
                 background,
@@ -311,6 +314,7 @@ mod tests {
             right: DVec3::X,
             up: DVec3::Y,
             forward: DVec3::NEG_Z,
+            numbers: [0.0; 3],
         };
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {

@@ -90,6 +90,12 @@ pub(super) fn check(
             return Err(UploadError::Vector { name, found, expected });
         }
     }
+    let asked = vectors.numbers.map(|number| number as f32);
+    // By value: a zero has no sign.
+    if view.numbers != asked {
+        let (name, found, expected) = ("of numbers", view.numbers, asked);
+        return Err(UploadError::Vector { name, found, expected });
+    }
     let (low, high) = (wide(view.scene_min), wide(view.scene_max));
     let nearest = Bounds::between(low, high)
         .corners()

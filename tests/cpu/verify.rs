@@ -42,6 +42,7 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
             right: narrow(vectors.right),
             up: narrow(vectors.up),
             forward: narrow(forward),
+            numbers: vectors.numbers.map(|number| number as f32),
             scene_min: narrow(low),
             scene_max: narrow(high),
         },
@@ -264,6 +265,7 @@ fn one_bit_of_what_a_device_is_given_is_found() {
                 upload(|recording| moved(&mut recording.uploaded.right[axis])),
                 upload(|recording| moved(&mut recording.uploaded.up[axis])),
                 upload(|recording| moved(&mut recording.uploaded.forward[axis])),
+                upload(|recording| moved(&mut recording.uploaded.numbers[axis])),
             ] {
                 assert!(matches!(found, Some(UploadError::Vector { .. })), "{found:?}");
             }

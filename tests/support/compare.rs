@@ -161,6 +161,7 @@ fn nudged_ids(view: &View, i: u32, j: u32) -> [u32; 8] {
             f64::from(j) + 0.5 + NUDGE_PIXELS * sin,
         );
         let ray = view.camera.ray_in_world(location);
-        cpu::trace(&view.scene, &ray).map_or(NO_ID, |hit| hit.id)
+        let hit = view.camera.sees(location).then(|| cpu::trace(&view.scene, &ray)).flatten();
+        hit.map_or(NO_ID, |hit| hit.id)
     })
 }
