@@ -1,6 +1,7 @@
 //! Spheres, checked once and then immutable.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -20,10 +21,34 @@ use crate::sphere::{self, Sphere, SphereError};
 pub struct Scene {
     origin: DVec3,
     spheres: Vec<[f32; 4]>,
+    colors: Arc<SceneColors>,
+    bounds: Option<Bounds>,
+}
+
+/// The colours of a scene's spheres; shared with those who need nothing else of it.
+#[derive(Debug)]
+pub(crate) struct SceneColors {
     palette: Vec<LinearRgb>,
     /// Of each sphere, its place in the palette; `None` if all have the first colour.
-    color_indices: Option<Vec<u32>>,
-    bounds: Option<Bounds>,
+    indices: Option<Vec<u32>>,
+}
+
+impl SceneColors {
+    /// All spheres have one.
+    fn one(color: LinearRgb) -> Self {
+        Self { palette: vec![color], indices: None }
+    }
+
+    /// The colour of a sphere, by its index in input order; `None` if there is no such sphere, but where all
+    /// have one colour.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn of(&self, id: u32) -> Option<LinearRgb> {
+        let place = match &self.indices {
+            Some(indices) => *indices.get(id as usize)?,
+            None => 0,
+        };
+        self.palette.get(place as usize).copied()
+    }
 }
 
 /// Which sphere a scene refuses, and why.
@@ -75,8 +100,8 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let narrow = narrowed(spheres, f64_parts, origin)?;
-        let (palette, color_indices) = palette(spheres.iter().map(|s| s.color));
-        Ok(Self { origin, spheres: narrow, palette, color_indices, bounds })
+        let colors = Arc::new(palette(spheres.iter().map(|s| s.color)));
+        Ok(Self { origin, spheres: narrow, colors, bounds })
     }
 
     /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
@@ -90,7 +115,7 @@ impl Scene {
         if origin != DVec3::ZERO {
             parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
         }
-        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+        Ok(Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds })
     }
 
     /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
@@ -101,7 +126,7 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, |s| *s)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let spheres = narrowed(spheres, |s| *s, origin)?;
-        Ok(Self { origin, spheres, palette: vec![color], color_indices: None, bounds })
+        Ok(Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds })
     }
 
     /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
@@ -139,7 +164,8 @@ impl Scene {
         let in_world =
             |[x, y, z, radius]: [f64; 4]| Bounds::of_sphere(origin + DVec3::new(x, y, z), radius);
         let bounds = spheres.iter().map(|s| in_world(s.map(f64::from))).reduce(Bounds::union);
-        Ok(Self { origin, spheres, palette, color_indices, bounds })
+        let colors = Arc::new(SceneColors { palette, indices: color_indices });
+        Ok(Self { origin, spheres, colors, bounds })
     }
 
     /// Where the scene's frame lies in the world.
@@ -161,23 +187,29 @@ impl Scene {
     #[must_use]
     pub fn color(&self, id: u32) -> LinearRgb {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
-        match &self.color_indices {
-            Some(indices) => self.palette[indices[id as usize] as usize],
-            None => self.palette[0],
+        let SceneColors { palette, indices } = &*self.colors;
+        match indices {
+            Some(indices) => palette[indices[id as usize] as usize],
+            None => palette[0],
         }
     }
 
     /// Every colour that occurs, once; at least one if there is a sphere.
     #[must_use]
     pub fn palette(&self) -> &[LinearRgb] {
-        &self.palette
+        &self.colors.palette
     }
 
     /// Of every sphere, in input order, the place of its colour in the palette; `None` if all have the
     /// first.
     #[must_use]
     pub fn color_indices(&self) -> Option<&[u32]> {
-        self.color_indices.as_deref()
+        self.colors.indices.as_deref()
+    }
+
+    #[cfg(feature = "gpu")]
+    pub(crate) fn colors(&self) -> &Arc<SceneColors> {
+        &self.colors
     }
 
     /// The box of all spheres in the world, or `None` if there are none.
@@ -267,7 +299,7 @@ fn frame_origin(bounds: Bounds) -> DVec3 {
 
 /// Every colour once, in the order of first use, and the place of each sphere's; `None` if there is but
 /// one.
-fn palette(colors: impl Iterator<Item = LinearRgb>) -> (Vec<LinearRgb>, Option<Vec<u32>>) {
+fn palette(colors: impl Iterator<Item = LinearRgb>) -> SceneColors {
     let mut palette = Vec::new();
     let mut places = HashMap::new();
     let indices: Vec<u32> = colors
@@ -280,5 +312,5 @@ fn palette(colors: impl Iterator<Item = LinearRgb>) -> (Vec<LinearRgb>, Option<V
         })
         .collect();
     let several = palette.len() > 1;
-    (palette, several.then_some(indices))
+    SceneColors { palette, indices: several.then_some(indices) }
 }
