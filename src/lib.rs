@@ -56,6 +56,7 @@ pub mod math;
 mod parallel;
 pub mod points;
 pub mod ray;
+pub mod sampling;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
