@@ -47,6 +47,7 @@ pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
+pub mod filter;
 pub mod generate;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -67,6 +68,7 @@ pub mod verify;
 
 pub use color::LinearRgb;
 pub use film::Film;
+pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
 pub use points::Points;
 pub use scene::Scene;

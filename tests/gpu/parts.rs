@@ -2,7 +2,7 @@
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
-use pinhole::sampling;
+use pinhole::{PixelFilter, filter, sampling};
 
 use crate::{compute, trial};
 
@@ -11,10 +11,16 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("parts::sample_points_are_the_same_bits", sample_points),
         trial("parts::seeds_of_pixels_are_the_same_bits", pixel_seeds),
         trial("parts::unit_numbers_are_the_same", unit_numbers),
+        trial("parts::offsets_within_a_filter_agree", filter_offsets),
     ]
 }
 
 const SAMPLING: &str = include_str!("../../shaders/sampling.wgsl");
+const FILTER: &str = include_str!("../../shaders/filter.wgsl");
+const FENCE: &str = include_str!("../../shaders/fence.wgsl");
+
+/// What `FENCE` asks for; the last word of each question is zero.
+const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";
 
 /// Words at which something may overflow, be cut off or be taken for signed.
 const EXTREMES: [u32; 8] =
@@ -64,4 +70,31 @@ fn unit_numbers(headless: &'static Headless) {
         });
         [x, y, 0, 0]
     });
+}
+
+/// A few ULP: with either neighbour of each result allowed, the difference, the product and the sum are off by
+/// 2⁻²³ of themselves at most.
+fn filter_offsets(headless: &'static Headless) {
+    let questions = questions(1 << 16);
+    for &filter in PixelFilter::ALL {
+        let table = filter.offset_table();
+        let words: Vec<_> = table.iter().map(|x| x.to_bits()).chain([0; 3]).collect();
+        let source = "
+@group(0) @binding(2) var<storage, read> table: array<vec4f, 65>;
+fn filter_table(index: u32) -> f32 { return table[index >> 2u][index & 3u]; }
+fn answer(q: vec4u) -> vec4u { return vec4u(bitcast<vec2u>(filter_offset(q.xy)), 0u, 0u); }";
+        let parts = [FILTER, FENCE, RUNTIME_ZERO, source];
+        let answers = compute::answers(headless, &parts, &[(0, 2, &words)], &questions);
+        for (question, answer) in questions.iter().zip(answers) {
+            for axis in 0..2 {
+                let u = question[axis];
+                let [low, high] = [0, 1].map(|k| f64::from(table[(u >> 24) as usize + k]));
+                let expected = filter::offset(&table, u);
+                let bound = 2_f64.powi(-23) * (2.0 * (expected - low) + expected.abs());
+                let found = f64::from(f32::from_bits(answer[axis]));
+                assert!((found - expected).abs() <= bound * 1.0001, "{filter:?}, {u:x}: {found}");
+                assert!((low..=high).contains(&found), "{filter:?}, {u:x}: {found}");
+            }
+        }
+    }
 }
