@@ -61,6 +61,7 @@ mod parallel;
 pub mod points;
 pub mod range;
 pub mod ray;
+pub mod sampling;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
@@ -71,6 +72,7 @@ pub mod verify;
 
 pub use color::LinearRgb;
 pub use film::Film;
+pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
 pub use lighting::Lighting;
 pub use material::{Finish, Material};
