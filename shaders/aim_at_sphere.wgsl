@@ -1,5 +1,5 @@
-// The sphere that a path looks for.
+// The sphere that a path looks for hides itself from nobody.
 
-fn aim(index: u32) -> vec4f {
-    return load(index, TARGET);
+fn aim(index: u32) {
+    target_sphere = load(index, TARGET);
 }

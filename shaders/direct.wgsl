@@ -60,7 +60,7 @@ fn look_for_light(index: u32, out: vec3f, at: Surface, through: vec3f, seed: u32
     let ray = Ray(position, found.direction);
     let to_far_wall = max(2.0 * dot(at.vertex.sphere.xyz - position, found.direction), 0.0);
     let is_in_own = at.vertex.is_back && to_far_wall < found.distance;
-    let is_below = at.vertex.sphere.w > 0.0 && ground_distance(ray) < found.distance;
+    let is_below = at.vertex.sphere.w > 0.0 && ground_distance(ray, 0.0) < found.distance;
     let is_open = any(light > vec3f(0.0)) && !is_in_own && !is_below;
     store(index, SHADOW, found.direction, select(0.0, found.distance, is_open));
     store(index, PENDING, light, select(0.0, 1.0, is_open));

@@ -5,7 +5,7 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
     let origin = load(index, ORIGIN);
     let direction = load(index, DIRECTION);
     left = load(index, LEFT);
-    var entry = enter_scene(CameraRay(Ray(origin.xyz, direction.xyz), 0.0));
+    var entry = enter_scene(CameraRay(Ray(origin.xyz, direction.xyz), 0.0, true));
     let is_alive = has(bitcast<u32>(origin.w), PATH_ALIVE);
     entry.is_inside = entry.is_inside && is_alive;
     if (is_alive) {

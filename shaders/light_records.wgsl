@@ -63,5 +63,3 @@ const LOOK_IMAGE: u32 = 32u;
 const LIGHT_CHANCE: u32 = 0u;
 const LIGHT_DIRECT: u32 = 1u;
 const LIGHT_MULTIPLE: u32 = 2u;
-
-const PI: f32 = 3.14159265;

@@ -12,12 +12,13 @@ fn filter_table(index: u32) -> f32 {
     return look.filter_table[index >> 2u][index & 3u];
 }
 
-// Where a ray meets the ground from above, or NO_HIT.
-fn ground_distance(ray: Ray) -> f32 {
+// Where a ray meets the ground from above, or NO_HIT; perhaps behind its origin, as far as it has come already.
+fn ground_distance(ray: Ray, behind: f32) -> f32 {
     let toward = dot(ray.direction, look.ground_normal);
     let height = dot(ray.origin - look.ground_point, look.ground_normal);
-    let is_met = is_look(LOOK_GROUND) && toward < 0.0 && height > 0.0;
-    return select(NO_HIT, height / select(1.0, -toward, is_met), is_met);
+    let is_toward = is_look(LOOK_GROUND) && toward < 0.0;
+    let t = height / select(1.0, -toward, is_toward);
+    return select(NO_HIT, t, is_toward && t > -behind);
 }
 
 fn luminance(color: vec3f) -> f32 {

@@ -12,8 +12,8 @@ fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let pending = load(index, PENDING);
     let origin = load(index, ORIGIN).xyz;
     left = load(index, LEFT);
-    target_sphere = aim(index);
-    let entry = enter_scene(CameraRay(Ray(origin, shadow.xyz), 0.0));
+    aim(index);
+    let entry = enter_scene(CameraRay(Ray(origin, shadow.xyz), 0.0, true));
     let rest = shadow.w - entry.distance;
     if (pending.w > 0.0 && rest > 0.0 && entry.is_inside) {
         if (find_any(entry.ray, entry.inverse, rest)) {

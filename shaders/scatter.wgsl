@@ -30,7 +30,8 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let direction = load(index, DIRECTION);
     let ray = Ray(origin.xyz, direction.xyz);
     let hit = load_hit(index);
-    let met = what_is_met(ray, hit, has(flags, PATH_ON_GROUND));
+    let behind = come_from_camera(index);
+    let met = what_is_met(ray, hit, has(flags, PATH_ON_GROUND), behind);
     if (met == NOBODY) {
         return;
     }
@@ -41,7 +42,7 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         end(index, radiance.rgb + through * light_from_afar(ray.direction, flags, direction.w), radiance.a);
         return;
     }
-    var vertex = ground_vertex(ray);
+    var vertex = ground_vertex(ray, behind);
     if (met == GROUND_MET) {
         // No other brick is to take the sphere behind for what is met.
         store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));

@@ -6,7 +6,7 @@ fn look_for(index: u32, direction: vec3f, distance: f32, light: vec3f, opacity: 
     let flags = bitcast<u32>(origin.w);
     let to_far_wall = max(2.0 * dot(load(index, LEFT).xyz - origin.xyz, direction), 0.0);
     let is_in_own = has(flags, PATH_BACK) && to_far_wall < distance;
-    let to_ground = ground_distance(Ray(origin.xyz, direction));
+    let to_ground = ground_distance(Ray(origin.xyz, direction), 0.0);
     let is_below = !has(flags, PATH_ON_GROUND) && to_ground < distance;
     let is_hidden = is_in_own || is_below;
     store(index, SHADOW, direction, select(distance, 0.0, is_hidden));

@@ -31,20 +31,21 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     let ray = Ray(origin.xyz, load(index, DIRECTION).xyz);
     let hit = load_hit(index);
-    let met = what_is_met(ray, hit, has(flags, PATH_ON_GROUND));
+    let behind = come_from_camera(index);
+    let met = what_is_met(ray, hit, has(flags, PATH_ON_GROUND), behind);
     if (met == NOBODY) {
         return;
     }
     var radiance = settled(index);
     let left_over = load(index, THROUGHPUT).x;
-    let behind = select(left_over, 0.0, is_look(LOOK_TRANSPARENT)) * look.background;
+    let background = select(left_over, 0.0, is_look(LOOK_TRANSPARENT)) * look.background;
     store(index, PENDING, vec3f(0.0), 0.0);
     if (met == NOTHING_MET) {
         finish(index);
-        store(index, RADIANCE, radiance.rgb + behind, radiance.a);
+        store(index, RADIANCE, radiance.rgb + background, radiance.a);
         return;
     }
-    var vertex = ground_vertex(ray);
+    var vertex = ground_vertex(ray, behind);
     if (met == GROUND_MET) {
         // No other brick is to take the sphere behind for what is met.
         store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
@@ -65,7 +66,7 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let is_last = stage.is_last != 0u || is_caught || rest <= 0.0;
     let through = select(vec3f(0.0), select(rest, 0.0, is_look(LOOK_TRANSPARENT)) * look.background, stage.is_last != 0u);
     let seen = weight * fade * look.cue_color + lit * vertex.color * own + through;
-    radiance += select(vec4f(seen, weight), vec4f(behind, 0.0), is_caught);
+    radiance += select(vec4f(seen, weight), vec4f(background, 0.0), is_caught);
     store(index, RADIANCE, radiance.rgb, radiance.a);
     let is_first = stage.surface == 0u;
     store(index, FIRST, select(first.rgb, min(vertex.color, vec3f(1.0)), is_first && !is_caught), far);

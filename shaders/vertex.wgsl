@@ -28,9 +28,15 @@ const NOTHING_MET: u32 = 1u;
 const GROUND_MET: u32 = 2u;
 const SPHERE_MET: u32 = 3u;
 
-fn what_is_met(ray: Ray, hit: Hit, is_on_ground: bool) -> u32 {
+// How far the ray has come before its origin, where the ground may have been met already: a camera's starts where
+// spheres begin.
+fn come_from_camera(index: u32) -> f32 {
+    return select(0.0, load(index, FIRST).w, stage.surface == 0u);
+}
+
+fn what_is_met(ray: Ray, hit: Hit, is_on_ground: bool, behind: f32) -> u32 {
     let sphere_distance = select(hit.distance + hit.t, NO_HIT, hit.id == NO_ID);
-    let to_ground = select(ground_distance(ray), NO_HIT, is_on_ground);
+    let to_ground = select(ground_distance(ray, behind), NO_HIT, is_on_ground);
     let place = hit.place - brick.first_place;
     let is_ground = to_ground < sphere_distance;
     if (is_ground || hit.id == NO_ID) {
@@ -63,8 +69,8 @@ fn sphere_vertex(ray: Ray, hit: Hit, is_far_wall: bool) -> Vertex {
     return Vertex(position, normal, is_back, hit.distance + hit.t, sphere, paint.rgb, paint.a, material);
 }
 
-fn ground_vertex(ray: Ray) -> Vertex {
-    let distance = ground_distance(ray);
+fn ground_vertex(ray: Ray, behind: f32) -> Vertex {
+    let distance = ground_distance(ray, behind);
     let on_ray = ray.origin + distance * ray.direction;
     let n = look.ground_normal;
     let position = fence3(on_ray - dot(on_ray - look.ground_point, n) * n);

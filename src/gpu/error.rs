@@ -6,6 +6,7 @@ use super::shaders::ShaderEdit;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::image::ImageTooLarge;
+use crate::lighting::LightingError;
 use crate::scene::SceneError;
 
 /// Why the GPU path cannot do what it was asked.
@@ -143,6 +144,9 @@ pub enum GpuError {
     /// The scene does not fit into host memory.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A lighting, or a material, is out of range.
+    #[error(transparent)]
+    Lighting(#[from] LightingError),
 }
 
 fn list(available: &[String]) -> String {

@@ -56,6 +56,9 @@ pub(super) struct Brick {
     pub(super) _pad: u32,
 }
 
+/// Whether an invocation was given up, and whether a path goes on.
+pub(super) type Status = [u32; 2];
+
 /// The bits of t, id and place, and of where the ray starts: one `vec4u`.
 pub(super) type Hit = [u32; 4];
 
@@ -148,6 +151,21 @@ impl Frame {
                 YAxis::Down => -1.0,
             },
         }
+    }
+}
+
+impl Frame {
+    /// For lit pictures, which search all of a tile and have settings of their own.
+    pub(super) fn of_tile(
+        camera: &dyn crate::camera::Camera,
+        scene: &SceneSpace,
+        film: &Film,
+        tile: Tile,
+        iteration_limit: u32,
+    ) -> Self {
+        let all = Groups::of_size(tile.size);
+        let settings = Settings::default();
+        Self::new(&camera.vectors(), scene, film, tile, all, &settings, iteration_limit)
     }
 }
 

@@ -13,12 +13,15 @@ use crate::color::LinearRgb;
 use crate::filter::PixelFilter;
 
 mod check;
+mod emitters;
+pub(crate) mod energy;
 mod ground;
 mod light;
 mod sky;
 mod studio;
 
 pub use check::LightingError;
+pub use emitters::Emitters;
 pub use ground::Ground;
 pub use light::{Light, LightFrame, LightKind};
 pub use sky::{Sky, SkyLight};
