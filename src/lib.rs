@@ -44,6 +44,7 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+mod disk;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
