@@ -8,22 +8,38 @@ use glam::{DVec2, DVec3};
 use crate::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::ray::Ray;
 
+mod fisheye;
 mod framing;
 mod orthographic;
+mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
 mod pinhole;
 mod pose;
+#[cfg(feature = "scene-file")]
+mod stereo;
+mod thin_lens;
 
+pub use fisheye::FisheyeCamera;
+#[cfg(feature = "scene-file")]
+pub use fisheye::FisheyeParameters;
 pub use orthographic::OrthographicCamera;
 #[cfg(feature = "scene-file")]
 pub use orthographic::OrthographicParameters;
+pub use panorama::PanoramaCamera;
+#[cfg(feature = "scene-file")]
+pub use panorama::PanoramaParameters;
 #[cfg(feature = "scene-file")]
 pub(crate) use parameters::CameraParameters;
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
 pub use pinhole::PinholeParameters;
 pub use pose::{CameraError, Pose};
+#[cfg(feature = "scene-file")]
+pub use stereo::StereoParameters;
+pub use thin_lens::ThinLensCamera;
+#[cfg(feature = "scene-file")]
+pub use thin_lens::ThinLensParameters;
 
 /// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
 ///
@@ -120,6 +136,12 @@ macro_rules! camera_table {
             Pinhole, PinholeCamera, "pinhole", PinholeParameters;
             /// Every ray has the same direction; things keep their size.
             Orthographic, OrthographicCamera, "orthographic", OrthographicParameters;
+            /// Rays start anywhere on a lens; what is not in focus is blurred.
+            ThinLens, ThinLensCamera, "thin-lens", ThinLensParameters;
+            /// Rays go in all directions; longitude and latitude are the picture's two sides.
+            Panorama, PanoramaCamera, "panorama", PanoramaParameters;
+            /// Rays fill a cone, perhaps more than half of all directions; the picture is a disk.
+            Fisheye, FisheyeCamera, "fisheye", FisheyeParameters;
         }
     };
 }
@@ -156,6 +178,15 @@ macro_rules! define_kind {
 }
 camera_table!(define_kind);
 
+impl CameraKind {
+    /// Whether straight lines are straight in the picture, so that all of a box lies between its corners. The
+    /// rays may then be taken up at any plane along `forward` instead of at the camera; see `Camera` in
+    /// `shaders/records.wgsl`.
+    pub(crate) const fn is_linear(self) -> bool {
+        matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)
+    }
+}
+
 /// Refuses a length that kernels could not square.
 fn checked_length(parameter: &'static str, value: f64) -> Result<f64, CameraError> {
     if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
@@ -174,4 +205,13 @@ fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraErr
 
 fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
     checked_length("aspect ratio", aspect)
+}
+
+/// The separation of two eyes, and the distance at which they converge, which may be infinite.
+fn stereo_lengths(separation: f64, convergence: f64) -> Result<(f64, f64), CameraError> {
+    checked_length("eyes' `separation`", separation)?;
+    if convergence != f64::INFINITY {
+        checked_length("eyes' `convergence`", convergence)?;
+    }
+    Ok((separation, convergence))
 }

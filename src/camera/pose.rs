@@ -144,6 +144,13 @@ impl Pose {
         Ok(Self { origin, ..self })
     }
 
+    /// The same orientation elsewhere.
+    pub(super) fn moved(self, by: DVec3) -> Result<Self, CameraError> {
+        let origin = self.origin + by;
+        checked_point("the eye", origin)?;
+        Ok(Self { origin, ..self })
+    }
+
     /// Where the camera is.
     #[must_use]
     pub fn origin(&self) -> DVec3 {

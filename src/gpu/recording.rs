@@ -32,7 +32,7 @@ fn new_recording(
 ) -> Result<Recording, GpuError> {
     let vectors = camera.vectors();
     let records::Camera { origin, advance, right, up, forward, first, second, third } =
-        records::Camera::new(&vectors, space);
+        records::Camera::new(camera.kind(), &vectors, space);
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
     Ok(Recording {

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::tiles::{Groups, Tile};
 use crate::bounds::Bounds;
-use crate::camera::CameraVectors;
+use crate::camera::{CameraKind, CameraVectors};
 use crate::film::{Film, YAxis};
 use crate::settings::{Settings, Shading};
 
@@ -90,19 +90,21 @@ pub(super) type Color = [f32; 4];
 pub(super) use crate::verify::NO_HIT;
 
 impl Camera {
-    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box,
-    /// then narrows.
-    pub(super) fn new(vectors: &CameraVectors, scene: &SceneSpace) -> Self {
+    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box if
+    /// its rays can start there, then narrows.
+    pub(super) fn new(kind: CameraKind, vectors: &CameraVectors, scene: &SceneSpace) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
-        // How many times `forward` it is to the plane of the box's nearest corner.
+        // How many times `forward` it is to the plane across the view of the box's nearest corner.
+        let across = vectors.right.cross(vectors.up);
         let nearest = scene
             .corners()
-            .map(|corner| (corner - origin).dot(forward) / forward.length_squared())
+            .map(|corner| (corner - origin).dot(across) / forward.dot(across))
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        let advance = f64::from(nearest.max(0.0) as f32);
+        let nearest = if kind.is_linear() { nearest.max(0.0) } else { 0.0 };
+        let advance = f64::from(nearest as f32);
         let [first, second, third] = vectors.numbers.map(|number| number as f32);
         Self {
             origin: narrow(origin + advance * forward),
@@ -119,7 +121,7 @@ impl Camera {
 
 impl Frame {
     pub(super) fn new(
-        vectors: &CameraVectors,
+        (kind, vectors): (CameraKind, &CameraVectors),
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
@@ -128,7 +130,7 @@ impl Frame {
         iteration_limit: u32,
     ) -> Self {
         Self {
-            camera: Camera::new(vectors, scene),
+            camera: Camera::new(kind, vectors, scene),
             scene_min: scene.min.to_array(),
             scene_max: scene.max.to_array(),
             iteration_limit,
@@ -165,7 +167,8 @@ impl Frame {
     ) -> Self {
         let all = Groups::of_size(tile.size);
         let settings = Settings::default();
-        Self::new(&camera.vectors(), scene, film, tile, all, &settings, iteration_limit)
+        let view = (camera.kind(), &camera.vectors());
+        Self::new(view, scene, film, tile, all, &settings, iteration_limit)
     }
 }
 
@@ -338,8 +341,9 @@ mod tests {
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let settings = Settings::default().with_shading(shading);
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
+            let camera = (CameraKind::Pinhole, &vectors);
             let frame =
-                Frame::new(&vectors, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
+                Frame::new(camera, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }
