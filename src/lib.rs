@@ -24,8 +24,8 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `run-file`
-//! keeps what a device rendered; `cli` (default) is the program. An embedder wants
+//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr` and `npy` are readers and writers;
+//! `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
 //! `default-features = false, features = ["gpu"]`.
 //!
 //! # Units
@@ -44,6 +44,7 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+pub mod encoding;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
@@ -62,15 +63,18 @@ pub mod scene_file;
 pub mod settings;
 pub mod sphere;
 mod text;
+pub mod tone;
 pub mod verify;
 
 pub use color::LinearRgb;
+pub use encoding::Encoding;
 pub use film::Film;
 pub use image::{Image, LayerSet};
 pub use points::Points;
 pub use scene::Scene;
 pub use settings::{Settings, Shading};
 pub use sphere::Sphere;
+pub use tone::ToneCurve;
 
 /// Compiles the example in the README.
 #[cfg(doctest)]

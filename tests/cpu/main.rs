@@ -23,6 +23,7 @@ mod invariants;
 mod legal_device;
 mod npy;
 mod perspective;
+mod pictures;
 mod rays;
 mod reference;
 mod run_file;
