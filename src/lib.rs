@@ -24,8 +24,8 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `run-file`
-//! keeps what a device rendered; `cli` (default) is the program. An embedder wants
+//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr` and `npy` are readers and writers;
+//! `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
 //! `default-features = false, features = ["gpu"]`.
 //!
 //! # Units
@@ -46,6 +46,7 @@ pub mod color;
 pub mod cpu;
 mod disk;
 pub mod environment;
+pub mod encoding;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
@@ -69,9 +70,11 @@ pub mod scene_file;
 pub mod settings;
 pub mod sphere;
 mod text;
+pub mod tone;
 pub mod verify;
 
 pub use color::LinearRgb;
+pub use encoding::Encoding;
 pub use film::Film;
 pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
@@ -81,6 +84,7 @@ pub use points::Points;
 pub use scene::Scene;
 pub use settings::{Settings, Shading};
 pub use sphere::Sphere;
+pub use tone::ToneCurve;
 
 /// Compiles the example in the README.
 #[cfg(doctest)]

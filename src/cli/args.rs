@@ -8,6 +8,7 @@ use super::camera::CameraArgs;
 use super::data::DataFormat;
 use super::generate::kinds;
 use crate::accel::AccelChoice;
+use crate::tone::ToneCurve;
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]
@@ -45,16 +46,62 @@ pub(super) enum Command {
 pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
-    /// The picture (.png), or - for PNG on standard output
+    /// The picture (.png, .exr), or - for PNG on standard output
     #[arg(short, long, value_name = "OUT.png")]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) encoding: EncodingArgs,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Also write a layer (color, depth, normal, id) as a NumPy array; may be repeated
-    #[arg(long = "layer", value_name = "LAYER=FILE.npy")]
+    /// Also write a layer (color, alpha, depth, normal, position, albedo, id, samples, variance): as a NumPy array,
+    /// or without a file into an .exr picture; may be repeated
+    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
     pub(super) layers: Vec<String>,
+}
+
+/// How the picture is written. [`super::encoding::EncodingFlags`] checks it.
+#[derive(Debug, Args)]
+pub(super) struct EncodingArgs {
+    /// Bits of a sample of a PNG, 8 or 16 [default: the scene's, or 8]
+    #[arg(long, value_name = "N")]
+    pub(super) bits: Option<u32>,
+    /// No background: RGBA, with alpha where spheres are [default: the scene's, or false]
+    #[arg(
+        long,
+        value_name = "BOOL",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "true"
+    )]
+    pub(super) transparent: Option<bool>,
+    /// Make a PNG brighter by so many stops [default: the scene's, or 0]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    pub(super) exposure: Option<f32>,
+    /// How light that a PNG cannot show is brought into range [default: the scene's, or none]
+    #[arg(long, value_enum)]
+    pub(super) tone: Option<Tone>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Tone {
+    /// It is cut off
+    None,
+    /// A curve like film's, for each of red, green and blue
+    Filmic,
+    /// AgX: strong light turns white
+    Agx,
+}
+
+impl From<Tone> for ToneCurve {
+    fn from(tone: Tone) -> Self {
+        match tone {
+            Tone::None => Self::None,
+            Tone::Filmic => Self::Filmic,
+            Tone::Agx => Self::Agx,
+        }
+    }
 }
 
 /// What is shown, and from where. [`super::input::Source`] checks it.
@@ -250,7 +297,8 @@ pub(super) struct PlanArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// A layer that would be written beside the picture (depth, normal, id); may be repeated
+    /// A layer that would be written beside the picture (alpha, depth, normal, position, albedo, id, samples,
+    /// variance); may be repeated
     #[arg(long = "layer", value_name = "LAYER")]
     pub(super) layers: Vec<String>,
     /// Print JSON

@@ -14,6 +14,7 @@ use super::memory;
 use super::progress;
 use crate::camera::{Camera, CameraParameters};
 use crate::color::LinearRgb;
+use crate::encoding::Encoding;
 use crate::film::Film;
 use crate::scene::Scene;
 use crate::scene_file::{DEFAULT_COLOR, SceneFile};
@@ -25,6 +26,7 @@ pub(super) struct Input {
     pub(super) camera: Box<dyn Camera>,
     pub(super) film: Film,
     pub(super) settings: Settings,
+    pub(super) encoding: Encoding,
     /// What says how large the picture is: a flag or a file.
     pub(super) size_from: String,
     /// What the user should know although it is no error.
@@ -158,8 +160,9 @@ impl Source {
         let parameters = self.camera.unwrap_or_default();
         let camera =
             parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?;
-        let (settings, files) = (Settings::default(), vec![path.clone()]);
-        Ok(Input { scene, camera, film, settings, size_from, notes, files })
+        let (settings, encoding) = (Settings::default(), Encoding::default());
+        let files = vec![path.clone()];
+        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
     }
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
@@ -181,7 +184,8 @@ impl Source {
             }
             None => file.camera(&film, &scene).with_context(place)?,
         };
-        Ok(Input { scene, camera, film, settings: file.settings, size_from, notes, files })
+        let SceneFile { settings, encoding, .. } = file;
+        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
     }
 
     /// A path that is relative to the scene file's folder.

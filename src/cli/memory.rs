@@ -6,8 +6,9 @@ use super::failure::Failure;
 use crate::film::Film;
 use crate::image::LayerSet;
 
-/// Bytes per pixel that encoding takes beside the image itself.
-pub(super) const ENCODING_BYTES_PER_PIXEL: u64 = 16;
+/// Bytes per pixel that encoding takes beside the image itself, at most: 8 of samples and as many of a PNG made of
+/// them; or that PNG, on its way to standard output, and 12 of an array. EXR is written row by row.
+pub(super) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
 /// Refuses a picture of the CPU reference that this machine, or the control group that the program runs in,
 /// cannot hold. What an adapter takes is in its plan.

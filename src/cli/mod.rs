@@ -19,6 +19,7 @@ mod camera;
 mod data;
 mod demo;
 mod device;
+mod encoding;
 mod failure;
 mod generate;
 mod info;
@@ -26,6 +27,7 @@ mod input;
 mod interrupt;
 mod memory;
 mod output;
+mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
 mod process;

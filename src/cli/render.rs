@@ -6,10 +6,11 @@ use super::args::RenderArgs;
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
+use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::input::{Input, Source};
 use super::memory;
-use super::output::Outputs;
+use super::picture::Outputs;
 use super::progress;
 use super::speak::tell;
 use super::threads;
@@ -17,6 +18,7 @@ use super::threads;
 use super::with_scene::with_scene;
 #[cfg(feature = "gpu")]
 use crate::accel::AccelChoice;
+use crate::color::LinearRgb;
 use crate::cpu;
 #[cfg(feature = "gpu")]
 use crate::gpu::Headless;
@@ -26,14 +28,17 @@ use crate::image::{Image, LayerSet};
 struct Job {
     source: Source,
     outputs: Outputs,
+    encoding: EncodingFlags,
     device: Device,
 }
 
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
+        let outputs = Outputs::new(&args.output, &args.layers)?;
         Ok(Self {
             source: Source::new(&args.input)?,
-            outputs: Outputs::new(&args.output, &args.layers)?,
+            encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            outputs,
             device: Device::new(&args.device, args.accel.accel)?,
         })
     }
@@ -43,14 +48,17 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let job = Job::new(args)?;
     threads::start()?;
     // Loading a driver and reading a file leave each other half of the time.
-    let (input, opened) = job.device.open_beside(|| job.source.load())?;
+    let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.spare(&input.files)?;
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
-    let layers = job.outputs.layers().fold(LayerSet::COLOR, LayerSet::with);
-    let image = render(&input, layers, &opened)?;
-    job.outputs.write(&image, None)?;
+    let encoding = job.encoding.over(input.encoding);
+    if encoding.transparent() {
+        input.settings = input.settings.with_background(LinearRgb::BLACK);
+    }
+    let image = render(&input, job.outputs.layers(&encoding), &opened)?;
+    job.outputs.write(&image, &encoding, opened.adapter(), None)?;
     Ok(())
 }
 

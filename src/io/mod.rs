@@ -2,6 +2,8 @@
 
 #[cfg(feature = "xyz")]
 mod elements;
+#[cfg(feature = "exr")]
+pub mod exr;
 #[cfg(feature = "npy")]
 pub mod npy;
 #[cfg(feature = "npy")]

@@ -26,6 +26,7 @@ mod legal_device;
 mod lens;
 mod npy;
 mod perspective;
+mod pictures;
 mod rays;
 mod reference;
 mod round_cameras;

@@ -4,19 +4,24 @@
 
 use std::fmt;
 
+mod output;
+mod words;
+
+use output::OutputTable;
 use serde::Deserialize;
 use serde::de::{self, SeqAccess, Visitor};
 use toml::Spanned;
+use words::explain;
 
-use crate::camera::{Camera, CameraKind, CameraParameters};
+use crate::camera::{Camera, CameraParameters};
 use crate::color::LinearRgb;
+use crate::encoding::Encoding;
 use crate::exact::{self, Table};
 use crate::film::{Film, YAxis};
 use crate::points::Points;
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Settings, Shading};
 use crate::sphere::Sphere;
-use crate::text::{one_line, shortened};
 
 /// What a scene file says.
 #[derive(Debug)]
@@ -25,6 +30,8 @@ pub struct SceneFile {
     pub film: Film,
     /// Shading and background.
     pub settings: Settings,
+    /// How the picture is written.
+    pub encoding: Encoding,
     data: Option<Placed<Data>>,
     camera: Placed<CameraParameters>,
     spheres: Vec<Placed<Sphere>>,
@@ -99,6 +106,7 @@ impl SceneFile {
             settings: defaults
                 .with_shading(document.shading.unwrap_or(defaults.shading()))
                 .with_background(document.background.map_or(defaults.background(), |c| c.0)),
+            encoding: document.output.0.encoding(&lines)?,
             data: DataKeys {
                 file: document.data,
                 frame: document.frame,
@@ -250,57 +258,6 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Puts serde's words for an unknown key or name into a user's, with a suggestion.
-fn explain(message: &str) -> String {
-    let (what, rest) = match message.split_once(" `") {
-        Some(("unknown field", rest)) => ("key", rest),
-        Some(("unknown variant", rest)) => ("name", rest),
-        // The camera is the only enumeration whose variants have contents.
-        _ if message.starts_with("wanted exactly 1 element, more") => {
-            return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
-        }
-        _ if message.starts_with("wanted exactly 1 element")
-            || message.starts_with("invalid type: unit variant") =>
-        {
-            return format!("a camera is a table; write {}", camera_tables());
-        }
-        // toml's messages of its own are good, but may span lines.
-        _ => return in_plain_words(message),
-    };
-    // unknown field `widht`, expected one of `width`, `height`
-    let mut quoted = rest.split('`').step_by(2);
-    let unknown = &shortened(quoted.next().unwrap_or_default());
-    let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
-    let nearest = known.iter().copied().max_by(|a, b| {
-        strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
-    });
-    match nearest.filter(|name| strsim::jaro_winkler(name, unknown) > 0.75) {
-        Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
-        None => format!("unknown {what} `{unknown}`; known here: {}", known.join(", ")),
-    }
-}
-
-/// Puts Rust's words for types, and serde's for a missing key, into a user's.
-fn in_plain_words(message: &str) -> String {
-    let mut text = one_line(message);
-    for (rust, plain) in [
-        ("expected f64", "expected a number"),
-        ("expected f32", "expected a number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected usize", "expected a whole number, 0 or more"),
-        ("missing field", "missing key"),
-    ] {
-        text = text.replace(rust, plain);
-    }
-    text
-}
-
-/// `[camera.pinhole]` or …
-fn camera_tables() -> String {
-    let tables = CameraKind::ALL.iter().map(|kind| format!("`[camera.{}]`", kind.name()));
-    tables.collect::<Vec<_>>().join(" or ")
-}
-
 /// The file's tables, as serde reads them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -309,6 +266,8 @@ struct Document {
     film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
     camera: Spanned<CameraParameters>,
+    #[serde(default)]
+    output: Table<OutputTable>,
     background: Option<ColorValue>,
     shading: Option<Shading>,
     #[serde(default)]
