@@ -44,6 +44,7 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
@@ -67,6 +68,7 @@ mod text;
 pub mod verify;
 
 pub use color::LinearRgb;
+pub use environment::Environment;
 pub use film::Film;
 pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
