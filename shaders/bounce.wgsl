@@ -36,8 +36,8 @@ fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
 }
 
 // The density with which an emitter that was met would have been looked for.
-fn known_density(id: u32, from: vec3f) -> f32 {
+fn known_density(id: u32, position: vec3f) -> f32 {
     let sources = f32(max(look.source_count, 1u));
-    let density = emitter_density(emitter(emitter_with_id(id)), from) / sources;
+    let density = emitter_density(emitter(emitter_with_id(id)), position) / sources;
     return select(density, 0.0, look.emitter_count == 0u);
 }

@@ -45,8 +45,8 @@ pub mod cli;
 pub mod color;
 pub mod cpu;
 mod disk;
-pub mod environment;
 pub mod encoding;
+pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;
 pub mod film;
