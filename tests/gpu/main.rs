@@ -11,6 +11,7 @@ mod agreement;
 mod device;
 mod embedding;
 mod faults;
+mod lens;
 mod pictures;
 mod plan;
 mod program;
@@ -57,6 +58,7 @@ fn main() {
     }
     let groups = [
         agreement::trials(),
+        lens::trials(),
         pictures::trials(),
         embedding::trials(),
         device::trials(),
