@@ -13,6 +13,7 @@ mod device;
 mod embedding;
 mod faults;
 mod parts;
+mod lens;
 mod pictures;
 mod plan;
 mod program;
@@ -59,6 +60,7 @@ fn main() {
     }
     let groups = [
         agreement::trials(),
+        lens::trials(),
         pictures::trials(),
         parts::trials(),
         embedding::trials(),
