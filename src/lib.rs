@@ -61,6 +61,7 @@ mod parallel;
 pub mod points;
 pub mod range;
 pub mod ray;
+pub mod sampling;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;

@@ -26,6 +26,7 @@ mod perspective;
 mod rays;
 mod reference;
 mod run_file;
+mod sampling;
 mod scene;
 mod scene_file;
 mod soundness;

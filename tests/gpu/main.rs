@@ -8,9 +8,11 @@
 mod support;
 
 mod agreement;
+mod compute;
 mod device;
 mod embedding;
 mod faults;
+mod parts;
 mod pictures;
 mod plan;
 mod program;
@@ -58,6 +60,7 @@ fn main() {
     let groups = [
         agreement::trials(),
         pictures::trials(),
+        parts::trials(),
         embedding::trials(),
         device::trials(),
         program::trials(),
