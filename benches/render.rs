@@ -23,7 +23,7 @@ fn three_spheres(criterion: &mut Criterion) {
         b.iter(|| cpu::render(&scene, camera.as_ref(), &film, &file.settings, LayerSet::COLOR));
     });
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
-    for (layers, name) in [(LayerSet::COLOR, "color"), (LayerSet::ALL, "all layers")] {
+    for (layers, name) in [(LayerSet::COLOR, "color"), (LayerSet::DATA, "all layers")] {
         // With the copy back to the host, as a headless user has it.
         let name = format!("{}, {name}", headless.adapter_info().name);
         group.bench_function(name, |b| {

@@ -16,7 +16,7 @@
 //! let film = Film::new(64, 48)?;
 //! let pose = Pose::looking_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
 //! let camera = PinholeCamera::with_vertical_fov(pose, 0.5, film.aspect())?;
-//! let image = cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::ALL)?;
+//! let image = cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::DATA)?;
 //! assert_eq!(image.id().unwrap()[24 * 64 + 32], 0);
 //! assert!((image.depth().unwrap()[24 * 64 + 32] - 4.0).abs() < 1e-3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

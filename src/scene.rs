@@ -1,6 +1,7 @@
 //! Spheres, checked once and then immutable.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -21,12 +22,36 @@ use crate::sphere::{self, Sphere, SphereError};
 pub struct Scene {
     origin: DVec3,
     spheres: Vec<[f32; 4]>,
+    colors: Arc<SceneColors>,
+    bounds: Option<Bounds>,
+}
+
+/// The colours and finishes of a scene's spheres; shared with those who need nothing else of it.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneColors {
     palette: Vec<LinearRgb>,
     /// Of each place in the palette.
     finishes: Vec<Finish>,
     /// Of each sphere, its place in the palette; `None` if all have the first colour.
-    color_indices: Option<Vec<u32>>,
-    bounds: Option<Bounds>,
+    indices: Option<Vec<u32>>,
+}
+
+impl SceneColors {
+    /// All spheres have one.
+    fn one(color: LinearRgb) -> Self {
+        Self { palette: vec![color], finishes: vec![Finish::default()], indices: None }
+    }
+
+    /// The colour of a sphere, by its index in input order; `None` if there is no such sphere, but where all
+    /// have one colour.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn of(&self, id: u32) -> Option<LinearRgb> {
+        let place = match &self.indices {
+            Some(indices) => *indices.get(id as usize)?,
+            None => 0,
+        };
+        self.palette.get(place as usize).copied()
+    }
 }
 
 /// Which sphere a scene refuses, and why.
@@ -78,8 +103,8 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let narrow = narrowed(spheres, f64_parts, origin)?;
-        let (palette, finishes, color_indices) = palette(spheres);
-        Ok(Self { origin, spheres: narrow, palette, finishes, color_indices, bounds })
+        let colors = Arc::new(palette(spheres));
+        Ok(Self { origin, spheres: narrow, colors, bounds })
     }
 
     /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
@@ -93,7 +118,7 @@ impl Scene {
         if origin != DVec3::ZERO {
             parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
         }
-        Ok(Self::of_one_color(origin, spheres, color, bounds))
+        Ok(Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds })
     }
 
     /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
@@ -104,23 +129,13 @@ impl Scene {
         let bounds = bounds_of_checked(spheres, |s| *s)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
         let spheres = narrowed(spheres, |s| *s, origin)?;
-        Ok(Self::of_one_color(origin, spheres, color, bounds))
-    }
-
-    fn of_one_color(
-        origin: DVec3,
-        spheres: Vec<[f32; 4]>,
-        color: LinearRgb,
-        bounds: Option<Bounds>,
-    ) -> Self {
-        let (palette, finishes) = (vec![color], vec![Finish::default()]);
-        Self { origin, spheres, palette, finishes, color_indices: None, bounds }
+        Ok(Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds })
     }
 
     /// The same spheres, all of one finish.
     #[must_use]
     pub fn with_finish(mut self, finish: Finish) -> Self {
-        self.finishes.fill(finish);
+        Arc::make_mut(&mut self.colors).finishes.fill(finish);
         self
     }
 
@@ -160,7 +175,8 @@ impl Scene {
             |[x, y, z, radius]: [f64; 4]| Bounds::of_sphere(origin + DVec3::new(x, y, z), radius);
         let bounds = spheres.iter().map(|s| in_world(s.map(f64::from))).reduce(Bounds::union);
         let finishes = vec![Finish::default(); palette.len()];
-        Ok(Self { origin, spheres, palette, finishes, color_indices, bounds })
+        let colors = Arc::new(SceneColors { palette, finishes, indices: color_indices });
+        Ok(Self { origin, spheres, colors, bounds })
     }
 
     /// Where the scene's frame lies in the world.
@@ -182,7 +198,7 @@ impl Scene {
     #[must_use]
     pub fn color(&self, id: u32) -> LinearRgb {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
-        self.palette[self.place_in_palette(id)]
+        self.colors.palette[self.place_in_palette(id)]
     }
 
     /// The finish of a sphere, by its index in input order.
@@ -192,30 +208,35 @@ impl Scene {
     #[must_use]
     pub fn finish(&self, id: u32) -> Finish {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
-        self.finishes[self.place_in_palette(id)]
+        self.colors.finishes[self.place_in_palette(id)]
     }
 
     fn place_in_palette(&self, id: u32) -> usize {
-        self.color_indices.as_ref().map_or(0, |indices| indices[id as usize] as usize)
+        self.colors.indices.as_ref().map_or(0, |indices| indices[id as usize] as usize)
     }
 
     /// Every colour that occurs with every finish that it has, once; at least one if there is a sphere.
     #[must_use]
     pub fn palette(&self) -> &[LinearRgb] {
-        &self.palette
+        &self.colors.palette
     }
 
     /// The finish of each place in the palette.
     #[must_use]
     pub fn finishes(&self) -> &[Finish] {
-        &self.finishes
+        &self.colors.finishes
     }
 
     /// Of every sphere, in input order, the place of its colour in the palette; `None` if all have the
     /// first.
     #[must_use]
     pub fn color_indices(&self) -> Option<&[u32]> {
-        self.color_indices.as_deref()
+        self.colors.indices.as_deref()
+    }
+
+    #[cfg(feature = "gpu")]
+    pub(crate) fn colors(&self) -> &Arc<SceneColors> {
+        &self.colors
     }
 
     /// The box of all spheres in the world, or `None` if there are none.
@@ -305,7 +326,7 @@ fn frame_origin(bounds: Bounds) -> DVec3 {
 
 /// Every colour and finish once, in the order of first use, and the place of each sphere's; `None` if there is but
 /// one.
-fn palette(spheres: &[Sphere]) -> (Vec<LinearRgb>, Vec<Finish>, Option<Vec<u32>>) {
+fn palette(spheres: &[Sphere]) -> SceneColors {
     let (mut palette, mut finishes) = (Vec::new(), Vec::new());
     let mut places = HashMap::new();
     let indices: Vec<u32> = spheres
@@ -321,5 +342,5 @@ fn palette(spheres: &[Sphere]) -> (Vec<LinearRgb>, Vec<Finish>, Option<Vec<u32>>
         })
         .collect();
     let several = palette.len() > 1;
-    (palette, finishes, several.then_some(indices))
+    SceneColors { palette, finishes, indices: several.then_some(indices) }
 }

@@ -1,6 +1,6 @@
 //! From a hit to a pixel. Twin of `shaders/shade.wgsl`.
 
-use crate::image::{NO_ID, Pixel};
+use crate::image::Pixel;
 use crate::ray::{Hit, Ray};
 use crate::scene::Scene;
 use crate::settings::{Settings, Shading};
@@ -9,12 +9,7 @@ use crate::settings::{Settings, Shading};
 #[must_use]
 pub fn shade(scene: &Scene, settings: &Settings, ray: &Ray, hit: Option<&Hit>) -> Pixel {
     let Some(hit) = hit else {
-        return Pixel {
-            color: settings.background().to_array(),
-            depth: f32::INFINITY,
-            normal: [0.0; 3],
-            id: NO_ID,
-        };
+        return Pixel::miss(settings.background().to_array());
     };
     let surface = scene.color(hit.id).to_array();
     let color = match settings.shading() {
@@ -24,5 +19,12 @@ pub fn shade(scene: &Scene, settings: &Settings, ray: &Ray, hit: Option<&Hit>) -
             surface.map(|c| (f64::from(c) * cosine) as f32)
         }
     };
-    Pixel { color, depth: hit.t as f32, normal: hit.normal.as_vec3().to_array(), id: hit.id }
+    Pixel {
+        color,
+        depth: hit.t as f32,
+        normal: hit.normal.as_vec3().to_array(),
+        position: ray.at(hit.t).as_vec3().to_array(),
+        albedo: surface,
+        id: hit.id,
+    }
 }

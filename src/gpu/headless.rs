@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, Queue};
 
 use super::adapter;
+use super::derived::Derived;
 use super::error::{GpuError, scoped};
 use super::faults::Faults;
 use super::frame::{Frame, Part, tile_size};
@@ -244,6 +245,7 @@ impl Headless {
         let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
         let traced = scoped(&self.device, || ReadableTrace::new(&self.device, &frame))?;
         let total = traced_pixels(scene, camera, film, tile_size);
+        let derived = Derived { camera, film, colors: scene.colors() };
         let mut progress = Progress { done: 0, total };
         for tile in tiles(film, tile_size) {
             frame.set_tile(&self.queue, scene, camera, film, tile, settings);
@@ -289,7 +291,7 @@ impl Headless {
             if textures.status().read(|words: &[u32]| words[0])? != 0 {
                 return Err(GpuError::Steps);
             }
-            textures.read_into(image, tile)?;
+            textures.read_into(image, tile, &derived)?;
             if let (Some(traced), Some(pixels)) = (&traced, &mut pixels) {
                 traced.read_into(pixels, film, tile)?;
             }

@@ -76,7 +76,7 @@ impl RenderPlan {
         device: (&Limits, DeviceType),
         host_bytes_per_pixel: u64,
     ) -> Self {
-        Self::planned(scene, film, LayerSet::ALL, accel, device, host_bytes_per_pixel, true)
+        Self::planned(scene, film, LayerSet::DATA, accel, device, host_bytes_per_pixel, true)
     }
 
     fn planned(
@@ -294,7 +294,7 @@ mod tests {
         assert_eq!(total(&plan.tile_textures), 32 << 20);
 
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
-        let all = super::tests::plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
+        let all = super::tests::plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
     }
 
@@ -314,7 +314,7 @@ mod tests {
 
     #[test]
     fn a_recording_keeps_rays_and_hits() {
-        let plan = plan(1024, LayerSet::ALL, DeviceType::DiscreteGpu);
+        let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]; 1000], LinearRgb::WHITE).unwrap();
         let film = Film::new(1024, 1024).unwrap();
         let device = (&Limits::default(), DeviceType::DiscreteGpu);

@@ -33,7 +33,7 @@ fn new_recording(
     let vectors = camera.vectors();
     let records::Camera { origin, advance, right, up, forward, .. } =
         records::Camera::new(&vectors, space);
-    let image = Image::new(film.width(), film.height(), LayerSet::ALL)?;
+    let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
     Ok(Recording {
         camera: RequestedCamera { kind: camera.kind(), vectors },

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
@@ -14,7 +14,7 @@ use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneColors};
 
 /// Tells scenes on devices apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,8 @@ impl SceneId {
 pub struct SceneBuffers {
     id: SceneId,
     space: SceneSpace,
+    /// The host's, for the layer of albedo.
+    colors: Arc<SceneColors>,
     structure: Structure,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
@@ -109,6 +111,7 @@ impl SceneBuffers {
         Ok(Self {
             id: SceneId::new(),
             space: SceneSpace { origin: scene.origin(), min, max },
+            colors: Arc::clone(scene.colors()),
             structure: accel.structure(),
             bricks,
             bytes: upload.bytes,
@@ -135,6 +138,10 @@ impl SceneBuffers {
     /// of a scene cost about the same.
     pub(super) fn took(&self, groups: Groups, elapsed: Duration) {
         self.pace.lock().unwrap_or_else(PoisonError::into_inner).took(groups.count(), elapsed);
+    }
+
+    pub(super) fn colors(&self) -> &SceneColors {
+        &self.colors
     }
 
     pub(super) fn space(&self) -> &SceneSpace {

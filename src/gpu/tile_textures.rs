@@ -2,6 +2,7 @@
 
 use wgpu::{Device, TextureFormat};
 
+use super::derived::Derived;
 use super::error::GpuError;
 use super::frame::{DataTargets, Targets};
 use super::readback::{ReadableBuffer, ReadableTexture};
@@ -81,8 +82,14 @@ impl TileTextures {
         std::iter::once(&self.color).chain(data.into_iter().flatten())
     }
 
-    /// Copies the mapped buffers to the tile's place in the image, and unmaps them.
-    pub(super) fn read_into(&self, image: &mut Image, tile: Tile) -> Result<(), GpuError> {
+    /// Copies the mapped buffers, and what follows from them, to the tile's place in the image, and unmaps
+    /// them.
+    pub(super) fn read_into(
+        &self,
+        image: &mut Image,
+        tile: Tile,
+        derived: &Derived<'_>,
+    ) -> Result<(), GpuError> {
         let [x, y] = tile.origin.map(|start| start as usize);
         let [width, height] = tile.size.map(|side| side as usize);
         let columns = x..x + width;
@@ -96,6 +103,7 @@ impl TileTextures {
             return Ok(());
         };
         data.depth.read_rows(tile.size, |j, depths: &[f32]| {
+            derived.set_by_depths(&mut rows[j], columns.clone(), y + j, depths);
             let Some(row) = &mut rows[j].depth else {
                 return;
             };
@@ -112,6 +120,7 @@ impl TileTextures {
             }
         })?;
         data.id.read_rows(tile.size, |j, ids: &[u32]| {
+            derived.set_by_ids(&mut rows[j], columns.clone(), ids);
             let Some(row) = &mut rows[j].id else { return };
             row[columns.clone()].copy_from_slice(ids);
         })

@@ -69,6 +69,10 @@ fn one_pixel_of_each_layer_is_found() {
         assert!(matches!(color[..], [Violation::Color { pixel: at, .. }] if at == pixel));
         let normal = spoilt(pixel, |p| p.normal[1] += 1e-3);
         assert!(matches!(normal[..], [Violation::Normal { pixel: at, .. }] if at == pixel));
+        let position = spoilt(pixel, |p| p.position[2] += 1e-4);
+        assert!(matches!(position[..], [Violation::Position { pixel: at, .. }] if at == pixel));
+        let albedo = spoilt(pixel, |p| p.albedo[1] += 1e-7);
+        assert!(matches!(albedo[..], [Violation::Albedo { pixel: at, .. }] if at == pixel));
     }
     let depth = spoilt(RED, |p| p.depth *= 1.000_01);
     assert!(matches!(depth[..], [Violation::Depth { pixel: RED, .. }]), "{depth:?}");
@@ -96,8 +100,10 @@ fn what_is_not_a_number_is_found() {
         p.depth = f32::NAN;
         p.normal[0] = f32::NAN;
         p.color[0] = f32::NAN;
+        p.position[0] = f32::NAN;
+        p.albedo[0] = f32::NAN;
     });
-    assert_eq!(violations.len(), 3, "{violations:?}");
+    assert_eq!(violations.len(), 5, "{violations:?}");
 }
 
 #[test]

@@ -251,8 +251,7 @@ impl LegalDevice {
                 }
                 pixels.push(TracedPixel { ray: Some(ray), t, id });
                 layers.push(if id == NO_ID {
-                    let color = settings.background().to_array();
-                    Pixel { color, depth: f32::INFINITY, normal: [0.0; 3], id }
+                    Pixel::miss(settings.background().to_array())
                 } else {
                     // Another kernel makes the ray anew.
                     let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
@@ -260,7 +259,8 @@ impl LegalDevice {
                     let d = again.direction;
                     let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
                     let color = scene.color(id).to_array().map(|c| self.mul(c, cosine));
-                    Pixel { color, depth: self.add(ray.distance, t), normal, id }
+                    let depth = self.add(ray.distance, t);
+                    Pixel { color, depth, normal, id, ..Pixel::miss(color) }
                 });
             }
         }

@@ -34,6 +34,9 @@ fn layers_of_one_sphere() {
                 assert_eq!(image.depth().unwrap()[index], f32::INFINITY);
                 assert_eq!(image.normal().unwrap()[index], [0.0; 3]);
                 assert_eq!(image.color()[index], [0.1, 0.2, 0.3]);
+                assert_eq!(image.alpha().unwrap()[index], 0.0);
+                assert_eq!(image.position().unwrap()[index], [0.0; 3]);
+                assert_eq!(image.albedo().unwrap()[index], [0.0; 3]);
                 continue;
             }
             let z = z_squared.sqrt();
@@ -43,10 +46,18 @@ fn layers_of_one_sphere() {
             for (found, expected) in normal.into_iter().zip([x / 2.0, y / 2.0, z / 2.0]) {
                 assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
             }
+            let position = image.position().unwrap()[index].map(f64::from);
+            for (found, expected) in position.into_iter().zip([x, y, z]) {
+                assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+            }
+            assert_eq!(image.alpha().unwrap()[index], 1.0);
+            assert_eq!(image.albedo().unwrap()[index], [1.0; 3]);
             // Lambert with the light at the eye.
             assert!((f64::from(image.color()[index][0]) - z / 2.0).abs() < 1e-6);
         }
     }
+    assert_eq!(image.samples().unwrap(), [1; 49]);
+    assert_eq!(image.variance().unwrap(), [0.0; 49]);
     // The four points of the rim at distance 2 are tangents, and tangents hit.
     assert_eq!(image.id().unwrap()[3 * 7 + 1], 0);
     assert_eq!(image.depth().unwrap()[3 * 7 + 1], 8.0);

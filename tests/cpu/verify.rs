@@ -48,7 +48,7 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
         film,
         settings: Settings::default(),
         pixels: Vec::new(),
-        image: Image::new(0, 0, LayerSet::ALL).unwrap(),
+        image: Image::new(0, 0, LayerSet::DATA).unwrap(),
     }
 }
 
@@ -289,7 +289,7 @@ fn a_recording_of_another_size_is_found() {
     let fewer = upload(|recording| recording.pixels.truncate(100));
     assert!(matches!(fewer, Some(UploadError::Size { .. })), "{fewer:?}");
     let turned = upload(|recording| {
-        recording.image = Image::new(47, 61, LayerSet::ALL).unwrap();
+        recording.image = Image::new(47, 61, LayerSet::DATA).unwrap();
     });
     assert!(matches!(turned, Some(UploadError::Size { .. })), "{turned:?}");
     let flat = upload(|recording| recording.image = Image::new(61, 47, LayerSet::COLOR).unwrap());

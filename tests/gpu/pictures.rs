@@ -5,7 +5,8 @@ use libtest_mimic::Trial;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::film::YAxis;
 use pinhole::gpu::Headless;
-use pinhole::image::Layer;
+use pinhole::image::{Layer, NO_ID};
+use pinhole::io::npy::encode;
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Sphere, glam};
 
 use crate::support::View;
@@ -18,6 +19,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("pictures::turning_y_over_turns_the_picture_over", turned_over),
         trial("pictures::along_the_wall_no_hit_is_far", on_the_wall),
         trial("pictures::a_very_tall_picture", very_tall),
+        trial("pictures::every_layer_can_be_had_alone", every_layer_alone),
         trial("pictures::colors_do_not_depend_on_the_data_layers", layers_change_nothing),
     ]
 }
@@ -66,6 +68,22 @@ fn layers_change_nothing(headless: &'static Headless) {
     let color_only = render(headless, &view, LayerSet::COLOR);
     assert_eq!(color_only.depth(), None);
     assert_eq!(color_only.color(), render(headless, &view, LayerSet::ALL).color());
+}
+
+fn every_layer_alone(headless: &'static Headless) {
+    let view = View::three_spheres();
+    let all = render(headless, &view, LayerSet::ALL);
+    assert_eq!(all.layers(), LayerSet::ALL);
+    for layer in LayerSet::ALL.iter() {
+        let layers = LayerSet::COLOR.with(layer);
+        let image = render(headless, &view, layers);
+        assert_eq!(image.layers(), layers);
+        assert_eq!(encode(&image, layer), encode(&all, layer), "{layer}");
+    }
+    let pixels = all.alpha().unwrap().iter().zip(all.id().unwrap());
+    assert!(pixels.into_iter().all(|(alpha, id)| (*alpha == 1.0) == (*id != NO_ID)));
+    assert!(all.samples().unwrap().iter().all(|samples| *samples == 1));
+    assert!(all.variance().unwrap().iter().all(|variance| *variance == 0.0));
 }
 
 /// With the eye on the wall, up to rounding, and looking along it, nearly everything cancels. Whether such

@@ -57,7 +57,7 @@ fn bounds(headless: &'static Headless) {
         let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
             let accel = headless.plan_once(&scene, choice, &film);
-            let plan = headless.plan_render(&scene, accel, &film, LayerSet::ALL, 0);
+            let plan = headless.plan_render(&scene, accel, &film, LayerSet::DATA, 0);
             let accel = plan.accel.build(scene.spheres());
             let buffers = headless.upload(&scene, &accel).unwrap();
             // Not counted: a record per brick, and the one word that stands for colours.

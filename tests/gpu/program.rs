@@ -56,7 +56,7 @@ fn layers(headless: &'static Headless) {
     run(folder.path(), &arguments);
 
     let View { scene, camera, film, settings } = View::three_spheres_orthographic();
-    let image = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::ALL).unwrap();
+    let image = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::DATA).unwrap();
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     let depth = read("depth.npy");
     let depth: Vec<f32> = npyz::NpyFile::new(&depth[..]).unwrap().into_vec().unwrap();

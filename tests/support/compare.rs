@@ -1,8 +1,8 @@
 //! Is a picture what the CPU reference says, up to f32 rounding?
 //!
 //! Ids must be equal, unless the reference itself gives the other id a thousandth of a pixel away.
-//! Depth, normal and headlight colour must lie within the bounds that follow from one number, how much
-//! the rounding of the kernel can displace a ray; flat colours and misses must be equal to the bit.
+//! Depth, normal, position and headlight colour must lie within the bounds that follow from one number, how much
+//! the rounding of the kernel can displace a ray; flat colours, albedo and misses must be equal to the bit.
 
 use glam::DVec3;
 use pinhole::image::{NO_ID, Pixel};
@@ -32,6 +32,8 @@ impl From<&Image> for Picture {
             color: image.color()[index],
             depth: image.depth().unwrap()[index],
             normal: image.normal().unwrap()[index],
+            position: image.position().unwrap()[index],
+            albedo: image.albedo().unwrap()[index],
             id: image.id().unwrap()[index],
         });
         Self { size: [image.width(), image.height()], pixels: pixels.collect() }
@@ -54,6 +56,8 @@ pub(crate) enum Violation {
     Id { pixel: [u32; 2], reference: u32, result: u32 },
     Depth { pixel: [u32; 2], reference: f32, result: f32 },
     Normal { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
+    Position { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
+    Albedo { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
     Color { pixel: [u32; 2], reference: [f32; 3], result: [f32; 3] },
 }
 
@@ -97,10 +101,14 @@ fn differences(
     let same_depth = a.depth.to_bits() == b.depth.to_bits()
         || (f64::from(a.depth) - f64::from(b.depth)).abs() <= bounds.depth;
     let same_normal = distance(a.normal, b.normal) <= bounds.normal && is_unit_or_zero(b);
+    let same_position = distance(a.position, b.position) <= bounds.position;
+    let same_albedo = a.albedo.map(f32::to_bits) == b.albedo.map(f32::to_bits);
     let same_color = distance(a.color, b.color) <= bounds.color;
     [
         (same_depth, Violation::Depth { pixel, reference: a.depth, result: b.depth }),
         (same_normal, Violation::Normal { pixel, reference: a.normal, result: b.normal }),
+        (same_position, Violation::Position { pixel, reference: a.position, result: b.position }),
+        (same_albedo, Violation::Albedo { pixel, reference: a.albedo, result: b.albedo }),
         (same_color, Violation::Color { pixel, reference: a.color, result: b.color }),
     ]
     .into_iter()
@@ -111,12 +119,13 @@ fn differences(
 struct PixelBounds {
     depth: f64,
     normal: f64,
+    position: f64,
     color: f64,
 }
 
 fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     if reference.id == NO_ID {
-        return PixelBounds { depth: 0.0, normal: 0.0, color: 0.0 };
+        return PixelBounds { depth: 0.0, normal: 0.0, position: 0.0, color: 0.0 };
     }
     let location = view.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
     let ray = view.camera.ray_in_world(location);
@@ -134,6 +143,8 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     PixelBounds {
         depth: along,
         normal,
+        // On the exact ray, and rounded to f32 in the world.
+        position: along + DISPLACEMENT * distance(reference.position, [0.0; 3]),
         color: match view.settings.shading() {
             Shading::Flat => 0.0,
             _ => f64::from(brightest) * 3.0_f64.sqrt() * (normal + DISPLACEMENT),

@@ -6,23 +6,30 @@ use npyz::{AutoSerialize, WriterBuilder};
 
 use crate::image::{Image, Layer};
 
-/// A layer as an `.npy` file: shape (H, W) or (H, W, 3), float32, or uint32 for ids; C order, row 0 at
-/// the top.
+/// A layer as an `.npy` file: shape (H, W) or (H, W, 3), float32, or uint32 for ids and numbers of samples; C
+/// order, row 0 at the top.
 ///
 /// # Errors
 /// If the image was rendered without this layer.
 pub fn encode(image: &Image, layer: Layer) -> Result<Vec<u8>, NpyError> {
-    let missing = || NpyError::MissingLayer { layer };
     let (height, width) = (u64::from(image.height()), u64::from(image.width()));
+    let vectors = |values: &[[f32; 3]]| array(values.as_flattened(), &[height, width, 3]);
+    let numbers = |values: &[f32]| array(values, &[height, width]);
+    let counts = |values: &[u32]| array(values, &[height, width]);
     let bytes = match layer {
-        Layer::Color => array(image.color().as_flattened(), &[height, width, 3]),
-        Layer::Normal => {
-            array(image.normal().ok_or_else(missing)?.as_flattened(), &[height, width, 3])
-        }
-        Layer::Depth => array(image.depth().ok_or_else(missing)?, &[height, width]),
-        Layer::Id => array(image.id().ok_or_else(missing)?, &[height, width]),
+        Layer::Color => Some(vectors(image.color())),
+        Layer::Alpha => image.alpha().map(numbers),
+        Layer::Depth => image.depth().map(numbers),
+        Layer::Normal => image.normal().map(vectors),
+        Layer::Position => image.position().map(vectors),
+        Layer::Albedo => image.albedo().map(vectors),
+        Layer::Id => image.id().map(counts),
+        Layer::Samples => image.samples().map(counts),
+        Layer::Variance => image.variance().map(numbers),
     };
-    bytes.map_err(|error| NpyError::Encoder { message: error.to_string() })
+    bytes
+        .ok_or(NpyError::MissingLayer { layer })?
+        .map_err(|error| NpyError::Encoder { message: error.to_string() })
 }
 
 /// Why a layer cannot be written.

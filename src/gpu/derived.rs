@@ -1,0 +1,64 @@
+//! Layers that follow from what kernels wrote, and so need no kernel.
+
+use std::ops::Range;
+
+use super::records::NO_HIT;
+use crate::camera::Camera;
+use crate::film::Film;
+use crate::image::{RowMut, coverage};
+use crate::scene::SceneColors;
+
+/// What they follow from beside a tile's pixels.
+pub(super) struct Derived<'a> {
+    pub(super) camera: &'a dyn Camera,
+    pub(super) film: &'a Film,
+    pub(super) colors: &'a SceneColors,
+}
+
+impl Derived<'_> {
+    /// Sets, in some columns of row `j`, what follows from depths: the points that were hit.
+    pub(super) fn set_by_depths(
+        &self,
+        row: &mut RowMut<'_>,
+        columns: Range<usize>,
+        j: usize,
+        depths: &[f32],
+    ) {
+        let Some(position) = &mut row.position else { return };
+        let pixels = position[columns.clone()].iter_mut().zip(columns);
+        for ((point, i), t) in pixels.zip(depths) {
+            *point = if *t >= NO_HIT { [0.0; 3] } else { self.point([i, j], *t) };
+        }
+    }
+
+    /// Sets, in some columns of a row, what follows from ids, and from there being one ray for each pixel.
+    pub(super) fn set_by_ids(&self, row: &mut RowMut<'_>, columns: Range<usize>, ids: &[u32]) {
+        if let Some(alpha) = &mut row.alpha {
+            for (alpha, id) in alpha[columns.clone()].iter_mut().zip(ids) {
+                *alpha = coverage(*id);
+            }
+        }
+        if let Some(albedo) = &mut row.albedo {
+            for (albedo, id) in albedo[columns.clone()].iter_mut().zip(ids) {
+                *albedo = self.albedo(*id);
+            }
+        }
+        if let Some(samples) = &mut row.samples {
+            samples[columns.clone()].fill(1);
+        }
+        if let Some(variance) = &mut row.variance {
+            variance[columns].fill(0.0);
+        }
+    }
+
+    /// The point of a pixel's ray at a distance, in the world.
+    fn point(&self, [i, j]: [usize; 2], t: f32) -> [f32; 3] {
+        let location = self.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
+        self.camera.ray_in_world(location).at(f64::from(t)).as_vec3().to_array()
+    }
+
+    fn albedo(&self, id: u32) -> [f32; 3] {
+        let color = if coverage(id) > 0.0 { self.colors.of(id) } else { None };
+        color.map_or([0.0; 3], |color| color.to_array())
+    }
+}

@@ -1,0 +1,208 @@
+//! What a picture may hold beside its colours.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// One layer of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Layer {
+    /// Linear colour, three f32. Over a black background it is premultiplied by [`Layer::Alpha`].
+    Color,
+    /// How much of the pixel spheres cover, f32 from 0 to 1.
+    Alpha,
+    /// Distance along the ray from its origin in scene units, f32; +∞ for a miss.
+    Depth,
+    /// Unit normal in the world, pointing away from the sphere's centre, three f32; zero for a miss.
+    Normal,
+    /// The point in the world that was hit, in scene units, three f32; zero for a miss, which
+    /// [`Layer::Alpha`] or [`Layer::Id`] tells from a point there.
+    Position,
+    /// The surface's own linear colour, without light, three f32; zero for a miss.
+    Albedo,
+    /// Index of the sphere in input order, u32; [`NO_ID`](super::NO_ID) for a miss.
+    Id,
+    /// How many samples the pixel has, u32.
+    Samples,
+    /// Estimated variance of the pixel's mean luminance, f32; zero where there is one sample, of which none can
+    /// be estimated.
+    Variance,
+}
+
+impl Layer {
+    /// All layers.
+    pub const ALL: &'static [Self] = &[
+        Self::Color,
+        Self::Alpha,
+        Self::Depth,
+        Self::Normal,
+        Self::Position,
+        Self::Albedo,
+        Self::Id,
+        Self::Samples,
+        Self::Variance,
+    ];
+
+    /// The name on the command line and in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Alpha => "alpha",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Position => "position",
+            Self::Albedo => "albedo",
+            Self::Id => "id",
+            Self::Samples => "samples",
+            Self::Variance => "variance",
+        }
+    }
+
+    /// How many bytes a pixel of this layer takes.
+    #[must_use]
+    pub const fn bytes_per_pixel(self) -> u64 {
+        match self {
+            Self::Color | Self::Normal | Self::Position | Self::Albedo => 12,
+            Self::Alpha | Self::Depth | Self::Id | Self::Samples | Self::Variance => 4,
+        }
+    }
+}
+
+impl fmt::Display for Layer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A text that names no layer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no layer `{name}`; the layers are {}", LayerSet::ALL)]
+pub struct UnknownLayer {
+    /// The text as given.
+    pub name: String,
+}
+
+impl FromStr for Layer {
+    type Err = UnknownLayer;
+
+    fn from_str(name: &str) -> Result<Self, UnknownLayer> {
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|layer| layer.name() == name)
+            .ok_or_else(|| UnknownLayer { name: name.to_owned() })
+    }
+}
+
+/// Which layers to render. Colour is always among them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LayerSet {
+    /// Bit n is the layer with discriminant n.
+    bits: u16,
+}
+
+impl LayerSet {
+    /// Colour alone.
+    pub const COLOR: Self = Self { bits: 1 << Layer::Color as u16 };
+    /// What a renderer that traces one ray a pixel fills by itself: colour, depth, normal and id.
+    pub const DATA: Self = Self::COLOR.with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
+    /// Every layer.
+    pub const ALL: Self = {
+        let (mut set, mut place) = (Self::COLOR, 0);
+        while place < Layer::ALL.len() {
+            set = set.with(Layer::ALL[place]);
+            place += 1;
+        }
+        set
+    };
+
+    /// The set with one more layer.
+    #[must_use]
+    pub const fn with(self, layer: Layer) -> Self {
+        Self { bits: self.bits | 1 << layer as u16 }
+    }
+
+    /// Whether the layer is in the set.
+    #[must_use]
+    pub const fn contains(self, layer: Layer) -> bool {
+        self.bits & 1 << layer as u16 != 0
+    }
+
+    /// Its layers, in the order of [`Layer::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Layer> {
+        Layer::ALL.iter().copied().filter(move |layer| self.contains(*layer))
+    }
+
+    /// How many bytes a pixel of all its layers takes.
+    #[must_use]
+    pub fn bytes_per_pixel(self) -> u64 {
+        self.iter().map(Layer::bytes_per_pixel).sum()
+    }
+}
+
+impl Default for LayerSet {
+    /// Colour alone.
+    fn default() -> Self {
+        Self::COLOR
+    }
+}
+
+impl Extend<Layer> for LayerSet {
+    fn extend<I: IntoIterator<Item = Layer>>(&mut self, layers: I) {
+        *self = layers.into_iter().fold(*self, Self::with);
+    }
+}
+
+impl FromIterator<Layer> for LayerSet {
+    /// Those layers, and colour.
+    fn from_iter<I: IntoIterator<Item = Layer>>(layers: I) -> Self {
+        layers.into_iter().fold(Self::COLOR, Self::with)
+    }
+}
+
+/// `color, depth and id`
+impl fmt::Display for LayerSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<_> = self.iter().map(Layer::name).collect();
+        match names.split_last() {
+            Some((last, [])) => f.write_str(last),
+            Some((last, others)) => write!(f, "{} and {last}", others.join(", ")),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_is_what_was_put_in() {
+        let set = LayerSet::COLOR.with(Layer::Id).with(Layer::Alpha).with(Layer::Id);
+        assert_eq!(set.iter().collect::<Vec<_>>(), [Layer::Color, Layer::Alpha, Layer::Id]);
+        assert_eq!(set.to_string(), "color, alpha and id");
+        assert_eq!((set.bytes_per_pixel(), LayerSet::COLOR.bytes_per_pixel()), (20, 12));
+        assert_eq!(LayerSet::default(), LayerSet::COLOR);
+        assert_eq!(
+            [Layer::Depth, Layer::Id, Layer::Normal].into_iter().collect::<LayerSet>(),
+            LayerSet::DATA
+        );
+        assert_eq!((LayerSet::DATA.bytes_per_pixel(), LayerSet::ALL.bytes_per_pixel()), (32, 68));
+    }
+
+    #[test]
+    fn every_layer_is_found_by_its_name() {
+        for layer in Layer::ALL.iter().copied() {
+            assert_eq!(layer.name().parse(), Ok(layer));
+            assert!(LayerSet::ALL.contains(layer));
+            assert_eq!(LayerSet::COLOR.contains(layer), layer == Layer::Color);
+        }
+        let unknown = "depht".parse::<Layer>().unwrap_err().to_string();
+        assert_eq!(
+            unknown,
+            "there is no layer `depht`; the layers are color, alpha, depth, normal, position, albedo, id, samples \
+             and variance"
+        );
+    }
+}

@@ -1,0 +1,257 @@
+//! Linear f32 pixels and data layers.
+
+mod layer;
+mod rows;
+
+pub use layer::{Layer, LayerSet, UnknownLayer};
+pub(crate) use rows::{RowMut, coverage};
+
+/// The id of a pixel whose ray hit nothing.
+pub const NO_ID: u32 = u32::MAX;
+
+/// What one ray through the centre of a pixel says of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// See [`Layer::Color`].
+    pub color: [f32; 3],
+    /// See [`Layer::Depth`].
+    pub depth: f32,
+    /// See [`Layer::Normal`].
+    pub normal: [f32; 3],
+    /// See [`Layer::Position`].
+    pub position: [f32; 3],
+    /// See [`Layer::Albedo`].
+    pub albedo: [f32; 3],
+    /// See [`Layer::Id`].
+    pub id: u32,
+}
+
+impl Pixel {
+    /// The pixel of a ray that hit nothing.
+    #[must_use]
+    pub const fn miss(background: [f32; 3]) -> Self {
+        let zero = [0.0; 3];
+        let depth = f32::INFINITY;
+        Self { color: background, depth, normal: zero, position: zero, albedo: zero, id: NO_ID }
+    }
+}
+
+/// A picture with its data layers. Row 0 is the top; pixel (i, j) is at index `j * width + i`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    color: Vec<[f32; 3]>,
+    alpha: Option<Vec<f32>>,
+    depth: Option<Vec<f32>>,
+    normal: Option<Vec<[f32; 3]>>,
+    position: Option<Vec<[f32; 3]>>,
+    albedo: Option<Vec<[f32; 3]>>,
+    id: Option<Vec<u32>>,
+    samples: Option<Vec<u32>>,
+    variance: Option<Vec<f32>>,
+}
+
+/// An image does not fit into memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a picture of {width}x{height} needs {bytes} bytes of memory, which cannot be had; choose a smaller size"
+)]
+pub struct ImageTooLarge {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Bytes of all requested layers.
+    pub bytes: u64,
+}
+
+impl Image {
+    /// An image of misses over black, without a sample.
+    ///
+    /// # Errors
+    /// If the memory cannot be reserved.
+    pub fn new(width: u32, height: u32, layers: LayerSet) -> Result<Self, ImageTooLarge> {
+        let pixels = u64::from(width) * u64::from(height);
+        let bytes = pixels.saturating_mul(layers.bytes_per_pixel());
+        let too_large = ImageTooLarge { width, height, bytes };
+        let pixels = usize::try_from(pixels).map_err(|_| too_large)?;
+        let wants = |layer| layers.contains(layer);
+        Ok(Self {
+            width,
+            height,
+            color: filled(pixels, [0.0; 3]).ok_or(too_large)?,
+            alpha: optional(wants(Layer::Alpha), pixels, 0.0).ok_or(too_large)?,
+            depth: optional(wants(Layer::Depth), pixels, f32::INFINITY).ok_or(too_large)?,
+            normal: optional(wants(Layer::Normal), pixels, [0.0; 3]).ok_or(too_large)?,
+            position: optional(wants(Layer::Position), pixels, [0.0; 3]).ok_or(too_large)?,
+            albedo: optional(wants(Layer::Albedo), pixels, [0.0; 3]).ok_or(too_large)?,
+            id: optional(wants(Layer::Id), pixels, NO_ID).ok_or(too_large)?,
+            samples: optional(wants(Layer::Samples), pixels, 0).ok_or(too_large)?,
+            variance: optional(wants(Layer::Variance), pixels, 0.0).ok_or(too_large)?,
+        })
+    }
+
+    /// An image of [`LayerSet::DATA`], row by row from the top. `None` if a layer has not as many pixels as the
+    /// sides say.
+    #[must_use]
+    pub fn from_layers(
+        [width, height]: [u32; 2],
+        color: Vec<[f32; 3]>,
+        depth: Vec<f32>,
+        normal: Vec<[f32; 3]>,
+        id: Vec<u32>,
+    ) -> Option<Self> {
+        let pixels = u64::from(width) * u64::from(height);
+        let lengths = [color.len(), depth.len(), normal.len(), id.len()];
+        lengths.iter().all(|length| *length as u64 == pixels).then_some(Self {
+            width,
+            height,
+            color,
+            alpha: None,
+            depth: Some(depth),
+            normal: Some(normal),
+            position: None,
+            albedo: None,
+            id: Some(id),
+            samples: None,
+            variance: None,
+        })
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Linear colour of every pixel; see [`Layer::Color`].
+    #[must_use]
+    pub fn color(&self) -> &[[f32; 3]] {
+        &self.color
+    }
+
+    /// Coverage of every pixel, if it was rendered; see [`Layer::Alpha`].
+    #[must_use]
+    pub fn alpha(&self) -> Option<&[f32]> {
+        self.alpha.as_deref()
+    }
+
+    /// Depth of every pixel, if it was rendered; see [`Layer::Depth`].
+    #[must_use]
+    pub fn depth(&self) -> Option<&[f32]> {
+        self.depth.as_deref()
+    }
+
+    /// Normal of every pixel, if it was rendered; see [`Layer::Normal`].
+    #[must_use]
+    pub fn normal(&self) -> Option<&[[f32; 3]]> {
+        self.normal.as_deref()
+    }
+
+    /// Point in the world of every pixel, if it was rendered; see [`Layer::Position`].
+    #[must_use]
+    pub fn position(&self) -> Option<&[[f32; 3]]> {
+        self.position.as_deref()
+    }
+
+    /// Surface colour of every pixel, if it was rendered; see [`Layer::Albedo`].
+    #[must_use]
+    pub fn albedo(&self) -> Option<&[[f32; 3]]> {
+        self.albedo.as_deref()
+    }
+
+    /// Sphere id of every pixel, if it was rendered; see [`Layer::Id`].
+    #[must_use]
+    pub fn id(&self) -> Option<&[u32]> {
+        self.id.as_deref()
+    }
+
+    /// Number of samples of every pixel, if it was rendered; see [`Layer::Samples`].
+    #[must_use]
+    pub fn samples(&self) -> Option<&[u32]> {
+        self.samples.as_deref()
+    }
+
+    /// Variance of the mean of every pixel, if it was rendered; see [`Layer::Variance`].
+    #[must_use]
+    pub fn variance(&self) -> Option<&[f32]> {
+        self.variance.as_deref()
+    }
+
+    /// The layers that it has.
+    #[must_use]
+    pub fn layers(&self) -> LayerSet {
+        let has = |layer: &Layer| match layer {
+            Layer::Color => true,
+            Layer::Alpha => self.alpha.is_some(),
+            Layer::Depth => self.depth.is_some(),
+            Layer::Normal => self.normal.is_some(),
+            Layer::Position => self.position.is_some(),
+            Layer::Albedo => self.albedo.is_some(),
+            Layer::Id => self.id.is_some(),
+            Layer::Samples => self.samples.is_some(),
+            Layer::Variance => self.variance.is_some(),
+        };
+        Layer::ALL.iter().copied().filter(has).collect()
+    }
+}
+
+/// For renderers that gather several samples for a pixel.
+#[allow(dead_code, reason = "renderers take one sample so far")]
+impl Image {
+    pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
+        &mut self.color
+    }
+
+    pub(crate) fn alpha_mut(&mut self) -> Option<&mut [f32]> {
+        self.alpha.as_deref_mut()
+    }
+
+    pub(crate) fn depth_mut(&mut self) -> Option<&mut [f32]> {
+        self.depth.as_deref_mut()
+    }
+
+    pub(crate) fn normal_mut(&mut self) -> Option<&mut [[f32; 3]]> {
+        self.normal.as_deref_mut()
+    }
+
+    pub(crate) fn position_mut(&mut self) -> Option<&mut [[f32; 3]]> {
+        self.position.as_deref_mut()
+    }
+
+    pub(crate) fn albedo_mut(&mut self) -> Option<&mut [[f32; 3]]> {
+        self.albedo.as_deref_mut()
+    }
+
+    pub(crate) fn id_mut(&mut self) -> Option<&mut [u32]> {
+        self.id.as_deref_mut()
+    }
+
+    pub(crate) fn samples_mut(&mut self) -> Option<&mut [u32]> {
+        self.samples.as_deref_mut()
+    }
+
+    pub(crate) fn variance_mut(&mut self) -> Option<&mut [f32]> {
+        self.variance.as_deref_mut()
+    }
+}
+
+/// `None` if the memory cannot be reserved.
+fn filled<T: Clone>(count: usize, value: T) -> Option<Vec<T>> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).ok()?;
+    values.resize(count, value);
+    Some(values)
+}
+
+/// `None` if the layer is wanted and its memory cannot be reserved.
+fn optional<T: Clone>(wanted: bool, count: usize, value: T) -> Option<Option<Vec<T>>> {
+    if wanted { filled(count, value).map(Some) } else { Some(None) }
+}
