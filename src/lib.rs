@@ -71,7 +71,9 @@ mod text;
 pub mod verify;
 
 pub use color::LinearRgb;
+pub use environment::Environment;
 pub use film::Film;
+pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
 pub use lighting::Lighting;
 pub use material::{Finish, Material};

@@ -67,14 +67,9 @@ impl SkyLight {
                 wide(horizon).lerp(wide(end), direction.y.abs())
             }
             Self::Image { environment, strength, rotation } => {
-                f64::from(*strength)
-                    * DVec3::from(environment.radiance(turned(direction, -rotation)))
+                let rotation = Environment::rotation(*rotation);
+                f64::from(*strength) * DVec3::from(environment.radiance(direction, rotation))
             }
         }
     }
-}
-
-/// A direction turned about +y, counter-clockwise from above.
-pub(crate) fn turned(direction: DVec3, radians: f64) -> DVec3 {
-    glam::DQuat::from_rotation_y(radians) * direction
 }

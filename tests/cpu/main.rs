@@ -16,6 +16,7 @@ mod arrays;
 mod basis;
 mod camera;
 mod comparator;
+mod environment;
 mod generate;
 mod grid_check;
 mod hostile_rays;

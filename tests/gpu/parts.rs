@@ -1,9 +1,13 @@
 //! Shader parts against their twins, by themselves.
 
-use libtest_mimic::Trial;
-use pinhole::gpu::Headless;
-use pinhole::sampling;
+use std::f64::consts::TAU;
 
+use libtest_mimic::Trial;
+use pinhole::glam::DVec3;
+use pinhole::gpu::Headless;
+use pinhole::{Environment, PixelFilter, filter, sampling};
+
+use crate::support::maps::{AS_IT_IS, direction, random_map};
 use crate::{compute, trial};
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -11,10 +15,25 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("parts::sample_points_are_the_same_bits", sample_points),
         trial("parts::seeds_of_pixels_are_the_same_bits", pixel_seeds),
         trial("parts::unit_numbers_are_the_same", unit_numbers),
+        trial("parts::offsets_within_a_filter_agree", filter_offsets),
+        trial("parts::sines_and_cosines_of_turns", sines),
+        trial("parts::angles_of_vectors", angles),
+        trial("parts::light_of_directions_is_the_same", environment_lookup),
+        trial("parts::sampled_light_is_the_same", environment_samples),
+        trial("parts::a_black_map_has_no_light_to_sample", black_environment),
     ]
 }
 
 const SAMPLING: &str = include_str!("../../shaders/sampling.wgsl");
+const FILTER: &str = include_str!("../../shaders/filter.wgsl");
+const FENCE: &str = include_str!("../../shaders/fence.wgsl");
+
+const TURNS: &str = include_str!("../../shaders/turns.wgsl");
+const INVERSE: &str = include_str!("../../shaders/trigonometry_inverse.wgsl");
+const ENVIRONMENT: &str = include_str!("../../shaders/environment.wgsl");
+
+/// What `FENCE` asks for; the last word of each question is zero.
+const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";
 
 /// Words at which something may overflow, be cut off or be taken for signed.
 const EXTREMES: [u32; 8] =
@@ -64,4 +83,225 @@ fn unit_numbers(headless: &'static Headless) {
         });
         [x, y, 0, 0]
     });
+}
+
+/// A few ULP: with either neighbour of each result allowed, the difference, the product and the sum are off by
+/// 2⁻²³ of themselves at most.
+fn filter_offsets(headless: &'static Headless) {
+    let questions = questions(1 << 16);
+    for &filter in PixelFilter::ALL {
+        let table = filter.offset_table();
+        let words: Vec<_> = table.iter().map(|x| x.to_bits()).chain([0; 3]).collect();
+        let source = "
+@group(0) @binding(2) var<storage, read> table: array<vec4f, 65>;
+fn filter_table(index: u32) -> f32 { return table[index >> 2u][index & 3u]; }
+fn answer(q: vec4u) -> vec4u { return vec4u(bitcast<vec2u>(filter_offset(q.xy)), 0u, 0u); }";
+        let parts = [FILTER, FENCE, RUNTIME_ZERO, source];
+        let answers = compute::answers(headless, &parts, &[(0, 2, &words)], &questions);
+        for (question, answer) in questions.iter().zip(answers) {
+            for axis in 0..2 {
+                let u = question[axis];
+                let [low, high] = [0, 1].map(|k| f64::from(table[(u >> 24) as usize + k]));
+                let expected = filter::offset(&table, u);
+                let bound = 2_f64.powi(-23) * (2.0 * (expected - low) + expected.abs());
+                let found = f64::from(f32::from_bits(answer[axis]));
+                assert!((found - expected).abs() <= bound * 1.0001, "{filter:?}, {u:x}: {found}");
+                assert!((low..=high).contains(&found), "{filter:?}, {u:x}: {found}");
+            }
+        }
+    }
+}
+
+/// Questions of so many numbers.
+fn packed<const N: usize>(numbers: impl Iterator<Item = [f32; N]>) -> Vec<[u32; 4]> {
+    numbers
+        .map(|numbers| {
+            let mut question = [0; 4];
+            for (word, number) in question.iter_mut().zip(numbers) {
+                *word = number.to_bits();
+            }
+            question
+        })
+        .collect()
+}
+
+fn numbers(answer: [u32; 4]) -> [f64; 4] {
+    answer.map(|bits| f64::from(f32::from_bits(bits)))
+}
+
+fn sines(headless: &'static Headless) {
+    let mut random = fastrand::Rng::with_seed(2);
+    let eighths = (-512..512).map(|i| i as f32 / 8.0);
+    let small = (0..1024).map(|i| 2_f32.powi(-(i % 60)) * if i % 120 < 60 { 1.0 } else { -1.0 });
+    let any = (0..1 << 18).map(|i| {
+        let range = if i % 2 == 0 { 1.0 } else { 1000.0 };
+        range * (2.0 * random.f32() - 1.0)
+    });
+    let questions = packed(eighths.chain(small).chain(any).map(|turns| [turns]));
+    let source = "fn answer(q: vec4u) -> vec4u {
+    return vec4u(bitcast<vec2u>(sin_cos_turns(bitcast<f32>(q.x))), 0u, 0u);
+}";
+    let answers =
+        compute::answers(headless, &[TURNS, FENCE, RUNTIME_ZERO, source], &[], &questions);
+    let mut worst = 0.0_f64;
+    for (question, answer) in questions.into_iter().zip(answers) {
+        let turns = numbers(question)[0];
+        // In f64, whole turns can be left out without error.
+        let (sine, cosine) = (TAU * (turns - turns.round())).sin_cos();
+        let [found_sine, found_cosine, ..] = numbers(answer);
+        worst = worst.max((found_sine - sine).abs()).max((found_cosine - cosine).abs());
+        // Small angles have small errors.
+        assert!((found_sine - sine).abs() <= 2_f64.powi(-20) * sine.abs() + 1e-15, "{turns}");
+    }
+    assert!(worst < 2_f64.powi(-22), "{worst:e}");
+}
+
+fn angles(headless: &'static Headless) {
+    let mut random = fastrand::Rng::with_seed(2);
+    let corners = [-1.0, -1e-6, 0.0, 1e-6, 1.0_f32];
+    let corners = corners.map(|y| corners.map(|x| [y, x])).concat();
+    let any = (0..(1 << 18) + 39).map(|_| {
+        let size = 2_f32.powi(random.i32(-40..40));
+        [(); 2].map(|()| size * (2.0 * random.f32() - 1.0) * 2_f32.powi(-random.i32(0..20)))
+    });
+    let questions = packed(corners.into_iter().chain(any));
+    let source = "fn answer(q: vec4u) -> vec4u {
+    return vec4u(bitcast<u32>(atan2_turns(bitcast<f32>(q.x), bitcast<f32>(q.y))), 0u, 0u, 0u);
+}";
+    let answers =
+        compute::answers(headless, &[INVERSE, FENCE, RUNTIME_ZERO, source], &[], &questions);
+    let mut worst = 0.0_f64;
+    for (question, answer) in questions.into_iter().zip(answers) {
+        let [y, x, ..] = numbers(question);
+        let (found, expected) = (numbers(answer)[0], y.atan2(x) / TAU);
+        worst = worst.max((found - expected).abs());
+        if x > 0.0 {
+            assert!((found - expected).abs() <= 2_f64.powi(-20) * expected.abs(), "{y:e}, {x:e}");
+        }
+    }
+    assert!(worst < 2_f64.powi(-23), "{worst:e}");
+}
+
+/// Asks of a map, turned, for radiance and density of directions, or for samples.
+fn ask_environment(
+    headless: &Headless,
+    map: &Environment,
+    rotation: [f32; 2],
+    samples: bool,
+    questions: &[[u32; 4]],
+) -> Vec<[f64; 4]> {
+    let source = "
+struct Look { environment_size: vec2u, environment_rotation: vec2f, samples: u32 }
+@group(0) @binding(2) var<storage, read> look: Look;
+fn answer(q: vec4u) -> vec4u {
+    let sampled = sample_environment(q.xy);
+    let d = bitcast<vec3f>(q.xyz);
+    let found = vec4f(environment_radiance(d), environment_density(d));
+    return bitcast<vec4u>(select(found, vec4f(sampled.direction, sampled.density), look.samples != 0u));
+}";
+    let [cosine, sine] = rotation.map(f32::to_bits);
+    let look = [map.width(), map.height(), cosine, sine, u32::from(samples), 0];
+    let texels: Vec<u32> =
+        map.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.0].map(f32::to_bits)).collect();
+    let [rows, columns] = [map.rows(), map.columns()].map(bytemuck::cast_slice);
+    let tables = [(0, 2, &look[..]), (3, 0, &texels), (3, 1, rows), (3, 2, columns)];
+    let parts = [ENVIRONMENT, TURNS, INVERSE, FENCE, RUNTIME_ZERO, source];
+    let answers = compute::answers(headless, &parts, &tables, questions);
+    answers.into_iter().map(numbers).collect()
+}
+
+const SIZES: [[u32; 2]; 7] = [[1, 1], [16, 8], [7, 13], [1, 64], [200, 1], [1024, 512], [4096, 64]];
+
+fn rotations() -> [[f32; 2]; 3] {
+    [AS_IT_IS, Environment::rotation(0.7), Environment::rotation(-2.9)]
+}
+
+/// How near to the edge of a texel a device may take a direction for one on the other side, in turns: what its
+/// angles and the rounding of their arguments are off by.
+const EDGE: f64 = 1.0 / (1 << 21) as f64;
+
+fn environment_lookup(headless: &'static Headless) {
+    let mut random = fastrand::Rng::with_seed(6);
+    let directions = || {
+        // Uniform, and as many near the poles.
+        let down: f64 = random.f64();
+        let down = if random.bool() { down } else { down.powi(3) };
+        let d = direction(random.f64(), if random.bool() { down } else { 1.0 - down });
+        d.as_vec3().to_array()
+    };
+    let questions = packed(std::iter::repeat_with(directions).take(1 << 14));
+    for (seed, size) in (0..).zip(SIZES) {
+        let map = random_map(seed, size);
+        for rotation in rotations() {
+            let mut near_edges = 0;
+            let answers = ask_environment(headless, &map, rotation, false, &questions);
+            for (question, answer) in questions.iter().zip(answers) {
+                let [x, y, z, _] = numbers(*question);
+                let d = DVec3::new(x, y, z);
+                let [cosine, sine] = rotation.map(f64::from);
+                let in_map = DVec3::new(cosine * x - sine * z, y, cosine * z + sine * x);
+                let around = in_map.x.atan2(-in_map.z) / TAU + 0.5;
+                let down = in_map.x.hypot(in_map.z).atan2(y) / TAU;
+                let is_near = |turns: f64, count: u32| {
+                    let place = turns * f64::from(count);
+                    (place - place.round()).abs() < EDGE * f64::from(count)
+                };
+                if is_near(around, size[0]) || is_near(down, 2 * size[1]) {
+                    near_edges += 1;
+                    continue;
+                }
+                let [red, green, blue] = map.radiance(d, rotation);
+                assert_eq!(answer[..3], [red, green, blue], "{size:?}, {d}");
+                let density = map.density(d, rotation);
+                let bound = DENSITY * density;
+                assert!(
+                    (answer[3] - density).abs() <= bound,
+                    "{size:?}, {d}: {answer:?}, {density}"
+                );
+            }
+            assert!(near_edges < questions.len() / 8, "{size:?}: {near_edges}");
+        }
+    }
+}
+
+/// How far a device's sample may be off: a longitude rounded to 2⁻²⁴ turns, its sine to 2⁻²², and some roundings.
+const DIRECTION: f64 = 1.0 / (1 << 20) as f64;
+
+/// How far a device's density may be off, relative to itself: two sines of 2⁻²⁰ and six roundings.
+const DENSITY: f64 = 1.0 / (1 << 18) as f64;
+
+fn environment_samples(headless: &'static Headless) {
+    let questions: Vec<_> = questions(1 << 14).into_iter().map(|[x, y, ..]| [x, y, 0, 0]).collect();
+    for (seed, size) in (0..).zip(SIZES) {
+        let map = random_map(seed, size);
+        for rotation in rotations() {
+            let answers = ask_environment(headless, &map, rotation, true, &questions);
+            for ([u, v, ..], answer) in questions.iter().zip(answers) {
+                let (direction, density) = map.sample([*u, *v], rotation);
+                let [x, y, z, found] = answer;
+                let bound = DENSITY * density;
+                assert!(
+                    (found - density).abs() <= bound,
+                    "{size:?}, {u:x}, {v:x}: {found}, {density}"
+                );
+                let found = DVec3::new(x, y, z);
+                // From its pole on, the other one is as coarse as f32 near one: of a single row, the height counts.
+                let error = if size[1] == 1 {
+                    (y - direction.y).abs()
+                } else {
+                    (found - direction).length()
+                };
+                assert!(error < DIRECTION, "{size:?}, {u:x}, {v:x}: {found}, {direction}");
+            }
+        }
+    }
+}
+
+fn black_environment(headless: &'static Headless) {
+    let map = Environment::new(5, 3, vec![[0.0; 3]; 15]).unwrap();
+    for answer in ask_environment(headless, &map, AS_IT_IS, true, &questions(1 << 10)) {
+        let [x, y, z, density] = answer;
+        assert_eq!(density.to_bits(), 0);
+        assert!((DVec3::new(x, y, z).length() - 1.0).abs() < 1e-5, "{answer:?}");
+    }
 }

@@ -2,6 +2,8 @@
 
 pub(crate) mod compare;
 #[allow(dead_code, reason = "each test program uses some of them")]
+pub(crate) mod maps;
+#[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod spheres;
 
 use pinhole::camera::Camera;

@@ -1,0 +1,229 @@
+//! Light from all directions, as an image: an equirectangular map of radiance, and how to sample it.
+//!
+//! Row 0 is up, +y; a row is as high as all others, in latitude. The middle of the map is −z, where a camera
+//! looks that was not turned; to its right is +x. Radiance is constant within a texel, so that the density by
+//! which directions are sampled can follow it exactly, and pictures do not depend on how a device filters.
+//!
+//! Sampling by luminance and solid angle, first the row and then the column, after M. Pharr, W. Jakob and
+//! G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniform in solid angle within a texel. The tables
+//! are f32, and all that is random in choosing a texel is exact in f32, so that a device chooses the same.
+//! Twin: `shaders/environment.wgsl`.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+
+use crate::sampling::unit;
+
+mod reduce;
+mod shares;
+
+/// The most columns and rows that are kept; what has more is reduced.
+pub const MAX_SIZE: [u32; 2] = [4096, 2048];
+
+/// The largest radiance, 2⁶⁴: what a device adds and multiplies stays far from infinity.
+pub const MAX_RADIANCE: f32 = 18_446_744_073_709_551_616.0;
+
+/// An equirectangular map of linear radiance.
+#[derive(Clone, PartialEq)]
+pub struct Environment {
+    width: u32,
+    height: u32,
+    texels: Vec<[f32; 3]>,
+    rows: Vec<f32>,
+    columns: Vec<f32>,
+}
+
+/// Why there is no such map. Columns and rows count from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EnvironmentError {
+    /// There must be a texel.
+    #[error("a map of {width}×{height} texels has none")]
+    Empty {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The texels do not fill the map.
+    #[error("a map of {width}×{height} texels cannot have {found}")]
+    TexelCount {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// How many there are.
+        found: usize,
+    },
+    /// A texel has a component that is NaN, negative or above [`MAX_RADIANCE`].
+    #[error(
+        "the texel in column {column} of row {row} is {value:?}; radiance is a number from 0 to {MAX_RADIANCE:e}"
+    )]
+    Texel {
+        /// Where.
+        column: usize,
+        /// Where.
+        row: usize,
+        /// The texel as it is.
+        value: [f32; 3],
+    },
+}
+
+impl std::fmt::Debug for Environment {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Environment({}×{})", self.width, self.height)
+    }
+}
+
+impl Environment {
+    /// A map from its texels, row by row. Any ratio of width to height will do.
+    ///
+    /// A map beyond [`MAX_SIZE`] is made smaller: its size is divided by the smallest whole number that makes it
+    /// fit, rounded up, and each texel is the mean, by solid angle, of what it covers.
+    ///
+    /// # Errors
+    /// If the map is empty, or a texel is no radiance.
+    pub fn new(width: u32, height: u32, texels: Vec<[f32; 3]>) -> Result<Self, EnvironmentError> {
+        if width == 0 || height == 0 {
+            return Err(EnvironmentError::Empty { width, height });
+        }
+        if u64::from(width) * u64::from(height) != texels.len() as u64 {
+            return Err(EnvironmentError::TexelCount { width, height, found: texels.len() });
+        }
+        let is_radiance = |texel: &[f32; 3]| texel.iter().all(|c| (0.0..=MAX_RADIANCE).contains(c));
+        if let Some(index) = texels.iter().position(|texel| !is_radiance(texel)) {
+            let (row, column) = (index / width as usize, index % width as usize);
+            return Err(EnvironmentError::Texel { column, row, value: texels[index] });
+        }
+        let ([width, height], texels) = reduce::reduced([width, height], texels);
+        let (rows, columns) = shares::tables([width, height], &texels);
+        Ok(Self { width, height, texels, rows, columns })
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Radiance, row by row.
+    #[must_use]
+    pub fn texels(&self) -> &[[f32; 3]] {
+        &self.texels
+    }
+
+    /// For each row the probability that a sample is above it, and 1 at the end: multiples of 2⁻²⁴. All zero if
+    /// the map is black.
+    #[must_use]
+    pub fn rows(&self) -> &[f32] {
+        &self.rows
+    }
+
+    /// The same for the columns of each row, for samples in that row: `width` + 1 numbers a row. All zero if the
+    /// row is black.
+    #[must_use]
+    pub fn columns(&self) -> &[f32] {
+        &self.columns
+    }
+
+    /// Whether there is any light to sample.
+    #[must_use]
+    pub fn has_light(&self) -> bool {
+        self.rows[self.height as usize] > 0.0
+    }
+
+    /// Cosine and sine, as a device has them, of an angle by which the map is turned about +y: from +z to +x.
+    #[must_use]
+    pub fn rotation(radians: f64) -> [f32; 2] {
+        [radians.cos() as f32, radians.sin() as f32]
+    }
+
+    /// The radiance, in the units of the map, that comes from a direction of unit length.
+    #[must_use]
+    pub fn radiance(&self, direction: DVec3, rotation: [f32; 2]) -> [f64; 3] {
+        let [column, row] = self.place(direction, rotation);
+        self.texels[row * self.width as usize + column].map(f64::from)
+    }
+
+    /// The density, per steradian, by which [`Environment::sample`] chooses a direction of unit length.
+    ///
+    /// It is positive where there is light.
+    #[must_use]
+    pub fn density(&self, direction: DVec3, rotation: [f32; 2]) -> f64 {
+        self.density_of(self.place(direction, rotation))
+    }
+
+    /// A direction of unit length for two fractions of 2³², and its density per steradian: zero if the map is
+    /// black, and only then.
+    #[must_use]
+    pub fn sample(&self, u: [u32; 2], rotation: [f32; 2]) -> (DVec3, f64) {
+        let (row, down) = choose(&self.rows, u[1]);
+        let (column, along) = choose(self.columns_of(row), u[0]);
+        let longitude = TAU * ((column as f64 + along) / f64::from(self.width) - 0.5);
+        // From the nearer pole, by sin²(θ/2) = (1 − cos θ)/2, in which areas are even and nothing cancels.
+        let height = self.height as usize;
+        let is_upper = 2 * row < height;
+        let (from_pole, along, sign) =
+            if is_upper { (row, down, 1.0) } else { (height - 1 - row, 1.0 - down, -1.0) };
+        let edge = |row: usize| (0.5 * PI * row as f64 / f64::from(self.height)).sin().powi(2);
+        let (low, high) = (edge(from_pole), edge(from_pole + 1));
+        let square = low + along * (high - low);
+        let radius = 2.0 * (square * (1.0 - square)).sqrt();
+        let (sine, cosine) = longitude.sin_cos();
+        let in_map = DVec3::new(radius * sine, sign * (1.0 - 2.0 * square), -radius * cosine);
+        (turned(in_map, rotation), self.density_of([column, row]))
+    }
+
+    /// Column and row of the texel in a direction.
+    fn place(&self, direction: DVec3, [cosine, sine]: [f32; 2]) -> [usize; 2] {
+        let d = turned(direction, [cosine, -sine]);
+        // Zeros lose their signs, which atan2 would look at.
+        let across = (d.x + 0.0).atan2(0.0 - d.z) / TAU + 0.5;
+        let down = d.x.hypot(d.z).atan2(d.y) / PI;
+        [(across, self.width), (down, self.height)]
+            .map(|(part, count)| ((part * f64::from(count)) as usize).min(count as usize - 1))
+    }
+
+    fn density_of(&self, [column, row]: [usize; 2]) -> f64 {
+        let share = |table: &[f32], i: usize| f64::from(table[i + 1]) - f64::from(table[i]);
+        let probability = share(&self.rows, row) * share(self.columns_of(row), column);
+        probability / solid_angle([self.width, self.height], row)
+    }
+
+    fn columns_of(&self, row: usize) -> &[f32] {
+        let length = self.width as usize + 1;
+        &self.columns[row * length..][..length]
+    }
+}
+
+/// Turned about +y.
+fn turned(d: DVec3, rotation: [f32; 2]) -> DVec3 {
+    let [cosine, sine] = rotation.map(f64::from);
+    DVec3::new(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x)
+}
+
+/// Of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, as a product.
+fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
+    let half = 0.5 * PI / f64::from(height);
+    2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
+}
+
+/// The share of a table that a fraction of 2³² falls into, and how far into it, in [0, 1].
+///
+/// Its upper 24 bits decide, and the others are in the middle of what they may be.
+fn choose(table: &[f32], u: u32) -> (usize, f64) {
+    let chance = unit(u);
+    let index = table.partition_point(|sum| f64::from(*sum) <= chance).min(table.len() - 1) - 1;
+    let [low, high] = [table[index], table[index + 1]].map(f64::from);
+    let rest = (f64::from(u & 0xff) + 0.5) / f64::from(1 << 24) / 256.0;
+    // A black map has no shares, and no share is smaller than this.
+    let share = (high - low).max(1.0 / f64::from(1 << 24));
+    (index, ((chance - low + rest) / share).min(1.0))
+}
