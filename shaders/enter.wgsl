@@ -8,7 +8,7 @@ struct Entry {
     inverse: vec3f,
     // From the camera to the ray's origin.
     distance: f32,
-    // Whether the ray meets the box at all.
+    // Whether there is a ray, and it meets the box.
     is_inside: bool,
 }
 
@@ -20,9 +20,9 @@ fn inverse_direction(direction: vec3f) -> vec3f {
     return 1.0 / select(-size, size, direction >= vec3f(0.0));
 }
 
-// The ray through a pixel's centre.
+// The ray through the centres of a pixel and of the lens.
 fn make_entry(pixel_in_tile: vec2u) -> Entry {
-    return enter_scene(camera_ray(relative_location(frame.tile_origin + pixel_in_tile)));
+    return enter_scene(camera_ray(relative_location(frame.tile_origin + pixel_in_tile), vec2f(0.5)));
 }
 
 fn enter_scene(camera_ray: CameraRay) -> Entry {
@@ -35,5 +35,6 @@ fn enter_scene(camera_ray: CameraRay) -> Entry {
     let t_near = max(max(near.x, max(near.y, near.z)), 0.0);
     let t_far = min(far.x, min(far.y, far.z));
     let entered = Ray(fence3(ray.origin + t_near * ray.direction), ray.direction);
-    return Entry(entered, inverse, fence(camera_ray.distance + t_near), t_near <= t_far);
+    let is_inside = camera_ray.is_seen && t_near <= t_far;
+    return Entry(entered, inverse, fence(camera_ray.distance + t_near), is_inside);
 }

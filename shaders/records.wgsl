@@ -6,10 +6,13 @@ struct Camera {
     // kernels compute is then as exact as the scene is large, however far away the camera is.
     origin: vec3f,
     advance: f32,
-    // What the three vectors mean is up to the camera_*.wgsl part in use.
+    // What the three vectors and the three numbers mean is up to the camera_*.wgsl part in use.
     right: vec3f,
+    first: f32,
     up: vec3f,
+    second: f32,
     forward: vec3f,
+    third: f32,
 }
 
 struct Frame {

@@ -44,6 +44,7 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+mod disk;
 pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;

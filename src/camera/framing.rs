@@ -45,3 +45,11 @@ pub(super) fn parallel_extent(
     // Twice the half depth leaves as much room in front of the box as the box is deep.
     (DVec2::new(half_height * aspect, half_height), 2.0 * half.z)
 }
+
+/// How far back from the middle of the box an eye must stand so that the ball around it lies within a cone of
+/// this half angle; just outside of the ball if the cone is wider than a half space.
+#[cfg(feature = "scene-file")]
+pub(super) fn round_distance(bounds: &Bounds, half_angle: f64) -> f64 {
+    let within = (half_angle * FILL).min(std::f64::consts::FRAC_PI_2);
+    0.5 * bounds.size().length() / within.sin()
+}

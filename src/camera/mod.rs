@@ -8,22 +8,38 @@ use glam::{DVec2, DVec3};
 use crate::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::ray::Ray;
 
+mod fisheye;
 mod framing;
 mod orthographic;
+mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
 mod pinhole;
 mod pose;
+#[cfg(feature = "scene-file")]
+mod stereo;
+mod thin_lens;
 
+pub use fisheye::FisheyeCamera;
+#[cfg(feature = "scene-file")]
+pub use fisheye::FisheyeParameters;
 pub use orthographic::OrthographicCamera;
 #[cfg(feature = "scene-file")]
 pub use orthographic::OrthographicParameters;
+pub use panorama::PanoramaCamera;
+#[cfg(feature = "scene-file")]
+pub use panorama::PanoramaParameters;
 #[cfg(feature = "scene-file")]
 pub(crate) use parameters::CameraParameters;
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
 pub use pinhole::PinholeParameters;
 pub use pose::{CameraError, Pose};
+#[cfg(feature = "scene-file")]
+pub use stereo::StereoParameters;
+pub use thin_lens::ThinLensCamera;
+#[cfg(feature = "scene-file")]
+pub use thin_lens::ThinLensParameters;
 
 /// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
 ///
@@ -33,8 +49,28 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
     /// Which row of the camera table this is.
     fn kind(&self) -> CameraKind;
 
-    /// The ray that belongs to `location`, in the world; its direction has unit length.
+    /// The ray that belongs to `location`, in the world; its direction has unit length. Of a camera with a
+    /// lens, that through the lens's centre.
     fn ray_in_world(&self, location: DVec2) -> Ray;
+
+    /// The ray that belongs to `location` through a point of the lens: `lens` lies in the unit square
+    /// [0, 1)², and (½, ½) is the lens's centre. Without a lens, the same ray for all points.
+    fn ray_through_lens(&self, location: DVec2, lens: DVec2) -> Ray {
+        let _ = lens;
+        self.ray_in_world(location)
+    }
+
+    /// Whether [`Camera::ray_through_lens`] depends on the point of the lens.
+    fn has_lens(&self) -> bool {
+        false
+    }
+
+    /// Whether there is a ray at all. Where there is none, the pixel is a miss, and what
+    /// [`Camera::ray_in_world`] says has no meaning.
+    fn sees(&self, location: DVec2) -> bool {
+        let _ = location;
+        true
+    }
 
     /// The relative location of a point in the world, perhaps outside [−1, 1]²: that of the ray that meets
     /// it. `None` if no ray does, or none can be told.
@@ -44,9 +80,9 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
     fn vectors(&self) -> CameraVectors;
 }
 
-/// Four vectors in the world, in f64, that say everything about a camera once its kind is known.
+/// Vectors in the world and numbers, in f64, that say everything about a camera once its kind is known.
 ///
-/// What `right`, `up` and `forward` mean is for the camera's own two files to agree on.
+/// What `right`, `up`, `forward` and `numbers` mean is for the camera's own two files to agree on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CameraVectors {
@@ -58,13 +94,16 @@ pub struct CameraVectors {
     pub up: DVec3,
     /// Into the picture.
     pub forward: DVec3,
+    /// What else there is to say; zeros if nothing.
+    pub numbers: [f64; 3],
 }
 
 #[cfg(feature = "run-file")]
 impl CameraVectors {
     /// Vectors as [`Camera::vectors`] gives them, in the order of the fields, checked as far as every camera
     /// keeps to it.
-    pub(crate) fn checked([origin, right, up, forward]: [DVec3; 4]) -> Result<Self, CameraError> {
+    pub(crate) fn checked(rows: [DVec3; 5]) -> Result<Self, CameraError> {
+        let [origin, right, up, forward, numbers] = rows;
         pose::checked_point("the origin", origin)?;
         for (parameter, value) in
             [("length of right", right), ("length of up", up), ("length of forward", forward)]
@@ -75,7 +114,16 @@ impl CameraVectors {
                 return Err(CameraError::Length { parameter, value: length });
             }
         }
-        Ok(Self { origin, right, up, forward })
+        // They are lengths, or quotients of two.
+        const LARGEST: f64 = 2.0 * MAX_LENGTH * MAX_LENGTH;
+        let numbers = numbers.to_array();
+        match numbers.into_iter().find(|number| !(number.abs() <= LARGEST)) {
+            None => Ok(Self { origin, right, up, forward, numbers }),
+            Some(value) => {
+                let (parameter, low, high) = ("camera's number", -LARGEST, LARGEST);
+                Err(CameraError::Range { parameter, value, low, high })
+            }
+        }
     }
 }
 
@@ -88,6 +136,12 @@ macro_rules! camera_table {
             Pinhole, PinholeCamera, "pinhole", PinholeParameters;
             /// Every ray has the same direction; things keep their size.
             Orthographic, OrthographicCamera, "orthographic", OrthographicParameters;
+            /// Rays start anywhere on a lens; what is not in focus is blurred.
+            ThinLens, ThinLensCamera, "thin-lens", ThinLensParameters;
+            /// Rays go in all directions; longitude and latitude are the picture's two sides.
+            Panorama, PanoramaCamera, "panorama", PanoramaParameters;
+            /// Rays fill a cone, perhaps more than half of all directions; the picture is a disk.
+            Fisheye, FisheyeCamera, "fisheye", FisheyeParameters;
         }
     };
 }
@@ -124,6 +178,15 @@ macro_rules! define_kind {
 }
 camera_table!(define_kind);
 
+impl CameraKind {
+    /// Whether straight lines are straight in the picture, so that all of a box lies between its corners. The
+    /// rays may then be taken up at any plane along `forward` instead of at the camera; see `Camera` in
+    /// `shaders/records.wgsl`.
+    pub(crate) const fn is_linear(self) -> bool {
+        matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)
+    }
+}
+
 /// Refuses a length that kernels could not square.
 fn checked_length(parameter: &'static str, value: f64) -> Result<f64, CameraError> {
     if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
@@ -142,4 +205,13 @@ fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraErr
 
 fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
     checked_length("aspect ratio", aspect)
+}
+
+/// The separation of two eyes, and the distance at which they converge, which may be infinite.
+fn stereo_lengths(separation: f64, convergence: f64) -> Result<(f64, f64), CameraError> {
+    checked_length("eyes' `separation`", separation)?;
+    if convergence != f64::INFINITY {
+        checked_length("eyes' `convergence`", convergence)?;
+    }
+    Ok((separation, convergence))
 }

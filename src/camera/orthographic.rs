@@ -73,6 +73,7 @@ impl Camera for OrthographicCamera {
             right: basis.u() * self.half_extent.x,
             up: basis.v() * self.half_extent.y,
             forward: -basis.w(),
+            numbers: [0.0; 3],
         }
     }
 }

@@ -15,7 +15,7 @@ macro_rules! define_camera_parameters {
         }
 
         impl CameraParameters {
-            /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a
+            /// The camera, or of two eyes that in the middle, for a film of the given aspect ratio and, if it has to frame the scene, a
             /// box.
             pub(crate) fn camera(
                 &self,
@@ -32,6 +32,25 @@ macro_rules! define_camera_parameters {
     };
 }
 camera_table!(define_camera_parameters);
+
+impl CameraParameters {
+    /// Left and right eye, if there are two.
+    pub(crate) fn stereo_pair(
+        &self,
+        aspect: f64,
+        bounds: &Bounds,
+    ) -> Result<Option<[Box<dyn Camera>; 2]>, CameraError> {
+        Ok(match self {
+            Self::Pinhole(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
+            Self::Panorama(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
+            _ => None,
+        })
+    }
+}
+
+fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
+    pair.map(|camera| Box::new(camera) as Box<dyn Camera>)
+}
 
 impl Default for CameraParameters {
     fn default() -> Self {

@@ -2,25 +2,30 @@
 
 use glam::{DVec2, DVec3};
 
+#[cfg(feature = "scene-file")]
+use super::StereoParameters;
 use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
-    checked_length, framing,
+    checked_length, framing, stereo_lengths,
 };
 use crate::bounds::Bounds;
 #[cfg(feature = "scene-file")]
 use crate::exact;
+use crate::math::MAX_LENGTH;
 use crate::ray::Ray;
 
 /// A pinhole camera.
 ///
 /// The ray of the relative location (x, y) starts at the eye and has the direction
-/// `x·u·hx + y·v·hy − distance·w`, where (hx, hy) is the half extent of the view plane and `distance`
-/// is how far the view plane is from the eye.
+/// `(x·hx + shift)·u + y·hy·v − distance·w`, where (hx, hy) is the half extent of the view plane, `distance`
+/// is how far the view plane is from the eye, and `shift`, which is zero but for one eye of two, how far its
+/// middle lies aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinholeCamera {
     pose: Pose,
     distance: f64,
     half_extent: DVec2,
+    shift: f64,
 }
 
 impl PinholeCamera {
@@ -40,6 +45,7 @@ impl PinholeCamera {
             pose,
             distance: checked_length("view-plane distance", distance)?,
             half_extent: checked_half_extent(half_extent)?,
+            shift: 0.0,
         })
     }
 
@@ -81,6 +87,44 @@ impl PinholeCamera {
         let pose = pose.framing(bounds, distance)?;
         Self::new(pose, 1.0, tangents)
     }
+
+    /// The cameras of the left and of the right eye, `separation` apart along u: both look along −w, with
+    /// view planes that are shifted so that all that lies `convergence` along −w before them is at the same
+    /// place in both pictures, and seems to lie in the screen. An infinite `convergence` shifts nothing.
+    ///
+    /// Asymmetric frusta, as P. Bourke, *Calculating stereo pairs* (1999), has them: turning the cameras
+    /// inwards instead would also move things up and down.
+    ///
+    /// # Errors
+    /// If a length is out of range.
+    pub fn stereo_pair(&self, separation: f64, convergence: f64) -> Result<[Self; 2], CameraError> {
+        let (separation, convergence) = stereo_lengths(separation, convergence)?;
+        let eye = |aside: f64| {
+            let shift = self.shift - aside * (self.distance / convergence);
+            if !(shift.abs() <= MAX_LENGTH) {
+                let (parameter, low, high) = ("shift of the view plane", -MAX_LENGTH, MAX_LENGTH);
+                return Err(CameraError::Range { parameter, value: shift, low, high });
+            }
+            Ok(Self { pose: self.pose.moved(aside * self.pose.basis().u())?, shift, ..*self })
+        };
+        Ok([eye(-0.5 * separation)?, eye(0.5 * separation)?])
+    }
+
+    pub(super) fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// The same rays, by a view plane at another distance.
+    pub(super) fn with_distance(&self, distance: f64) -> Result<Self, CameraError> {
+        let scale = distance / self.distance;
+        let shift = self.shift * scale;
+        let camera = Self::new(self.pose, distance, self.half_extent * scale)?;
+        Ok(Self { shift, ..camera })
+    }
+
+    pub(super) fn half_extent(&self) -> DVec2 {
+        self.half_extent
+    }
 }
 
 /// The half extent of the view plane at distance 1.
@@ -100,6 +144,7 @@ impl Camera for PinholeCamera {
     fn ray_in_world(&self, location: DVec2) -> Ray {
         let basis = self.pose.basis();
         let toward = location.x * basis.u() * self.half_extent.x
+            + self.shift * basis.u()
             + location.y * basis.v() * self.half_extent.y
             - self.distance * basis.w();
         // At least `distance` long, so never zero.
@@ -112,7 +157,8 @@ impl Camera for PinholeCamera {
         let depth = -toward.dot(basis.w());
         // From the eye, or behind it, there is no ray.
         let aside = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
-        let location = aside * (self.distance / depth) / self.half_extent;
+        let in_plane = aside * (self.distance / depth) - DVec2::new(self.shift, 0.0);
+        let location = in_plane / self.half_extent;
         (depth > 0.0 && location.is_finite()).then_some(location)
     }
 
@@ -122,7 +168,8 @@ impl Camera for PinholeCamera {
             origin: self.pose.origin(),
             right: basis.u() * self.half_extent.x,
             up: basis.v() * self.half_extent.y,
-            forward: -self.distance * basis.w(),
+            forward: self.shift * basis.u() - self.distance * basis.w(),
+            numbers: [0.0; 3],
         }
     }
 }
@@ -151,6 +198,8 @@ pub struct PinholeParameters {
     pub half_extent: Option<[f64; 2]>,
     /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
     pub vertical_fov: Option<f64>,
+    /// Two eyes instead of one.
+    pub stereo: Option<StereoParameters>,
 }
 
 #[cfg(feature = "scene-file")]
@@ -164,13 +213,15 @@ impl Default for PinholeParameters {
             distance: None,
             half_extent: None,
             vertical_fov: None,
+            stereo: None,
         }
     }
 }
 
 #[cfg(feature = "scene-file")]
 impl PinholeParameters {
-    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box. Of two eyes,
+    /// that in the middle.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.
@@ -200,5 +251,19 @@ impl PinholeParameters {
                 PinholeCamera::framing(bounds, pose, fov, aspect)
             }
         }
+    }
+    /// Left and right eye, if there are two.
+    ///
+    /// # Errors
+    /// As [`PinholeParameters::camera`].
+    pub fn stereo_pair(
+        &self,
+        aspect: f64,
+        bounds: &Bounds,
+    ) -> Result<Option<[PinholeCamera; 2]>, CameraError> {
+        let pair = |stereo: StereoParameters| {
+            self.camera(aspect, bounds)?.stereo_pair(stereo.separation, stereo.convergence)
+        };
+        self.stereo.map(pair).transpose()
     }
 }

@@ -56,6 +56,18 @@ pub enum CameraError {
         /// The value as given.
         value: f64,
     },
+    /// A number is NaN or out of its range.
+    #[error("the {parameter} is {value:?}; it must lie between {low:?} and {high:?}")]
+    Range {
+        /// Which parameter.
+        parameter: &'static str,
+        /// The value as given.
+        value: f64,
+        /// The least that it may be.
+        low: f64,
+        /// The most.
+        high: f64,
+    },
     /// A field of view is not an angle between 0 and π.
     #[error("the vertical field of view is {} degrees; it must lie between 0 and 180", radians.to_degrees())]
     FieldOfView {
@@ -129,6 +141,13 @@ impl Pose {
     pub(super) fn framing(self, bounds: &Bounds, distance: f64) -> Result<Self, CameraError> {
         let origin = bounds.center() + self.basis.w() * distance;
         checked_point("the eye", origin).map_err(|_| CameraError::Framing { bounds: *bounds })?;
+        Ok(Self { origin, ..self })
+    }
+
+    /// The same orientation elsewhere.
+    pub(super) fn moved(self, by: DVec3) -> Result<Self, CameraError> {
+        let origin = self.origin + by;
+        checked_point("the eye", origin)?;
         Ok(Self { origin, ..self })
     }
 

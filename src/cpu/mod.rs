@@ -40,8 +40,9 @@ pub fn render(
         for_each_row(rows, |j, row| {
             for i in 0..film.width() {
                 let (column, line) = (f64::from(i) + 0.5, (start + j) as f64 + 0.5);
-                let ray = camera.ray_in_world(film.relative_location(column, line));
-                let hit = trace(scene, &ray);
+                let location = film.relative_location(column, line);
+                let ray = camera.ray_in_world(location);
+                let hit = camera.sees(location).then(|| trace(scene, &ray)).flatten();
                 row.set(i as usize, &shade(scene, settings, &ray, hit.as_ref()));
             }
         });

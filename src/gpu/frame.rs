@@ -218,7 +218,7 @@ impl Frame {
         tile: Tile,
         settings: &Settings,
     ) {
-        let (vectors, space) = (camera.vectors(), scene.space());
+        let (vectors, space) = ((camera.kind(), &camera.vectors()), scene.space());
         let seen = Seen::of(camera, space, film);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
         let limit = self.iteration_limit;
@@ -226,7 +226,7 @@ impl Frame {
             .iter()
             .map(|band| {
                 let traced = seen.groups_of(*band);
-                records::Frame::new(&vectors, space, film, *band, traced, settings, limit)
+                records::Frame::new(vectors, space, film, *band, traced, settings, limit)
             })
             .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];

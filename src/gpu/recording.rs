@@ -31,8 +31,8 @@ fn new_recording(
     settings: &Settings,
 ) -> Result<Recording, GpuError> {
     let vectors = camera.vectors();
-    let records::Camera { origin, advance, right, up, forward, .. } =
-        records::Camera::new(&vectors, space);
+    let records::Camera { origin, advance, right, up, forward, first, second, third } =
+        records::Camera::new(camera.kind(), &vectors, space);
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
     Ok(Recording {
@@ -43,6 +43,7 @@ fn new_recording(
             right,
             up,
             forward,
+            numbers: [first, second, third],
             scene_min: space.min.to_array(),
             scene_max: space.max.to_array(),
         },

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::tiles::{Groups, Tile};
 use crate::bounds::Bounds;
-use crate::camera::CameraVectors;
+use crate::camera::{CameraKind, CameraVectors};
 use crate::film::{Film, YAxis};
 use crate::settings::{Settings, Shading};
 
@@ -15,11 +15,11 @@ pub(super) struct Camera {
     pub(super) origin: [f32; 3],
     pub(super) advance: f32,
     pub(super) right: [f32; 3],
-    _pad1: u32,
+    pub(super) first: f32,
     pub(super) up: [f32; 3],
-    _pad2: u32,
+    pub(super) second: f32,
     pub(super) forward: [f32; 3],
-    _pad3: u32,
+    pub(super) third: f32,
 }
 
 #[repr(C)]
@@ -87,33 +87,38 @@ pub(super) type Color = [f32; 4];
 pub(super) use crate::verify::NO_HIT;
 
 impl Camera {
-    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box,
-    /// then narrows.
-    pub(super) fn new(vectors: &CameraVectors, scene: &SceneSpace) -> Self {
+    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box if
+    /// its rays can start there, then narrows.
+    pub(super) fn new(kind: CameraKind, vectors: &CameraVectors, scene: &SceneSpace) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
-        // How many times `forward` it is to the plane of the box's nearest corner.
+        // How many times `forward` it is to the plane across the view of the box's nearest corner.
+        let across = vectors.right.cross(vectors.up);
         let nearest = scene
             .corners()
-            .map(|corner| (corner - origin).dot(forward) / forward.length_squared())
+            .map(|corner| (corner - origin).dot(across) / forward.dot(across))
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        let advance = f64::from(nearest.max(0.0) as f32);
+        let nearest = if kind.is_linear() { nearest.max(0.0) } else { 0.0 };
+        let advance = f64::from(nearest as f32);
+        let [first, second, third] = vectors.numbers.map(|number| number as f32);
         Self {
             origin: narrow(origin + advance * forward),
             advance: advance as f32,
             right: narrow(vectors.right),
             up: narrow(vectors.up),
             forward: narrow(forward),
-            ..Self::zeroed()
+            first,
+            second,
+            third,
         }
     }
 }
 
 impl Frame {
     pub(super) fn new(
-        vectors: &CameraVectors,
+        (kind, vectors): (CameraKind, &CameraVectors),
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
@@ -122,7 +127,7 @@ impl Frame {
         iteration_limit: u32,
     ) -> Self {
         Self {
-            camera: Camera::new(vectors, scene),
+            camera: Camera::new(kind, vectors, scene),
             scene_min: scene.min.to_array(),
             scene_max: scene.max.to_array(),
             iteration_limit,
@@ -211,7 +216,7 @@ mod tests {
     #[test]
     fn records_are_the_same_in_rust_and_wgsl() {
         let records = [
-            layout!(Camera { origin, advance, right, up, forward }),
+            layout!(Camera { origin, advance, right, first, up, second, forward, third }),
             layout!(Frame {
                 camera,
                 background,
@@ -311,13 +316,15 @@ mod tests {
             right: DVec3::X,
             up: DVec3::Y,
             forward: DVec3::NEG_Z,
+            numbers: [0.0; 3],
         };
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let settings = Settings::default().with_shading(shading);
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
+            let camera = (CameraKind::Pinhole, &vectors);
             let frame =
-                Frame::new(&vectors, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
+                Frame::new(camera, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }

@@ -20,13 +20,18 @@ const PIXELS_AROUND: f64 = 2.0;
 impl Seen {
     /// The rectangle around the box's eight corners; all of the film, if a corner is not before the camera.
     ///
-    /// A camera maps straight lines to straight lines, so the box lies within its corners.
+    /// Where straight lines are straight in the picture, and rays go through one point, the box lies within its
+    /// corners; of other cameras it is all of the film.
     pub(super) fn of(camera: &dyn Camera, space: &SceneSpace, film: &Film) -> Self {
         let size = [f64::from(film.width()), f64::from(film.height())];
+        let all = Self { first: [0.0; 2], end: size };
+        if !camera.kind().is_linear() || camera.has_lens() {
+            return all;
+        }
         let mut seen = Self { first: size, end: [0.0; 2] };
         for corner in space.corners() {
             let Some(location) = camera.location_of(space.origin + corner) else {
-                return Self { first: [0.0; 2], end: size };
+                return all;
             };
             let down = match film.y_axis() {
                 YAxis::Up => -location.y,

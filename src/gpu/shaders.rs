@@ -86,7 +86,7 @@ pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Tu
 }
 
 fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part> {
-    let mut parts = common_parts(camera).to_vec();
+    let mut parts = common_parts(camera);
     parts.extend([part!("schedule.wgsl"), part!("brick.wgsl")]);
     parts.push(match turn {
         Turn::First => part!("first_brick.wgsl"),
@@ -119,7 +119,7 @@ fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part>
 
 /// Turns hits into colour and, if wanted, data layers.
 pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: bool) -> Kernel {
-    let mut parts = common_parts(camera).to_vec();
+    let mut parts = common_parts(camera);
     parts.extend([
         part!("shade.wgsl"),
         part!("shading.wgsl"),
@@ -150,13 +150,15 @@ fn list_part(layout: ListLayout) -> Part {
     }
 }
 
-fn common_parts(camera: CameraKind) -> [Part; 8] {
-    [
+fn common_parts(camera: CameraKind) -> Vec<Part> {
+    vec![
         part!("records.wgsl"),
         part!("frame.wgsl"),
         part!("fence.wgsl"),
         part!("film.wgsl"),
         part!("ray.wgsl"),
+        part!("trigonometry.wgsl"),
+        part!("disk.wgsl"),
         camera_part(camera),
         part!("enter.wgsl"),
         part!("sphere.wgsl"),

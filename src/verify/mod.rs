@@ -43,6 +43,7 @@ mod sphere;
 mod upload;
 mod violation;
 
+pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};

@@ -45,6 +45,8 @@ pub struct UploadedView {
     pub up: [f32; 3],
     /// See [`CameraVectors::forward`].
     pub forward: [f32; 3],
+    /// See [`CameraVectors::numbers`].
+    pub numbers: [f32; 3],
     /// The corner of the box that rays are moved to, with the smallest coordinates.
     pub scene_min: [f32; 3],
     /// The opposite corner.

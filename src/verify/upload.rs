@@ -90,16 +90,25 @@ pub(super) fn check(
             return Err(UploadError::Vector { name, found, expected });
         }
     }
+    let asked = vectors.numbers.map(|number| number as f32);
+    // By value: a zero has no sign.
+    if view.numbers != asked {
+        let (name, found, expected) = ("of numbers", view.numbers, asked);
+        return Err(UploadError::Vector { name, found, expected });
+    }
     let (low, high) = (wide(view.scene_min), wide(view.scene_max));
+    let across = vectors.right.cross(vectors.up);
     let nearest = Bounds::between(low, high)
         .corners()
-        .map(|corner| (corner - origin).dot(vectors.forward) / vectors.forward.length_squared())
+        .map(|corner| (corner - origin).dot(across) / vectors.forward.dot(across))
         .into_iter()
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
+    let nearest = if recording.camera.kind.is_linear() { nearest } else { 0.0 };
     // A rounding to f32, and those of f64 where the box lies far from the camera.
-    let far = f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length()))
-        / vectors.forward.length();
+    let far =
+        f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()
+            / vectors.forward.dot(across).abs();
     if !Interval::around(nearest, U * nearest + far).contains(advance) {
         return Err(UploadError::Advance { advance: view.advance, nearest });
     }

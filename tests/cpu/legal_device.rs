@@ -7,6 +7,8 @@ use pinhole::image::{NO_ID, Pixel};
 use pinhole::verify::{NO_HIT, Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
+use crate::legal_camera::LegalRay;
+
 /// How it rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Habit {
@@ -27,7 +29,7 @@ pub(crate) struct LegalDevice {
 
 impl LegalDevice {
     /// One of the neighbours of a number, or the number itself if there is such an f32.
-    fn round(&mut self, exact: f64) -> f32 {
+    pub(crate) fn round(&mut self, exact: f64) -> f32 {
         let nearest = exact as f32;
         let (down, up) = match f64::from(nearest).total_cmp(&exact) {
             std::cmp::Ordering::Equal => (nearest, nearest),
@@ -54,7 +56,7 @@ impl LegalDevice {
     }
 
     /// Off by up to so many ULP.
-    fn off(&mut self, exact: f64, ulps: f64) -> f32 {
+    pub(crate) fn off(&mut self, exact: f64, ulps: f64) -> f32 {
         let rounded = self.round(exact);
         if self.habit == Habit::Nearest || rounded == 0.0 {
             return rounded;
@@ -70,16 +72,16 @@ impl LegalDevice {
         off as f32
     }
 
-    fn add(&mut self, a: f32, b: f32) -> f32 {
+    pub(crate) fn add(&mut self, a: f32, b: f32) -> f32 {
         self.round(f64::from(a) + f64::from(b))
     }
 
-    fn mul(&mut self, a: f32, b: f32) -> f32 {
+    pub(crate) fn mul(&mut self, a: f32, b: f32) -> f32 {
         self.round(f64::from(a) * f64::from(b))
     }
 
     /// a b + c, perhaps fused.
-    fn mul_add(&mut self, a: f32, b: f32, c: f32) -> f32 {
+    pub(crate) fn mul_add(&mut self, a: f32, b: f32, c: f32) -> f32 {
         if self.habit == Habit::Random && self.random.bool() {
             self.round(f64::from(a) * f64::from(b) + f64::from(c))
         } else {
@@ -88,16 +90,16 @@ impl LegalDevice {
         }
     }
 
-    fn divide(&mut self, a: f32, b: f32) -> f32 {
+    pub(crate) fn divide(&mut self, a: f32, b: f32) -> f32 {
         self.off(f64::from(a) / f64::from(b), 2.5)
     }
 
-    fn sqrt(&mut self, a: f32) -> f32 {
+    pub(crate) fn sqrt(&mut self, a: f32) -> f32 {
         self.off(f64::from(a).sqrt(), 4.5)
     }
 
     /// A sum of products, in any order.
-    fn dot(&mut self, products: &mut [(f32, f32)]) -> f32 {
+    pub(crate) fn dot(&mut self, products: &mut [(f32, f32)]) -> f32 {
         if self.habit == Habit::Random {
             self.random.shuffle(products);
         }
@@ -148,7 +150,10 @@ struct Triangle {
 
 /// The kernels of a picture, one after the other.
 impl LegalDevice {
-    fn vector(&mut self, mut component: impl FnMut(&mut Self, usize) -> f32) -> [f32; 3] {
+    pub(crate) fn vector(
+        &mut self,
+        mut component: impl FnMut(&mut Self, usize) -> f32,
+    ) -> [f32; 3] {
         [0, 1, 2].map(|k| component(self, k))
     }
 
@@ -163,37 +168,6 @@ impl LegalDevice {
         [x, sign * along(self, pixel[1], film.height())]
     }
 
-    /// `camera_ray` of shaders/camera_*.wgsl: origin, direction, distance.
-    fn camera_ray(
-        &mut self,
-        kind: CameraKind,
-        view: &UploadedView,
-        [x, y]: [f32; 2],
-    ) -> ([f32; 3], [f32; 3], f32) {
-        let (right, up, forward) = (view.right, view.up, view.forward);
-        match kind {
-            CameraKind::Orthographic => {
-                let origin = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, view.origin[k])])
-                });
-                (origin, forward, view.advance)
-            }
-            _ => {
-                let aside = self.vector(|this, k| this.dot(&mut [(x, right[k]), (y, up[k])]));
-                let toward = self.vector(|this, k| {
-                    this.dot(&mut [(x, right[k]), (y, up[k]), (1.0, forward[k])])
-                });
-                let squared = self.dot(&mut toward.map(|x| (x, x)));
-                let length = self.sqrt(squared);
-                let inverse = self.divide(1.0, length);
-                let direction = self.vector(|this, k| this.mul(toward[k], inverse));
-                let origin =
-                    self.vector(|this, k| this.mul_add(view.advance, aside[k], view.origin[k]));
-                (origin, direction, self.mul(view.advance, length))
-            }
-        }
-    }
-
     /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
     fn ray(
         &mut self,
@@ -203,7 +177,8 @@ impl LegalDevice {
         pixel: [u32; 2],
     ) -> (TracedRay, bool) {
         let location = self.location(film, pixel);
-        let (origin, direction, distance) = self.camera_ray(kind, view, location);
+        let LegalRay { origin, direction, distance, is_seen } =
+            self.camera_ray(kind, view, location, [0.5; 2]);
         let (mut near, mut far) = (0.0_f32, f32::MAX);
         for k in 0..3 {
             let size = direction[k].abs().max(2_f32.powi(-40));
@@ -217,7 +192,7 @@ impl LegalDevice {
         }
         let origin = self.vector(|this, k| this.mul_add(near, direction[k], origin[k]));
         let distance = self.add(distance, near);
-        (TracedRay { origin, direction, distance }, near <= far)
+        (TracedRay { origin, direction, distance }, is_seen && near <= far)
     }
 
     /// `sphere_normal` of shaders/sphere.wgsl.

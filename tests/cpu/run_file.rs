@@ -30,6 +30,7 @@ fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
             right: vectors.right.as_vec3().to_array(),
             up: vectors.up.as_vec3().to_array(),
             forward: vectors.forward.as_vec3().to_array(),
+            numbers: vectors.numbers.map(|number| number as f32),
             scene_min: [-1e3; 3],
             scene_max: [1e3; 3],
         },
@@ -195,10 +196,10 @@ fn other_files_and_other_versions() {
         assert_eq!(run_file::read(other).unwrap_err(), RunFileError::NotRun);
     }
     let bytes = small();
-    let other = with_header(&bytes, "\"pinhole_run\":\"1\"", "\"pinhole_run\":\"2\"");
+    let other = with_header(&bytes, "\"pinhole_run\":\"2\"", "\"pinhole_run\":\"3\"");
     let error = run_file::read(&other).unwrap_err();
-    assert_eq!(error, RunFileError::Version { found: "2".to_owned() });
-    assert!(error.to_string().contains("version 2"), "{error}");
+    assert_eq!(error, RunFileError::Version { found: "3".to_owned() });
+    assert!(error.to_string().contains("of version 3"), "{error}");
     let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");
     assert_eq!(run_file::read(&foreign).unwrap_err(), RunFileError::NotRun);
 }
@@ -209,7 +210,7 @@ fn hostile_contents_with_a_right_digest() {
     for (from, to, words) in [
         ("\"hit_t\"", "\"hit_u\"", "the array `hit_t` is missing"),
         ("\"command\"", "\"commend\"", "the text `command` is missing"),
-        ("\"pinhole\"", "\"fisheye\"", "there is no camera `fisheye`"),
+        ("\"pinhole\"", "\"fishbowl\"", "there is no camera `fishbowl`"),
         ("\"shading\":\"flat\"", "\"shading\":\"round\"", "there is no shading `round`"),
         ("[3,4]", "[4,3]", "the array `spheres` is F32 [4, 3]; it must be F32 [4, 4]"),
         ("[2,3,3]", "[3,2,3]", "it must be"),
@@ -230,7 +231,7 @@ fn hostile_contents_with_a_right_digest() {
             )
         })
         .collect();
-    let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"1\"}},{}}}", arrays.join(","));
+    let header = format!("{{\"__metadata__\":{{\"pinhole_run\":\"2\"}},{}}}", arrays.join(","));
     let length = (header.len() as u64).to_le_bytes();
     let error = run_file::read(&[&length, header.as_bytes()].concat()).unwrap_err();
     assert!(matches!(error, RunFileError::Truncated { .. }), "{error}");

@@ -1,7 +1,12 @@
 //! The checker by itself: it accuses no device that does what WGSL lets it do, and overlooks nothing that is
 //! planted in a recording.
 
-use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use std::f64::consts::TAU;
+
+use pinhole::camera::{
+    Camera, CameraKind, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
+    ThinLensCamera,
+};
 use pinhole::film::YAxis;
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
@@ -24,15 +29,17 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let origin = vectors.origin - scene.origin();
     let forward = vectors.forward;
     let [low, high] = [low, high].map(|corner| corner.as_vec3().as_dvec3());
+    let across = vectors.right.cross(vectors.up);
     let nearest = (0..8)
         .map(|i| {
             let side = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
             let corner = DVec3::new(side(0), side(1), side(2));
-            (corner - origin).dot(forward) / forward.length_squared()
+            (corner - origin).dot(across) / forward.dot(across)
         })
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
-    let advance = nearest as f32;
+    let is_moved = !matches!(camera.kind(), CameraKind::Panorama | CameraKind::Fisheye);
+    let advance = if is_moved { nearest as f32 } else { 0.0 };
     let narrow = |v: DVec3| v.as_vec3().to_array();
     Recording {
         camera: RequestedCamera { kind: camera.kind(), vectors },
@@ -42,6 +49,7 @@ fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
             right: narrow(vectors.right),
             up: narrow(vectors.up),
             forward: narrow(forward),
+            numbers: vectors.numbers.map(|number| number as f32),
             scene_min: narrow(low),
             scene_max: narrow(high),
         },
@@ -61,7 +69,7 @@ fn scene(spheres: &[[f32; 4]]) -> Scene {
     Scene::new(&spheres.iter().enumerate().map(colored).collect::<Vec<_>>()).unwrap()
 }
 
-/// From outside, from far away, from within, and in parallel.
+/// From outside, from far away, from within, and in parallel; by every camera.
 fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
@@ -69,11 +77,23 @@ fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
     let outside = Pose::looking_at(center + DVec3::new(1.2, 0.7, 1.9) * size, center, up).unwrap();
     let far = Pose::looking_at(center + DVec3::new(60.0, 30.0, -70.0) * size, center, up).unwrap();
     let within = Pose::looking_along(center, [0.3, -0.4, 0.8], up).unwrap();
+    let pinhole = PinholeCamera::with_vertical_fov(outside, 0.7, 1.3).unwrap();
+    let [left, _] = pinhole.stereo_pair(0.2 * size, 1.5 * size).unwrap();
+    let panorama = PanoramaCamera::new(within);
+    let [_, right_around] = panorama.stereo_pair(0.1 * size, 0.5 * size).unwrap();
     vec![
-        Box::new(PinholeCamera::with_vertical_fov(outside, 0.7, 1.3).unwrap()),
+        Box::new(left),
+        Box::new(ThinLensCamera::new(pinhole, 0.1 * size, 2.0 * size).unwrap()),
+        Box::new(panorama),
+        Box::new(right_around),
+        Box::new(PanoramaCamera::new(far)),
+        Box::new(FisheyeCamera::new(within, TAU, 41.0 / 33.0).unwrap()),
+        Box::new(FisheyeCamera::new(outside, 1.1, 0.8).unwrap()),
         Box::new(PinholeCamera::new(far, 100.0 * size, [0.6 * size, 0.5 * size]).unwrap()),
         Box::new(PinholeCamera::with_vertical_fov(within, 1.9, 1.3).unwrap()),
         Box::new(OrthographicCamera::new(outside, [0.9 * size, 0.7 * size]).unwrap()),
+        // Recordings to be spoilt are this one's.
+        Box::new(pinhole),
     ]
 }
 
@@ -170,7 +190,7 @@ fn the_smallest_lengths_are_not_accused() {
 /// A recording of a device that rounds to the nearest.
 fn legal_recording() -> (Scene, Recording) {
     let scene = scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()));
-    let camera = &cameras(&scene)[0];
+    let camera = cameras(&scene).pop().unwrap();
     let film = Film::new(61, 47).unwrap();
     let mut device = LegalDevice { habit: Habit::Nearest, random: fastrand::Rng::with_seed(0) };
     let recording = device.record(&scene, &given(&scene, camera.as_ref(), film));
@@ -264,6 +284,7 @@ fn one_bit_of_what_a_device_is_given_is_found() {
                 upload(|recording| moved(&mut recording.uploaded.right[axis])),
                 upload(|recording| moved(&mut recording.uploaded.up[axis])),
                 upload(|recording| moved(&mut recording.uploaded.forward[axis])),
+                upload(|recording| moved(&mut recording.uploaded.numbers[axis])),
             ] {
                 assert!(matches!(found, Some(UploadError::Vector { .. })), "{found:?}");
             }

@@ -24,6 +24,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
             right: narrow(vectors.right),
             up: narrow(vectors.up),
             forward: narrow(vectors.forward),
+            numbers: vectors.numbers.map(|number| number as f32),
             // No ray meets it.
             scene_min: [10.0; 3],
             scene_max: [11.0; 3],
@@ -163,9 +164,9 @@ fn runs_that_are_damaged() {
     let whole = folder.read("run");
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"1\"").unwrap();
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"2\"").unwrap();
     // All of the length is text.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"1\""));
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"2\""));
     let mut other = whole.clone();
     other[version + 15] = b'7';
     for (name, contents, words) in [

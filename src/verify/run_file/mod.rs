@@ -5,13 +5,13 @@
 //!
 //! | array | type, shape | |
 //! |---|---|---|
-//! | `camera` | f64 (4, 3) | origin, right, up and forward of [`CameraVectors`](crate::camera::CameraVectors) |
+//! | `camera` | f64 (5, 3) | origin, right, up, forward and numbers of [`CameraVectors`](crate::camera::CameraVectors) |
 //! | `scene_origin` | f64 (3,) | of the scene's frame in the world |
 //! | `spheres` | f32 (n, 4) | centre in the frame, and radius |
 //! | `palette` | f32 (m, 3) | linear colours |
 //! | `color_index` | u32 (n,) | places in the palette; absent if all spheres have the first colour |
 //! | `background` | f32 (3,) | linear colour |
-//! | `view` | f32 (6, 3) | origin, right, up, forward, `scene_min`, `scene_max` of [`UploadedView`](super::UploadedView) |
+//! | `view` | f32 (7, 3) | origin, right, up, forward, numbers, `scene_min`, `scene_max` of [`UploadedView`](super::UploadedView) |
 //! | `advance` | f32 (1,) | of the same |
 //! | `traced` | bool (H, W) | whether there is a ray; if not, its numbers are zero |
 //! | `ray_origin`, `ray_direction` | f32 (H, W, 3) | of [`TracedRay`](super::TracedRay) |
@@ -47,7 +47,7 @@ pub use read::read;
 pub use write::write;
 
 /// The version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: &str = "1";
+pub const VERSION: &str = "2";
 
 /// What a run file holds.
 #[derive(Clone, Debug)]

@@ -48,7 +48,8 @@ fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
 fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     let film = film(file)?;
     let shape = [film.height() as usize, film.width() as usize];
-    let [origin, right, up, forward, scene_min, scene_max] = file.fixed::<f32, 3, 6>("view")?;
+    let [origin, right, up, forward, numbers, scene_min, scene_max] =
+        file.fixed::<f32, 3, 7>("view")?;
     let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
     let [background] = file.fixed::<f32, 3, 1>("background")?;
     let settings = Settings::default()
@@ -64,7 +65,16 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     .ok_or_else(|| contradiction("the layers are of different sizes"))?;
     Ok(Recording {
         camera: camera(file)?,
-        uploaded: UploadedView { origin, advance, right, up, forward, scene_min, scene_max },
+        uploaded: UploadedView {
+            origin,
+            advance,
+            right,
+            up,
+            forward,
+            numbers,
+            scene_min,
+            scene_max,
+        },
         film,
         settings,
         pixels: pixels(file, &shape)?,
@@ -83,7 +93,7 @@ fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
 }
 
 fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
-    let vectors = CameraVectors::checked(file.fixed::<f64, 3, 4>("camera")?.map(DVec3::from))
+    let vectors = CameraVectors::checked(file.fixed::<f64, 3, 5>("camera")?.map(DVec3::from))
         .map_err(|error| contradiction(format!("the camera: {error}")))?;
     Ok(RequestedCamera { kind: named(file, "camera", CameraKind::ALL, CameraKind::name)?, vectors })
 }

@@ -45,12 +45,14 @@ pub fn write(
     texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
 
     let vectors = &camera.vectors;
-    let camera = [vectors.origin, vectors.right, vectors.up, vectors.forward];
+    let numbers = vectors.numbers.into();
+    let camera = [vectors.origin, vectors.right, vectors.up, vectors.forward, numbers];
     let view = [
         uploaded.origin,
         uploaded.right,
         uploaded.up,
         uploaded.forward,
+        uploaded.numbers,
         uploaded.scene_min,
         uploaded.scene_max,
     ];
@@ -59,12 +61,12 @@ pub fn write(
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
     // The widest numbers first, so that all are aligned.
     let mut arrays = vec![
-        Array::new("camera", &[4], &camera, |vector| vector.to_array()),
+        Array::new("camera", &[5], &camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
         Array::spheres(scene),
         Array::new("palette", &[scene.palette().len()], scene.palette(), |c| c.to_array()),
         Array::new("background", &[], &background, |color| color.to_array()),
-        Array::new("view", &[6], &view, |vector| *vector),
+        Array::new("view", &[7], &view, |vector| *vector),
         Array::new("advance", &[1], &advance, |advance| [*advance]),
         Array::new("ray_origin", &shape, pixels, move |pixel| ray(pixel).origin),
         Array::new("ray_direction", &shape, pixels, move |pixel| ray(pixel).direction),

@@ -1,117 +1,18 @@
-//! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/film.wgsl`,
-//! `camera_*.wgsl` and `enter.wgsl`.
+//! Where a camera's ray enters the scene's box, and how far a device's may be from that. Twin of
+//! `shaders/enter.wgsl`.
 
 use glam::DVec3;
 
-use super::line::Line;
-use super::recording::{TracedRay, UploadedView};
-use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length, gamma};
-use super::sphere::Slack;
-use super::violation::ViolationKind;
-use crate::camera::CameraKind;
-use crate::film::Film;
-use crate::math::wide;
+use super::{CameraModel, CameraRay};
+use crate::verify::recording::TracedRay;
+use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
+use crate::verify::sphere::Slack;
+use crate::verify::violation::ViolationKind;
 
 /// As in `shaders/enter.wgsl`.
 const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The exact ray of a pixel, before it is moved to the scene's box, and how far a device's may be from it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CameraRay {
-    pub(super) line: Line,
-    /// From the camera's own origin of this ray to where the line starts.
-    distance: f64,
-    origin_error: DVec3,
-    direction_error: DVec3,
-    distance_error: f64,
-}
-
-/// The camera's numbers, wide.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CameraModel {
-    kind: CameraKind,
-    film: Film,
-    origin: DVec3,
-    advance: f64,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
-    scene_min: DVec3,
-    scene_max: DVec3,
-}
-
 impl CameraModel {
-    pub(super) fn new(kind: CameraKind, view: &UploadedView, film: &Film) -> Self {
-        Self {
-            kind,
-            film: *film,
-            origin: wide(view.origin),
-            advance: view.advance.into(),
-            right: wide(view.right),
-            up: wide(view.up),
-            forward: wide(view.forward),
-            scene_min: wide(view.scene_min),
-            scene_max: wide(view.scene_max),
-        }
-    }
-
-    /// The ray through the centre of a pixel.
-    pub(super) fn ray(&self, [i, j]: [u32; 2]) -> CameraRay {
-        let location = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
-        let aside = location.x * self.right + location.y * self.up;
-        // The sum's terms; the location is one quotient of exact numbers.
-        let terms = (location.x * self.right).abs() + (location.y * self.up).abs();
-        let flush = FLUSH * (4.0 + self.right.abs() + self.up.abs());
-        let location_error = (DIVIDE + U * DIVIDE) * terms + flush;
-        match self.kind {
-            CameraKind::Pinhole => self.pinhole(aside, terms, location_error),
-            CameraKind::Orthographic => self.orthographic(aside, terms, location_error),
-        }
-    }
-
-    /// Of `camera_pinhole.wgsl`.
-    fn pinhole(&self, aside: DVec3, terms: DVec3, location_error: DVec3) -> CameraRay {
-        let toward = aside + self.forward;
-        let toward_error =
-            location_error + gamma(3) * (terms + location_error + self.forward.abs()) + 4.0 * FLUSH;
-        let length = toward.length();
-        // No longer than the vector's change, and what the length itself adds.
-        let length_error = PAD * toward_error.length() + error_of_length(length);
-        let shortest = (length - length_error).max(f64::MIN_POSITIVE);
-        // One over the length, and a product.
-        let direction_error = (toward_error
-            + toward.abs() * (length_error / length)
-            + (toward.abs() + toward_error) * (DIVIDE + 2.0 * U))
-            / shortest
-            * PAD
-            + FLUSH;
-        let along = self.advance * aside;
-        let origin_error = self.advance.abs()
-            * (location_error + gamma(3) * (terms + location_error))
-            + gamma(2) * (self.advance.abs() * (terms + location_error) + self.origin.abs())
-            + 4.0 * FLUSH;
-        CameraRay {
-            line: Line::exact(self.origin + along, toward / length),
-            distance: self.advance * length,
-            origin_error: PAD * origin_error,
-            direction_error,
-            distance_error: PAD * (self.advance * (length_error * (1.0 + U) + U * length)) + FLUSH,
-        }
-    }
-
-    /// Of `camera_orthographic.wgsl`.
-    fn orthographic(&self, aside: DVec3, terms: DVec3, location_error: DVec3) -> CameraRay {
-        let origin_error =
-            location_error + gamma(3) * (terms + location_error + self.origin.abs()) + 4.0 * FLUSH;
-        CameraRay {
-            line: Line::exact(self.origin + aside, self.forward),
-            distance: self.advance,
-            origin_error: PAD * origin_error,
-            direction_error: DVec3::splat(FLUSH),
-            distance_error: FLUSH,
-        }
-    }
-
     /// Where a ray of this origin and direction enters and leaves the scene's box, for all origins within the
     /// error.
     fn slabs(&self, ray: &CameraRay, direction: DVec3) -> BoxCrossing {
@@ -150,21 +51,21 @@ struct BoxCrossing {
 
 /// What a ray of a device must be, given the direction that it had.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EnteredRay {
+pub(in crate::verify) struct EnteredRay {
     exact: CameraRay,
     direction_had: DVec3,
     /// Where it enters the box.
     enter: Interval,
     /// Of the direction, component by component.
-    pub(super) direction: [Interval; 3],
-    /// Whether the device may find that the ray meets the box, and that it does not.
-    pub(super) may_meet_box: bool,
-    pub(super) may_miss_box: bool,
+    pub(in crate::verify) direction: [Interval; 3],
+    /// Whether the device may find that there is a ray that meets the box, and that there is none.
+    pub(in crate::verify) may_meet_box: bool,
+    pub(in crate::verify) may_miss_box: bool,
 }
 
 impl CameraRay {
     /// For the direction that the device had; the exact one's, if it traced nothing.
-    pub(super) fn entered(&self, model: &CameraModel, direction: DVec3) -> EnteredRay {
+    pub(in crate::verify) fn entered(&self, model: &CameraModel, direction: DVec3) -> EnteredRay {
         let BoxCrossing { enter, leave } = model.slabs(self, direction);
         EnteredRay {
             exact: *self,
@@ -173,8 +74,8 @@ impl CameraRay {
             direction: [0, 1, 2].map(|axis| {
                 Interval::around(self.line.direction[axis], self.direction_error[axis])
             }),
-            may_meet_box: enter.low <= leave.high,
-            may_miss_box: enter.high > leave.low,
+            may_meet_box: self.may_be_seen && enter.low <= leave.high,
+            may_miss_box: self.may_be_unseen || enter.high > leave.low,
         }
     }
 }
@@ -182,7 +83,7 @@ impl CameraRay {
 impl EnteredRay {
     /// Judges where the device's ray starts. That point and its distance from the camera must agree on where the
     /// ray enters the box.
-    pub(super) fn check_start(&self, ray: &TracedRay) -> Result<(), ViolationKind> {
+    pub(in crate::verify) fn check_start(&self, ray: &TracedRay) -> Result<(), ViolationKind> {
         let mut enter = self.enter;
         for axis in 0..3 {
             let found = ray.origin[axis];
@@ -234,7 +135,7 @@ impl EnteredRay {
     }
 
     /// By how much the ray of another kernel may differ from this one's.
-    pub(super) fn slack(&self) -> Slack {
+    pub(in crate::verify) fn slack(&self) -> Slack {
         let turned = self.exact.direction_error.length();
         let moved = self.exact.origin_error.length();
         let rounded = DVec3::from([0, 1, 2].map(|axis| self.origin_error(axis))).length();

@@ -1,0 +1,142 @@
+//! The camera whose picture is a disk: the distance from the middle is the angle from the view.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+
+#[cfg(feature = "scene-file")]
+use super::framing;
+use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect};
+#[cfg(feature = "scene-file")]
+use crate::bounds::Bounds;
+#[cfg(feature = "scene-file")]
+use crate::exact;
+use crate::ray::Ray;
+
+/// An equidistant fisheye camera.
+///
+/// The picture is the largest disk on the film: its diameter is the film's shorter side. A location at the part r of
+/// its radius has a ray at the angle r·angle/2 from the view, towards the side on which it lies. Outside of the disk
+/// there are no rays.
+///
+/// It is for the middle of things: f32 no longer tells where a ray meets a scene from beyond some ten times its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FisheyeCamera {
+    pose: Pose,
+    half_angle: f64,
+    /// Of the film's half sides, in radii of the disk.
+    scale: DVec2,
+}
+
+impl FisheyeCamera {
+    /// The whole angle where none is given: 180 degrees.
+    pub const DEFAULT_ANGLE_RADIANS: f64 = std::f64::consts::PI;
+
+    /// A camera with a whole angle, on a film of the given aspect ratio (width over height).
+    ///
+    /// # Errors
+    /// If the angle is not greater than 0 and at most 2π, or the aspect ratio is not greater than zero.
+    pub fn new(pose: Pose, angle_radians: f64, aspect: f64) -> Result<Self, CameraError> {
+        if !(angle_radians > 0.0 && angle_radians <= TAU) {
+            let (parameter, value) = ("`angle` in degrees", angle_radians.to_degrees());
+            return Err(CameraError::Range { parameter, value, low: 0.0, high: 360.0 });
+        }
+        let aspect = checked_aspect(aspect)?;
+        let scale = DVec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0));
+        Ok(Self { pose, half_angle: 0.5 * angle_radians, scale })
+    }
+}
+
+impl Camera for FisheyeCamera {
+    fn kind(&self) -> CameraKind {
+        CameraKind::Fisheye
+    }
+
+    /// Outside of the disk, that of its edge.
+    fn ray_in_world(&self, location: DVec2) -> Ray {
+        let basis = self.pose.basis();
+        let spot = location * self.scale;
+        let side = spot.normalize_or_zero();
+        let (sin, cos) = (self.half_angle * spot.length().min(1.0)).sin_cos();
+        let toward = sin * (side.x * basis.u() + side.y * basis.v()) - cos * basis.w();
+        Ray { origin: self.pose.origin(), direction: toward / toward.length() }
+    }
+
+    fn sees(&self, location: DVec2) -> bool {
+        (location * self.scale).length() <= 1.0
+    }
+
+    fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
+        let basis = self.pose.basis();
+        let toward = point_in_world - self.pose.origin();
+        let across = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
+        let ahead = -toward.dot(basis.w());
+        let r = across.length().atan2(ahead) / self.half_angle;
+        // Exactly behind, every side is as right as any other; at the eye there is no direction.
+        let is_told = ahead > 0.0 || across != DVec2::ZERO;
+        (is_told && r <= 1.0).then(|| across.normalize_or_zero() * r / self.scale)
+    }
+
+    /// `right`, `up` and `forward` are unit vectors. The numbers are the film's half sides in radii of the disk, and
+    /// half of the angle in half turns.
+    fn vectors(&self) -> CameraVectors {
+        let basis = self.pose.basis();
+        CameraVectors {
+            origin: self.pose.origin(),
+            right: basis.u(),
+            up: basis.v(),
+            forward: -basis.w(),
+            numbers: [self.scale.x, self.scale.y, self.half_angle / std::f64::consts::PI],
+        }
+    }
+}
+
+/// The table `[camera.fisheye]` of a scene file.
+#[cfg(feature = "scene-file")]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FisheyeParameters {
+    /// Where the camera is; without it, the camera frames the scene.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub eye: Option<[f64; 3]>,
+    /// The point it looks at.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub look_at: Option<[f64; 3]>,
+    /// The direction it looks in, instead of `look_at`.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub direction: Option<[f64; 3]>,
+    /// Which way is up.
+    #[serde(deserialize_with = "exact::array")]
+    pub up: [f64; 3],
+    /// The whole angle that the disk spans, in degrees.
+    pub angle: Option<f64>,
+}
+
+#[cfg(feature = "scene-file")]
+impl Default for FisheyeParameters {
+    fn default() -> Self {
+        Self { eye: None, look_at: None, direction: None, up: [0.0, 1.0, 0.0], angle: None }
+    }
+}
+
+#[cfg(feature = "scene-file")]
+impl FisheyeParameters {
+    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    ///
+    /// # Errors
+    /// If a value is out of range, or values exclude each other.
+    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<FisheyeCamera, CameraError> {
+        use super::pose::{Placement, PoseParameters};
+
+        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
+        let angle = self.angle.map_or(FisheyeCamera::DEFAULT_ANGLE_RADIANS, f64::to_radians);
+        match (PoseParameters { eye, look_at, direction, up }).placement()? {
+            Placement::Fixed(pose) => FisheyeCamera::new(pose, angle, aspect),
+            Placement::Framed(pose) => {
+                let camera = FisheyeCamera::new(pose, angle, aspect)?;
+                let pose = pose.framing(bounds, framing::round_distance(bounds, 0.5 * angle))?;
+                Ok(FisheyeCamera { pose, ..camera })
+            }
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The camera with a lens: what is not in focus is blurred.
+
+use glam::{DVec2, DVec3};
+
+#[cfg(feature = "scene-file")]
+use super::PinholeParameters;
+use super::pose::checked_point;
+use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length};
+#[cfg(feature = "scene-file")]
+use crate::bounds::Bounds;
+use crate::disk::concentric_disk;
+#[cfg(feature = "scene-file")]
+use crate::exact;
+use crate::math::MIN_LENGTH;
+use crate::ray::Ray;
+
+/// A camera with a thin lens.
+///
+/// The rays of a relative location start on a disk around the eye, across the view, and all meet in the point in
+/// which the ray of the pinhole camera meets the plane of focus: the plane across the view that is `focus_distance`
+/// away. The lens bends no ray, so the ray through its centre is the pinhole camera's.
+///
+/// A point at the distance s from the lens, with the plane of focus at f, is blurred to a disk that, in the plane of
+/// focus, has the diameter 2·radius·|s − f|/s, the *circle of confusion* (M. Potmesil and I. Chakravarty, *Synthetic
+/// image generation with a lens and aperture camera model*, ACM Transactions on Graphics 1, 1982).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLensCamera {
+    /// Its view plane is the plane of focus.
+    pinhole: PinholeCamera,
+    aperture_radius: f64,
+}
+
+impl ThinLensCamera {
+    /// A pinhole camera with a lens in place of the hole; lengths are in scene units, the distance along the view.
+    ///
+    /// # Errors
+    /// If the distance is not a length greater than zero, or the radius is not a length up to the distance.
+    pub fn new(
+        pinhole: PinholeCamera,
+        aperture_radius: f64,
+        focus_distance: f64,
+    ) -> Result<Self, CameraError> {
+        let high = checked_length("`focus_distance`", focus_distance)?;
+        if !(MIN_LENGTH..=high).contains(&aperture_radius) {
+            let (parameter, value, low) = ("`aperture_radius`", aperture_radius, MIN_LENGTH);
+            return Err(CameraError::Range { parameter, value, low, high });
+        }
+        Ok(Self { pinhole: pinhole.with_distance(focus_distance)?, aperture_radius })
+    }
+
+    /// The same, with the plane of focus through a point.
+    ///
+    /// # Errors
+    /// As [`ThinLensCamera::new`], and if the point does not lie before the camera.
+    pub fn focused_on(
+        pinhole: PinholeCamera,
+        aperture_radius: f64,
+        point: impl Into<DVec3>,
+    ) -> Result<Self, CameraError> {
+        let point = point.into();
+        checked_point("`focus_on`", point)?;
+        let pose = pinhole.pose();
+        let depth = (pose.origin() - point).dot(pose.basis().w());
+        let distance = checked_length("distance to `focus_on` along the view", depth)?;
+        Self::new(pinhole, aperture_radius, distance)
+    }
+
+    /// The radius of the aperture of a lens: N = f/D is its f-number (ISO 517), f its focal length in scene units,
+    /// and D its diameter. The focal length says nothing else here: the field of view is the pinhole camera's.
+    ///
+    /// # Errors
+    /// If the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
+    pub fn aperture_radius(focal_length: f64, f_stop: f64) -> Result<f64, CameraError> {
+        Ok(0.5 * checked_length("`focal_length`", focal_length)?
+            / checked_length("`f_stop`", f_stop)?)
+    }
+}
+
+impl Camera for ThinLensCamera {
+    fn kind(&self) -> CameraKind {
+        CameraKind::ThinLens
+    }
+
+    fn ray_in_world(&self, location: DVec2) -> Ray {
+        self.pinhole.ray_in_world(location)
+    }
+
+    fn ray_through_lens(&self, location: DVec2, lens: DVec2) -> Ray {
+        let CameraVectors { origin, right, up, forward, .. } = self.pinhole.vectors();
+        let basis = self.pinhole.pose().basis();
+        let on_lens = self.aperture_radius * concentric_disk(lens);
+        let offset = on_lens.x * basis.u() + on_lens.y * basis.v();
+        // Along the view as long as the distance of the focus, so never zero.
+        let toward = location.x * right + location.y * up + forward - offset;
+        Ray { origin: origin + offset, direction: toward / toward.length() }
+    }
+
+    fn has_lens(&self) -> bool {
+        true
+    }
+
+    fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
+        self.pinhole.location_of(point_in_world)
+    }
+
+    /// As of the pinhole camera with the plane of focus as view plane. The first two numbers are the radius of the
+    /// lens in lengths of `right` and of `up`.
+    fn vectors(&self) -> CameraVectors {
+        let [first, second] = (self.aperture_radius / self.pinhole.half_extent()).to_array();
+        CameraVectors { numbers: [first, second, 0.0], ..self.pinhole.vectors() }
+    }
+}
+
+/// The table `[camera.thin-lens]` of a scene file.
+#[cfg(feature = "scene-file")]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ThinLensParameters {
+    /// The middle of the lens; without it, the camera frames the scene.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub eye: Option<[f64; 3]>,
+    /// The point it looks at.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub look_at: Option<[f64; 3]>,
+    /// The direction it looks in, instead of `look_at`.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub direction: Option<[f64; 3]>,
+    /// Which way is up.
+    #[serde(deserialize_with = "exact::array")]
+    pub up: [f64; 3],
+    /// How far the view plane is from the eye.
+    pub distance: Option<f64>,
+    /// Half width and half height of the view plane.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub half_extent: Option<[f64; 2]>,
+    /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
+    pub vertical_fov: Option<f64>,
+    /// Radius of the lens in scene units.
+    pub aperture_radius: Option<f64>,
+    /// Instead of `aperture_radius`, with `focal_length`: focal length over diameter.
+    pub f_stop: Option<f64>,
+    /// In scene units; it only makes `f_stop` a length.
+    pub focal_length: Option<f64>,
+    /// How far along the view things are sharp; without it, as far as `look_at` or the scene's middle.
+    pub focus_distance: Option<f64>,
+    /// A point that is sharp, instead of `focus_distance`.
+    #[serde(deserialize_with = "exact::optional_array")]
+    pub focus_on: Option<[f64; 3]>,
+}
+
+#[cfg(feature = "scene-file")]
+impl Default for ThinLensParameters {
+    fn default() -> Self {
+        let PinholeParameters { eye, look_at, direction, up, distance, half_extent, .. } =
+            PinholeParameters::default();
+        Self {
+            eye,
+            look_at,
+            direction,
+            up,
+            distance,
+            half_extent,
+            vertical_fov: None,
+            aperture_radius: None,
+            f_stop: None,
+            focal_length: None,
+            focus_distance: None,
+            focus_on: None,
+        }
+    }
+}
+
+#[cfg(feature = "scene-file")]
+impl ThinLensParameters {
+    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    ///
+    /// # Errors
+    /// If a value is out of range, or values exclude each other.
+    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<ThinLensCamera, CameraError> {
+        let &Self { eye, look_at, direction, up, distance, half_extent, vertical_fov, .. } = self;
+        let pinhole = PinholeParameters {
+            eye,
+            look_at,
+            direction,
+            up,
+            distance,
+            half_extent,
+            vertical_fov,
+            stereo: None,
+        }
+        .camera(aspect, bounds)?;
+        let radius = match (self.aperture_radius, self.f_stop, self.focal_length) {
+            (Some(radius), None, None) => radius,
+            (None, Some(f_stop), Some(length)) => ThinLensCamera::aperture_radius(length, f_stop)?,
+            (Some(_), _, _) => {
+                let message = "`aperture_radius` excludes `f_stop` and `focal_length`; keep one";
+                return Err(CameraError::Parameters { message });
+            }
+            (None, None, None) => {
+                let message =
+                    "a lens needs an `aperture_radius`, or an `f_stop` with a `focal_length`";
+                return Err(CameraError::Parameters { message });
+            }
+            (None, Some(_), None) | (None, None, Some(_)) => {
+                let message =
+                    "`f_stop` and `focal_length` need each other: together they are a length";
+                return Err(CameraError::Parameters { message });
+            }
+        };
+        match (self.focus_distance, self.focus_on, look_at, eye) {
+            (Some(_), Some(_), _, _) => Err(CameraError::Parameters {
+                message: "`focus_distance` and `focus_on` exclude each other; keep one",
+            }),
+            (Some(distance), None, _, _) => ThinLensCamera::new(pinhole, radius, distance),
+            (None, Some(point), _, _) | (None, None, Some(point), _) => {
+                ThinLensCamera::focused_on(pinhole, radius, point)
+            }
+            (None, None, None, None) => {
+                ThinLensCamera::focused_on(pinhole, radius, bounds.center())
+            }
+            (None, None, None, Some(_)) => Err(CameraError::Parameters {
+                message: "a `direction` says not how far things are sharp; give a `focus_distance` or `focus_on`",
+            }),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/film.wgsl` and
+//! `camera_*.wgsl`.
+
+mod entered;
+mod linear;
+mod round;
+mod trigonometry;
+
+use glam::{DVec2, DVec3};
+
+use super::line::Line;
+use super::recording::UploadedView;
+use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length};
+use crate::camera::CameraKind;
+use crate::film::Film;
+use crate::math::wide;
+
+pub(super) use entered::EnteredRay;
+
+/// The lens's centre, through which all rays of a recording go.
+const LENS_CENTER: DVec2 = DVec2::splat(0.5);
+
+/// The exact ray of a pixel, before it is moved to the scene's box, and how far a device's may be from it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CameraRay {
+    pub(super) line: Line,
+    /// From the camera's own origin of this ray to where the line starts.
+    distance: f64,
+    origin_error: DVec3,
+    direction_error: DVec3,
+    distance_error: f64,
+    /// Whether the device may find that there is a ray, and that there is none.
+    may_be_seen: bool,
+    may_be_unseen: bool,
+}
+
+/// Every ray that a conforming device may make of exactly these numbers, in the scene's frame, before it is moved
+/// to the scene's box: component by component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegalCameraRay {
+    /// Where it starts.
+    pub origin: [Interval; 3],
+    /// Of unit length, up to rounding.
+    pub direction: [Interval; 3],
+    /// How far the origin is from the camera.
+    pub distance: Interval,
+    /// Whether there may be a ray.
+    pub may_be_seen: bool,
+    /// Whether there may be none.
+    pub may_be_unseen: bool,
+}
+
+impl LegalCameraRay {
+    /// Of a relative location, and of a point of the lens in the unit square; see
+    /// [`Camera::ray_through_lens`](crate::camera::Camera::ray_through_lens).
+    #[must_use]
+    pub fn new(kind: CameraKind, view: &UploadedView, location: [f32; 2], lens: [f32; 2]) -> Self {
+        let exact = |point: [f32; 2]| DVec2::from(point.map(f64::from));
+        let location = Location { exact: exact(location), error: DVec2::ZERO };
+        let model = CameraModel::new(kind, view, &Film::default());
+        let ray = model.ray_through_lens(location, exact(lens));
+        let around = |exact: DVec3, error: DVec3| {
+            [0, 1, 2].map(|axis| Interval::around(exact[axis], error[axis]))
+        };
+        Self {
+            origin: around(ray.line.origin, ray.origin_error),
+            direction: around(ray.line.direction, ray.direction_error),
+            distance: Interval::around(ray.distance, ray.distance_error),
+            may_be_seen: ray.may_be_seen,
+            may_be_unseen: ray.may_be_unseen,
+        }
+    }
+}
+
+/// The camera's numbers, wide.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CameraModel {
+    kind: CameraKind,
+    film: Film,
+    origin: DVec3,
+    advance: f64,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    numbers: [f64; 3],
+    scene_min: DVec3,
+    scene_max: DVec3,
+}
+
+/// A relative location, exactly, and how far a device's may be from it.
+#[derive(Clone, Copy, Debug)]
+struct Location {
+    exact: DVec2,
+    error: DVec2,
+}
+
+impl CameraModel {
+    pub(super) fn new(kind: CameraKind, view: &UploadedView, film: &Film) -> Self {
+        Self {
+            kind,
+            film: *film,
+            origin: wide(view.origin),
+            advance: view.advance.into(),
+            right: wide(view.right),
+            up: wide(view.up),
+            forward: wide(view.forward),
+            numbers: view.numbers.map(f64::from),
+            scene_min: wide(view.scene_min),
+            scene_max: wide(view.scene_max),
+        }
+    }
+
+    /// The ray through the centres of a pixel and of the lens.
+    pub(super) fn ray(&self, [i, j]: [u32; 2]) -> CameraRay {
+        // One quotient of exact numbers.
+        let exact = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
+        let location = Location { exact, error: (DIVIDE + U * DIVIDE) * exact.abs() + FLUSH };
+        self.ray_through_lens(location, LENS_CENTER)
+    }
+
+    /// The ray of a location through a point of the lens, in the unit square.
+    fn ray_through_lens(&self, location: Location, lens: DVec2) -> CameraRay {
+        match self.kind {
+            CameraKind::Pinhole => self.pinhole(location),
+            CameraKind::Orthographic => self.orthographic(location),
+            CameraKind::ThinLens => self.thin_lens(location, lens),
+            CameraKind::Panorama => self.panorama(location),
+            CameraKind::Fisheye => self.fisheye(location),
+        }
+    }
+}
+
+/// A vector that a device computed, exactly, and how far the device's may be from it.
+#[derive(Clone, Copy, Debug)]
+struct Computed {
+    exact: DVec3,
+    error: DVec3,
+}
+
+impl Computed {
+    /// As large as the device's may be, component by component.
+    fn size(&self) -> DVec3 {
+        self.exact.abs() + self.error
+    }
+}
+
+/// A vector that was divided by its length, as every camera does it.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    direction: DVec3,
+    direction_error: DVec3,
+    length: f64,
+    length_error: f64,
+}
+
+impl Unit {
+    fn of(toward: Computed) -> Self {
+        let Computed { exact, error } = toward;
+        let length = exact.length();
+        // No longer than the vector's change, and what the length itself adds.
+        let length_error = PAD * error.length() + error_of_length(length);
+        let shortest = (length - length_error).max(f64::MIN_POSITIVE);
+        // One over the length, and a product.
+        let direction_error =
+            (error + exact.abs() * (length_error / length) + toward.size() * (DIVIDE + 2.0 * U))
+                / shortest
+                * PAD
+                + FLUSH;
+        Self { direction: exact / length, direction_error, length, length_error }
+    }
+}

@@ -1,0 +1,98 @@
+//! Cameras whose rays go by angles. Twin of `shaders/camera_panorama.wgsl` and `camera_fisheye.wgsl`.
+
+use glam::{DVec2, DVec3};
+
+use super::trigonometry::SinCos;
+use super::{CameraModel, CameraRay, Computed, Location, Unit};
+use crate::verify::line::Line;
+use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, error_of_length, gamma};
+
+/// As in `shaders/camera_fisheye.wgsl`.
+const SMALLEST_SPOT: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// a p + b q of a device, where each factor may be off by its error.
+fn sum_of_products(
+    [(a, a_error), (b, b_error)]: [(f64, f64); 2],
+    p: Computed,
+    q: Computed,
+) -> Computed {
+    let product = |factor: f64, error: f64, v: Computed| {
+        let size = (factor.abs() + error) * v.size();
+        (factor.abs() * v.error + error * v.size(), size)
+    };
+    let ((p_error, p_size), (q_error, q_size)) = (product(a, a_error, p), product(b, b_error, q));
+    Computed {
+        exact: a * p.exact + b * q.exact,
+        error: PAD * (p_error + q_error + gamma(2) * (p_size + q_size)) + 4.0 * FLUSH,
+    }
+}
+
+fn given(exact: DVec3) -> Computed {
+    Computed { exact, error: DVec3::ZERO }
+}
+
+impl CameraModel {
+    pub(super) fn panorama(&self, Location { exact, error }: Location) -> CameraRay {
+        let [aside, straight, left] = self.numbers;
+        let longitude = SinCos::of_half_turns(exact.x, error.x);
+        let latitude = SinCos::of_half_turns(0.5 * exact.y, 0.5 * error.y);
+        let (right, up, forward) = (given(self.right), given(self.up), given(self.forward));
+        let SinCos { sin, cos, error, .. } = longitude;
+        let heading = sum_of_products([(sin, error), (cos, error)], right, forward);
+        let tangent = sum_of_products([(cos, error), (-sin, error)], right, forward);
+        let SinCos { sin, cos, error, .. } = latitude;
+        let ahead = sum_of_products([(cos, error), (sin, error)], heading, up);
+        let toward = sum_of_products([(straight, 0.0), (-left, 0.0)], ahead, tangent);
+        let mut start = sum_of_products([(1.0, 0.0), (aside, 0.0)], given(self.origin), tangent);
+        start.error += PAD * aside.abs() * longitude.turned;
+        ray(start, toward, longitude.turned + latitude.turned, [true, false])
+    }
+
+    pub(super) fn fisheye(&self, location: Location) -> CameraRay {
+        let [first, second, half_angle] = self.numbers;
+        let scale = DVec2::new(first, second);
+        let spot = location.exact * scale;
+        let spot_error = location.error * scale.abs();
+        let spot_error = PAD * (spot_error + U * (spot.abs() + spot_error)) + FLUSH;
+        let radius = spot.length();
+        let nonzero = radius.max(SMALLEST_SPOT);
+        let radius_error = PAD * spot_error.length() + error_of_length(nonzero);
+
+        let part = radius.min(1.0) * half_angle;
+        // Beyond the disk, all are on its edge.
+        let [least, most] = [radius - radius_error, radius + radius_error].map(|r| r.min(1.0));
+        let part_error = half_angle.abs() * (most - least);
+        let part_error = PAD * (part_error + U * (part.abs() + part_error)) + FLUSH;
+        let angle = SinCos::of_half_turns(part, part_error);
+
+        let side = spot / nonzero;
+        let least = (nonzero - radius_error).max(0.5 * SMALLEST_SPOT);
+        let side_error = (spot_error + side.abs() * radius_error) / least;
+        let side_error = PAD * (side_error + DIVIDE * (side.abs() + side_error)) + FLUSH;
+        let sides = [(side.x, side_error.x), (side.y, side_error.y)];
+        let aside = sum_of_products(sides, given(self.right), given(self.up));
+        let SinCos { sin, cos, error, turned } = angle;
+        let toward = sum_of_products([(sin, error), (cos, error)], aside, given(self.forward));
+        let may_be = [radius - radius_error <= 1.0, radius + radius_error > 1.0];
+        ray(given(self.origin), toward, turned, may_be)
+    }
+}
+
+/// A ray that starts at the camera, and may be turned by an angle besides.
+fn ray(
+    start: Computed,
+    toward: Computed,
+    turned: f64,
+    [may_be_seen, may_be_unseen]: [bool; 2],
+) -> CameraRay {
+    let Unit { direction, direction_error, .. } = Unit::of(toward);
+    CameraRay {
+        line: Line::exact(start.exact, direction),
+        distance: 0.0,
+        origin_error: start.error,
+        direction_error: direction_error + PAD * turned,
+        distance_error: 0.0,
+        may_be_seen,
+        may_be_unseen,
+    }
+}
