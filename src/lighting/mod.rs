@@ -13,6 +13,8 @@ use crate::color::LinearRgb;
 use crate::filter::PixelFilter;
 
 mod check;
+pub mod emitters;
+pub mod energy;
 mod ground;
 mod light;
 mod sky;
