@@ -232,6 +232,40 @@ impl Image {
         self.id.as_deref()
     }
 
+    /// Two images of the same height and layers in one, all layers alike.
+    ///
+    /// # Errors
+    /// If the memory cannot be reserved.
+    #[cfg(feature = "cli")]
+    pub(crate) fn side_by_side([left, right]: [&Self; 2]) -> Result<Self, ImageTooLarge> {
+        let layers = Layer::ALL.iter().filter(|layer| left.has(**layer) && right.has(**layer));
+        let layers = layers.fold(LayerSet::COLOR, |layers, layer| layers.with(*layer));
+        let (width, height) = (left.width + right.width, left.height.min(right.height));
+        let mut both = Self::new(width, height, layers)?;
+        let sides = [left.width as usize, right.width as usize];
+        joined(&mut both.color, [&left.color, &right.color], sides);
+        if let (Some(both), Some(a), Some(b)) = (&mut both.depth, &left.depth, &right.depth) {
+            joined(both, [a, b], sides);
+        }
+        if let (Some(both), Some(a), Some(b)) = (&mut both.normal, &left.normal, &right.normal) {
+            joined(both, [a, b], sides);
+        }
+        if let (Some(both), Some(a), Some(b)) = (&mut both.id, &left.id, &right.id) {
+            joined(both, [a, b], sides);
+        }
+        Ok(both)
+    }
+
+    #[cfg(feature = "cli")]
+    fn has(&self, layer: Layer) -> bool {
+        match layer {
+            Layer::Color => true,
+            Layer::Depth => self.depth.is_some(),
+            Layer::Normal => self.normal.is_some(),
+            Layer::Id => self.id.is_some(),
+        }
+    }
+
     /// Some of the rows, from top to bottom, each to be written on its own.
     pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let width = self.width as usize;
@@ -271,6 +305,16 @@ impl RowMut<'_> {
         if let Some(id) = &mut self.id {
             id[column] = pixel.id;
         }
+    }
+}
+
+/// Copies rows of the left and of the right into rows of both.
+#[cfg(feature = "cli")]
+fn joined<T: Copy>(both: &mut [T], [left, right]: [&[T]; 2], [a, b]: [usize; 2]) {
+    let rows = left.chunks(a).zip(right.chunks(b));
+    for (both, (left, right)) in both.chunks_mut(a + b).zip(rows) {
+        both[..a].copy_from_slice(left);
+        both[a..].copy_from_slice(right);
     }
 }
 

@@ -62,12 +62,7 @@ impl Outputs {
         if let Some((path, text)) = text {
             files.push((path, unnamed(path, text.as_bytes())?));
         }
-        if let Some(path) = &self.picture {
-            files.push((path, unnamed(path, &picture)?));
-        }
-        for (layer, path) in &self.layers {
-            files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
-        }
+        files.extend(self.files(image, &picture)?);
         name_all(files)?;
         if self.picture.is_none() {
             interrupt::words(
@@ -77,6 +72,56 @@ impl Outputs {
         }
         Ok(())
     }
+}
+
+impl Outputs {
+    /// Files that have no names yet.
+    fn files(&self, image: &Image, picture: &[u8]) -> Result<Vec<(&PathBuf, NamedTempFile)>> {
+        let mut files = Vec::new();
+        if let Some(path) = &self.picture {
+            files.push((path, unnamed(path, picture)?));
+        }
+        for (layer, path) in &self.layers {
+            files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
+        }
+        Ok(files)
+    }
+
+    /// Outputs for the left and for the right eye, beside those that were named.
+    pub(super) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
+        let Some(picture) = &self.picture else {
+            return Err(Failure::usage(
+                "--stereo two-files: standard output takes one picture; name a file",
+            ));
+        };
+        let outputs = ["left", "right"].map(|eye| Self {
+            picture: Some(with_eye(picture, eye)),
+            layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
+        });
+        let paths = || outputs.iter().flat_map(Self::paths);
+        paths().try_for_each(|path| check_place(path))?;
+        check_distinct(paths())?;
+        Ok(outputs)
+    }
+
+    /// As [`Outputs::write`], for both eyes.
+    pub(super) fn write_both(outputs: &[Self; 2], images: &[Image]) -> Result<()> {
+        progress::stage("writing");
+        let mut files = Vec::new();
+        for (outputs, image) in outputs.iter().zip(images) {
+            files.extend(outputs.files(image, &png::encode(image)?)?);
+        }
+        name_all(files)
+    }
+}
+
+/// NAME-left.png of NAME.png.
+fn with_eye(path: &Path, eye: &str) -> PathBuf {
+    let [stem, extension] = [path.file_stem(), path.extension()].map(Option::unwrap_or_default);
+    let mut name = stem.to_os_string();
+    name.push(format!("-{eye}."));
+    name.push(extension);
+    path.with_file_name(name)
 }
 
 /// Refuses one file for two outputs.

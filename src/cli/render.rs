@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 
-use super::args::RenderArgs;
+use super::args::{RenderArgs, Stereo};
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
@@ -17,6 +17,7 @@ use super::threads;
 use super::with_scene::with_scene;
 #[cfg(feature = "gpu")]
 use crate::accel::AccelChoice;
+use crate::camera::Camera;
 use crate::cpu;
 #[cfg(feature = "gpu")]
 use crate::gpu::Headless;
@@ -27,6 +28,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     device: Device,
+    stereo: Option<Stereo>,
 }
 
 impl Job {
@@ -35,6 +37,7 @@ impl Job {
             source: Source::new(&args.input)?,
             outputs: Outputs::new(&args.output, &args.layers)?,
             device: Device::new(&args.device, args.accel.accel)?,
+            stereo: args.stereo,
         })
     }
 }
@@ -49,52 +52,133 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         tell(format_args!("note: {note}"));
     }
     let layers = job.outputs.layers().fold(LayerSet::COLOR, LayerSet::with);
-    let image = render(&input, layers, &opened)?;
-    job.outputs.write(&image, None)?;
-    Ok(())
+    let views = Views::of(&input);
+    if job.stereo.is_some() && views.count() == 1 {
+        return Err(Failure::usage(
+            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+        ));
+    }
+    if job.stereo == Some(Stereo::TwoFiles) {
+        let outputs = job.outputs.of_eyes()?;
+        outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
+        let images = render_views(&input, views, layers, &opened)?;
+        return Ok(Outputs::write_both(&outputs, images.as_slice())?);
+    }
+    let image = match render_views(&input, views, layers, &opened)? {
+        Views::One(image) => image,
+        Views::Two([left, right]) => {
+            Image::side_by_side([&left, &right]).context("both eyes in one picture")?
+        }
+    };
+    Ok(job.outputs.write(&image, None)?)
 }
 
-/// Renders on the device, and says so if that is not what the user would expect.
-pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
-    match opened {
-        Opened::Cpu => on_cpu(input, layers),
-        #[cfg(feature = "gpu")]
-        Opened::CpuInstead => {
-            memory::check(&input.film, &input.size_from, layers)?;
-            tell(
-                "note: no Vulkan, Metal or DX12 adapter was found; \
-                 rendering on the CPU reference, which is slower",
-            );
-            on_cpu(input, layers)
+/// One picture, or one for the left eye and one for the right.
+pub(super) enum Views<T> {
+    One(T),
+    Two([T; 2]),
+}
+
+impl<T> Views<T> {
+    fn as_slice(&self) -> &[T] {
+        match self {
+            Self::One(one) => std::slice::from_ref(one),
+            Self::Two(two) => two,
         }
-        #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, doubt } => {
-            doubt.iter().for_each(tell);
-            on_gpu(headless, input, layers, *choice)
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.as_slice().len()
+    }
+
+    /// The first error, or all that `f` makes of them.
+    fn try_each<U, E>(&self, mut f: impl FnMut(&T) -> Result<U, E>) -> Result<Views<U>, E> {
+        Ok(match self {
+            Self::One(one) => Views::One(f(one)?),
+            Self::Two([left, right]) => Views::Two([f(left)?, f(right)?]),
+        })
+    }
+}
+
+impl<'a> Views<&'a dyn Camera> {
+    pub(super) fn of(input: &'a Input) -> Self {
+        match &input.eyes {
+            None => Self::One(input.camera.as_ref()),
+            Some([left, right]) => Self::Two([left.as_ref(), right.as_ref()]),
+        }
+    }
+
+    /// How many bytes a pixel are needed beside the layers of one picture.
+    pub(super) fn bytes_beside(&self, layers: LayerSet) -> u64 {
+        let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+        match self {
+            Self::One(_) => encoding,
+            // The other picture, and both in one.
+            Self::Two(_) => 3 * layers.bytes_per_pixel() + 2 * encoding,
         }
     }
 }
 
-fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {
-    let Input { scene, camera, film, settings, size_from, .. } = input;
-    memory::check(film, size_from, layers)?;
+/// Renders what the camera, or the one between two eyes, sees.
+pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+    match render_views(input, Views::One(input.camera.as_ref()), layers, opened)? {
+        Views::One(image) | Views::Two([image, _]) => Ok(image),
+    }
+}
+
+/// Renders on the device, and says so if that is not what the user would expect.
+fn render_views(
+    input: &Input,
+    views: Views<&dyn Camera>,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Views<Image>, Failure> {
+    match opened {
+        Opened::Cpu => on_cpu(input, &views, layers),
+        #[cfg(feature = "gpu")]
+        Opened::CpuInstead => {
+            memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))?;
+            tell(
+                "note: no Vulkan, Metal or DX12 adapter was found; \
+                 rendering on the CPU reference, which is slower",
+            );
+            on_cpu(input, &views, layers)
+        }
+        #[cfg(feature = "gpu")]
+        Opened::Device { headless, choice, doubt } => {
+            doubt.iter().for_each(tell);
+            on_gpu(headless, input, &views, layers, *choice)
+        }
+    }
+}
+
+fn on_cpu(
+    input: &Input,
+    views: &Views<&dyn Camera>,
+    layers: LayerSet,
+) -> Result<Views<Image>, Failure> {
+    let Input { scene, film, settings, size_from, .. } = input;
+    memory::check(film, size_from, layers, views.bytes_beside(layers))?;
     progress::stage("rendering on the CPU reference");
-    let image = cpu::render(scene, camera.as_ref(), film, settings, layers);
-    Ok(image.context("the CPU reference")?)
+    let images = views.try_each(|camera| cpu::render(scene, *camera, film, settings, layers));
+    Ok(images.context("the CPU reference")?)
 }
 
 #[cfg(feature = "gpu")]
 fn on_gpu(
     headless: &Headless,
     input: &Input,
+    views: &Views<&dyn Camera>,
     layers: LayerSet,
     choice: AccelChoice,
-) -> Result<Image, Failure> {
-    let Input { scene, camera, film, settings, .. } = input;
-    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let plan = |accel| headless.plan_render(scene, accel, film, layers, encoding);
+) -> Result<Views<Image>, Failure> {
+    let Input { scene, film, settings, .. } = input;
+    let beside = views.bytes_beside(layers);
+    let plan = |accel| headless.plan_render(scene, accel, film, layers, beside);
     let rendered = with_scene(headless, input, choice, plan, |buffers, watch| {
-        headless.render_uploaded(buffers, camera.as_ref(), film, settings, layers, watch)
+        views.try_each(|camera| {
+            headless.render_uploaded(buffers, *camera, film, settings, layers, watch)
+        })
     })?;
     Ok(rendered.map_err(|error| explained(headless, &error))?.0)
 }

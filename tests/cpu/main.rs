@@ -15,6 +15,7 @@ mod arrays;
 
 mod basis;
 mod camera;
+mod camera_tables;
 mod comparator;
 mod generate;
 mod grid_check;
