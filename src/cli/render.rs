@@ -61,10 +61,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = job.outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
-        let images = render_views(&input, views, layers, &opened)?;
+        let images = render_views(&input, &views, layers, &opened)?;
         return Ok(Outputs::write_both(&outputs, images.as_slice())?);
     }
-    let image = match render_views(&input, views, layers, &opened)? {
+    let image = match render_views(&input, &views, layers, &opened)? {
         Views::One(image) => image,
         Views::Two([left, right]) => {
             Image::side_by_side([&left, &right]).context("both eyes in one picture")?
@@ -121,7 +121,7 @@ impl<'a> Views<&'a dyn Camera> {
 
 /// Renders what the camera, or the one between two eyes, sees.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
-    match render_views(input, Views::One(input.camera.as_ref()), layers, opened)? {
+    match render_views(input, &Views::One(input.camera.as_ref()), layers, opened)? {
         Views::One(image) | Views::Two([image, _]) => Ok(image),
     }
 }
@@ -129,12 +129,12 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
 /// Renders on the device, and says so if that is not what the user would expect.
 fn render_views(
     input: &Input,
-    views: Views<&dyn Camera>,
+    views: &Views<&dyn Camera>,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     match opened {
-        Opened::Cpu => on_cpu(input, &views, layers),
+        Opened::Cpu => on_cpu(input, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))?;
@@ -142,12 +142,12 @@ fn render_views(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
                  rendering on the CPU reference, which is slower",
             );
-            on_cpu(input, &views, layers)
+            on_cpu(input, views, layers)
         }
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, doubt } => {
             doubt.iter().for_each(tell);
-            on_gpu(headless, input, &views, layers, *choice)
+            on_gpu(headless, input, views, layers, *choice)
         }
     }
 }
