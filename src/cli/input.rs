@@ -12,7 +12,7 @@ use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
 use super::memory;
 use super::progress;
-use crate::camera::{Camera, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters};
 use crate::color::LinearRgb;
 use crate::encoding::Encoding;
 use crate::film::Film;
@@ -23,7 +23,10 @@ use crate::settings::Settings;
 /// Everything that a render needs.
 pub(super) struct Input {
     pub(super) scene: Scene,
+    /// Of two eyes, that in the middle.
     pub(super) camera: Box<dyn Camera>,
+    /// Left and right, if there are two.
+    pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(super) film: Film,
     pub(super) settings: Settings,
     pub(super) encoding: Encoding,
@@ -158,11 +161,10 @@ impl Source {
             notes.push(format!("{}: there are no spheres in it", path.display()));
         }
         let parameters = self.camera.unwrap_or_default();
-        let camera =
-            parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?;
+        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(place)?;
         let (settings, encoding) = (Settings::default(), Encoding::default());
         let files = vec![path.clone()];
-        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
@@ -178,14 +180,15 @@ impl Source {
             Data::Points(points) => file.scene_with_points(points, color),
         };
         let scene = scene.with_context(place)?;
-        let camera = match &self.camera {
-            Some(parameters) => {
-                parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?
-            }
-            None => file.camera(&film, &scene).with_context(place)?,
+        let (camera, eyes) = match &self.camera {
+            Some(parameters) => cameras(parameters, &film, &scene).with_context(place)?,
+            None => (
+                file.camera(&film, &scene).with_context(place)?,
+                file.stereo_pair(&film, &scene).with_context(place)?,
+            ),
         };
         let SceneFile { settings, encoding, .. } = file;
-        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
     /// A path that is relative to the scene file's folder.
@@ -245,6 +248,18 @@ impl Source {
             .with_y_axis(from_file.y_axis());
         Ok((film, "--size".to_owned()))
     }
+}
+
+/// The camera, and its eyes if it has two.
+type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);
+
+fn cameras(
+    parameters: &CameraParameters,
+    film: &Film,
+    scene: &Scene,
+) -> Result<Cameras, CameraError> {
+    let (aspect, bounds) = (film.aspect(), scene.bounds_to_frame());
+    Ok((parameters.camera(aspect, &bounds)?, parameters.stereo_pair(aspect, &bounds)?))
 }
 
 fn default_color() -> LinearRgb {

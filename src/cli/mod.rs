@@ -44,6 +44,7 @@ mod verify_output;
 mod verify_page;
 mod verify_pictures;
 mod verify_report;
+mod views;
 #[cfg(feature = "gpu")]
 mod with_scene;
 

@@ -13,6 +13,7 @@ use super::progress;
 use super::speak::{answer, tell};
 use super::table::table;
 use super::threads;
+use super::views::Views;
 use crate::accel::PlannedBuffer;
 use crate::gpu::{Headless, RenderPlan};
 use crate::image::{Layer, LayerSet};
@@ -99,9 +100,10 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
-    let (choice, encoding) = (choice(args.accel.accel), memory::ENCODING_BYTES_PER_PIXEL);
+    let beside = Views::of(&input).bytes_beside(layers);
+    let choice = choice(args.accel.accel);
     let accel = headless.plan_once(&input.scene, choice, &input.film);
-    let plan = headless.plan_render(&input.scene, accel, &input.film, layers, encoding);
+    let plan = headless.plan_render(&input.scene, accel, &input.film, layers, beside);
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

@@ -95,6 +95,9 @@ mod recorded {
         for note in &input.notes {
             tell(format_args!("note: {note}"));
         }
+        if input.eyes.is_some() {
+            tell("note: the camera has two eyes; what is checked is the picture from between them");
+        }
         let headless = wanted.open_any()?;
         self_test::check(&headless)?;
         let (scene, film, settings) = (&input.scene, &input.film, &input.settings);

@@ -152,7 +152,8 @@ impl SceneFile {
         self.data.as_ref().map(|data| &data.value)
     }
 
-    /// The camera, for a film of this shape; without a fixed place it frames the scene.
+    /// The camera, or of two eyes that in the middle, for a film of this shape; without a fixed place it frames
+    /// the scene.
     ///
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
@@ -160,6 +161,21 @@ impl SceneFile {
         self.camera
             .value
             .camera(film.aspect(), &scene.bounds_to_frame())
+            .map_err(|error| self.camera.place.error(error))
+    }
+
+    /// The cameras of the left and of the right eye, if the camera has two.
+    ///
+    /// # Errors
+    /// As [`SceneFile::camera`].
+    pub fn stereo_pair(
+        &self,
+        film: &Film,
+        scene: &Scene,
+    ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
+        self.camera
+            .value
+            .stereo_pair(film.aspect(), &scene.bounds_to_frame())
             .map_err(|error| self.camera.place.error(error))
     }
 }

@@ -15,6 +15,7 @@ mod arrays;
 
 mod basis;
 mod camera;
+mod camera_tables;
 mod comparator;
 mod environment;
 mod generate;
