@@ -9,10 +9,12 @@ use crate::image::{Image, ImageTooLarge, LayerSet, RowMut};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
+mod light;
 mod shade;
 mod sphere;
 mod trace;
 
+pub use light::{LitError, LitPicture, Sample, radiance, render_lit};
 pub use shade::shade;
 pub use trace::trace;
 
