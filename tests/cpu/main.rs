@@ -17,6 +17,7 @@ mod basis;
 mod camera;
 mod comparator;
 mod environment;
+mod environment_files;
 mod generate;
 mod grid_check;
 mod hostile_rays;
