@@ -18,6 +18,7 @@ mod camera;
 mod camera_tables;
 mod comparator;
 mod environment;
+mod environment_files;
 mod generate;
 mod grid_check;
 mod hostile_rays;
