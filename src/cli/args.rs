@@ -7,6 +7,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::camera::CameraArgs;
 use super::data::DataFormat;
 use super::generate::kinds;
+use super::light::LightArgs;
+use super::patience::PatienceArgs;
 use crate::accel::AccelChoice;
 use crate::tone::ToneCurve;
 
@@ -51,6 +53,10 @@ pub(super) struct RenderArgs {
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
+    #[command(flatten)]
+    pub(super) light: LightArgs,
+    #[command(flatten)]
+    pub(super) patience: PatienceArgs,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
     #[command(flatten)]
@@ -312,6 +318,8 @@ pub(super) struct VerifyArgs {
 pub(super) struct PlanArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
+    #[command(flatten)]
+    pub(super) light: LightArgs,
     #[command(flatten)]
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]

@@ -25,14 +25,17 @@ mod generate;
 mod info;
 mod input;
 mod interrupt;
+mod light;
 mod memory;
 mod output;
+mod patience;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
 mod process;
 mod progress;
 mod render;
+mod render_lit;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;

@@ -8,8 +8,10 @@ use super::args::PlanArgs;
 use super::device::{WantedAdapter, choice, explained};
 use super::failure::Failure;
 use super::input::{Input, Source};
+use super::light::LightFlags;
 use super::memory;
 use super::progress;
+use super::render_lit;
 use super::speak::{answer, tell};
 use super::table::table;
 use super::threads;
@@ -82,7 +84,7 @@ struct LimitsReport {
 }
 
 pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let source = Source::new(&args.input)?;
+    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light)?);
     let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
         let layer = name.parse::<Layer>();
         layer
@@ -102,8 +104,15 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     progress::stage("planning");
     let beside = Views::of(&input).bytes_beside(layers);
     let choice = choice(args.accel.accel);
-    let accel = headless.plan_once(&input.scene, choice, &input.film);
-    let plan = headless.plan_render(&input.scene, accel, &input.film, layers, beside);
+    let plan = match &input.lighting {
+        Some(lighting) => {
+            render_lit::plan(&headless, &input, lighting, &Views::of(&input), layers, choice)
+        }
+        None => {
+            let accel = headless.plan_once(&input.scene, choice, &input.film);
+            headless.plan_render(&input.scene, accel, &input.film, layers, beside)
+        }
+    };
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

@@ -9,9 +9,12 @@ use super::device::{Device, Opened};
 use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::input::{Input, Source};
+use super::light::{self, LightFlags};
 use super::memory;
+use super::patience::Patience;
 use super::picture::Outputs;
 use super::progress;
+use super::render_lit;
 use super::speak::tell;
 use super::threads;
 use super::views::Views;
@@ -31,6 +34,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
+    patience: Patience,
     device: Device,
     stereo: Option<Stereo>,
 }
@@ -38,8 +42,12 @@ struct Job {
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         let outputs = Outputs::new(&args.output, &args.layers)?;
+        let patience = Patience::new(&args.patience)?;
+        let light = LightFlags::new(&args.light)?;
+        let light = if patience.is_open_ended() { light.open_ended() } else { light };
         Ok(Self {
-            source: Source::new(&args.input)?,
+            source: Source::new(&args.input)?.with_light(light),
+            patience,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
@@ -61,6 +69,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if encoding.transparent() {
         input.settings = input.settings.with_background(LinearRgb::BLACK);
     }
+    match &mut input.lighting {
+        Some(lighting) => {
+            lighting.is_transparent = encoding.transparent();
+            for note in light::notes(lighting, &input.scene) {
+                tell(format_args!("note: {note}"));
+            }
+        }
+        None => job.patience.check_without_light()?,
+    }
     let layers = job.outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
@@ -72,10 +89,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = job.outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
-        let images = render_views(&input, &views, layers, &opened)?;
+        let images = render_views(&input, &job.patience, &views, layers, &opened)?;
         return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
     }
-    let image = match render_views(&input, &views, layers, &opened)? {
+    let image = match render_views(&input, &job.patience, &views, layers, &opened)? {
         Views::One(image) => image,
         Views::Two([left, right]) => {
             Image::side_by_side([&left, &right]).context("both eyes in one picture")?
@@ -86,7 +103,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 /// Renders what the camera, or the one between two eyes, sees.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
-    match render_views(input, &Views::One(input.camera.as_ref()), layers, opened)? {
+    let view = Views::One(input.camera.as_ref());
+    match render_views(input, &Patience::default(), &view, layers, opened)? {
         Views::One(image) | Views::Two([image, _]) => Ok(image),
     }
 }
@@ -94,34 +112,48 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
 /// Renders on the device, and says so if that is not what the user would expect.
 fn render_views(
     input: &Input,
+    patience: &Patience,
     views: &Views<&dyn Camera>,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     match opened {
-        Opened::Cpu => on_cpu(input, views, layers),
+        Opened::Cpu => on_cpu(input, patience, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
+            if input.lighting.is_some() {
+                patience.check_on_cpu()?;
+            }
             memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))?;
             tell(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
                  rendering on the CPU reference, which is slower",
             );
-            on_cpu(input, views, layers)
+            on_cpu(input, patience, views, layers)
         }
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, doubt } => {
             doubt.iter().for_each(tell);
-            on_gpu(headless, input, views, layers, *choice)
+            match &input.lighting {
+                Some(lighting) => {
+                    let light = (lighting, patience);
+                    render_lit::on_gpu(headless, input, light, views, layers, *choice)
+                }
+                None => on_gpu(headless, input, views, layers, *choice),
+            }
         }
     }
 }
 
 fn on_cpu(
     input: &Input,
+    patience: &Patience,
     views: &Views<&dyn Camera>,
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
+    if let Some(lighting) = &input.lighting {
+        return render_lit::on_cpu(input, lighting, patience, views, layers);
+    }
     let Input { scene, film, settings, size_from, .. } = input;
     memory::check(film, size_from, layers, views.bytes_beside(layers))?;
     progress::stage("rendering on the CPU reference");

@@ -23,6 +23,15 @@ impl<T> Views<T> {
         self.as_slice().len()
     }
 
+    /// All that `f` makes of them.
+    #[cfg(feature = "gpu")]
+    pub(super) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Views<U> {
+        match self {
+            Self::One(one) => Views::One(f(one)),
+            Self::Two(two) => Views::Two(two.map(f)),
+        }
+    }
+
     /// The first error, or all that `f` makes of them.
     pub(super) fn try_each<U, E>(
         &self,
