@@ -72,7 +72,7 @@ impl<'a> Run<'a> {
         brick: Option<&BindGroup>,
         stage: Stage,
     ) -> Result<(), GpuError> {
-        self.dispatch(pipeline, group, brick, stage, self.groups(), true)?;
+        self.dispatch(pipeline, group, brick, stage, self.groups())?;
         if self.stages.len() == MOST_STAGES {
             self.submit(&[])?;
         }
@@ -90,7 +90,7 @@ impl<'a> Run<'a> {
         let whole = self.groups();
         let pace = self.scene.pace().groups();
         if whole.count() <= pace {
-            self.dispatch(pipeline, group, Some(brick), stage, whole, false)?;
+            self.dispatch(pipeline, group, Some(brick), stage, whole)?;
             self.gathered += whole.count();
             if self.gathered >= pace || self.stages.len() == MOST_STAGES {
                 self.submit(&[])?;
@@ -101,7 +101,7 @@ impl<'a> Run<'a> {
         let mut left = vec![whole];
         while let Some(slice) = Groups::take(&mut left, self.scene.pace().groups()) {
             self.frames.iter_mut().for_each(|frame| frame.first_group = slice.first);
-            self.dispatch(pipeline, group, Some(brick), stage, slice, false)?;
+            self.dispatch(pipeline, group, Some(brick), stage, slice)?;
             self.gathered = slice.count();
             self.submit(&[])?;
         }
@@ -116,7 +116,6 @@ impl<'a> Run<'a> {
         brick: Option<&BindGroup>,
         stage: Stage,
         groups: Groups,
-        has_look: bool,
     ) -> Result<(), GpuError> {
         // No more than MOST_STAGES of them, so it fits.
         let offset = (self.stages.len() * self.tile.stage_stride) as u32;
@@ -131,7 +130,7 @@ impl<'a> Run<'a> {
         if let Some(brick) = brick {
             pass.set_bind_group(1, brick, &[]);
         }
-        if has_look && brick.is_some() {
+        if brick.is_some() {
             pass.set_bind_group(2, &tile.look, &[]);
             if let Some(sky) = &tile.sky {
                 pass.set_bind_group(3, sky, &[]);
