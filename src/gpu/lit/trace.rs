@@ -46,14 +46,14 @@ impl Run<'_> {
         lighting: &Lighting,
     ) -> Result<(), GpuError> {
         let stage = Stage { sample, surface: 0, is_last: 0, light: 0, count: 0 };
-        let (renderer, tile) = (self.renderer, self.tile);
+        let renderer = self.renderer;
         let surface = &self.scene.bricks()[0].surface_group;
-        self.shade(&renderer.start, &tile.shade, Some(surface), stage)?;
+        self.shade(&renderer.start, true, surface, stage)?;
         match &lighting.integrator {
             Integrator::Studio(studio) => self.studio(stage, lit, studio)?,
             Integrator::Path(path) => self.path(stage, lit, path.max_depth)?,
         }
-        self.shade(&renderer.deposit, &tile.deposit, None, stage)
+        self.deposit(stage)
     }
 
     fn studio(&mut self, stage: Stage, lit: &Lit, studio: &Studio) -> Result<(), GpuError> {
@@ -61,7 +61,7 @@ impl Run<'_> {
         else {
             return Err(GpuError::OtherRenderer);
         };
-        let (tile, scene) = (self.tile, self.scene);
+        let scene = self.scene;
         let surfaces = if lit.is_opaque { 1 } else { studio.max_surfaces };
         let lights = lit.casts_shadow.len() as u32;
         let directions = studio.occlusion.map_or(0, |occlusion| occlusion.samples);
@@ -83,7 +83,7 @@ impl Run<'_> {
                 }
                 let first = &scene.bricks()[0].surface_group;
                 let stage = Stage { light, count, ..stage };
-                self.shade(illuminate, &tile.shade, Some(first), stage)?;
+                self.shade(illuminate, false, first, stage)?;
             }
             for light in (0..directions).step_by(BITS) {
                 let count = (directions - light).min(BITS as u32);
@@ -92,7 +92,7 @@ impl Run<'_> {
                 }
                 let first = &scene.bricks()[0].surface_group;
                 let stage = Stage { light, count, ..stage };
-                self.shade(gather, &tile.shade, Some(first), stage)?;
+                self.shade(gather, false, first, stage)?;
             }
         }
         Ok(())
@@ -117,9 +117,10 @@ impl Run<'_> {
 
     /// A dispatch for every brick: each shades what it holds.
     fn shade_bricks(&mut self, pipeline: &ComputePipeline, stage: Stage) -> Result<(), GpuError> {
-        let (tile, scene) = (self.tile, self.scene);
+        let scene = self.scene;
         for brick in scene.bricks() {
-            self.shade(pipeline, &tile.shade, Some(&brick.surface_group), stage)?;
+            // What the camera sees beside the scene is background.
+            self.shade(pipeline, stage.surface == 0, &brick.surface_group, stage)?;
         }
         Ok(())
     }
