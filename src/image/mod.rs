@@ -1,5 +1,7 @@
 //! Linear f32 pixels and data layers.
 
+#[cfg(feature = "cli")]
+mod join;
 mod layer;
 mod rows;
 

@@ -15,8 +15,10 @@ mod arrays;
 
 mod basis;
 mod camera;
+mod camera_tables;
 mod comparator;
 mod environment;
+mod environment_files;
 mod generate;
 mod grid_check;
 mod hostile_rays;

@@ -29,6 +29,7 @@ use crate::settings::Settings;
 mod film;
 mod kernels;
 mod look;
+mod plan;
 pub(super) mod records;
 mod renderer;
 mod run;

@@ -5,6 +5,7 @@ use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 use super::look::Lit;
 use super::records::{FILM_SLOTS, Look, PATH_SLOTS, Stage};
 use super::renderer::LitRenderer;
+use crate::environment::Environment;
 use crate::film::Film;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::readback::ReadableBuffer;
@@ -58,6 +59,14 @@ pub(super) fn lit_tile_size(limits: &wgpu::Limits, film: &Film) -> [u32; 2] {
     [width as u32, rows.min(film.height().into()) as u32]
 }
 
+/// The image that paths are lit by.
+pub(super) fn sky_image(lighting: &Lighting) -> Option<&Environment> {
+    match (&lighting.sky.light, lighting.studio()) {
+        (SkyLight::Image { environment, .. }, None) => Some(environment),
+        _ => None,
+    }
+}
+
 impl TileBuffers {
     pub(super) fn new(
         device: &Device,
@@ -73,13 +82,10 @@ impl TileBuffers {
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let frame_stride = size_of::<Frame>().next_multiple_of(alignment);
         let stage_stride = size_of::<Stage>().next_multiple_of(alignment);
-        let table_bytes = size_of_val(&lit.tables[..]) as u64;
+        let table_bytes = lit.table_bytes();
         check_storage_size(device, "the paths of a tile", bytes_of(PATH_SLOTS))?;
         check_storage_size(device, "the tables of lights and materials", table_bytes)?;
-        let sky_image = match (&lighting.sky.light, lighting.studio()) {
-            (SkyLight::Image { environment, .. }, None) => Some(environment),
-            _ => None,
-        };
+        let sky_image = sky_image(lighting);
         if let Some(environment) = sky_image {
             let bytes = 16 * environment.texels().len() as u64;
             check_storage_size(device, "the image of the sky", bytes)?;
