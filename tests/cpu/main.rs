@@ -27,6 +27,7 @@ mod legal_camera;
 mod legal_camera_rays;
 mod legal_device;
 mod lens;
+mod light;
 mod npy;
 mod perspective;
 mod pictures;

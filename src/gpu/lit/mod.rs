@@ -15,7 +15,8 @@ use super::frame::iteration_limit;
 use super::headless::Headless;
 use super::records::Frame;
 use super::scene_buffers::SceneBuffers;
-use super::tiles::{Tile, tiles};
+use super::seen::Seen;
+use super::tiles::{Groups, Tile, tiles};
 use crate::accel::{Accel, AccelChoice};
 use crate::camera::Camera;
 use crate::film::Film;
@@ -205,6 +206,11 @@ impl Headless {
             let tile_buffers = TileBuffers::new(device, queue, renderer, size, lit, lighting)?;
             let limit = iteration_limit(device);
             let total = lighting.sampling.samples;
+            // Wherever there is ground there is something to be seen.
+            let seen = lighting.ground.is_none().then(|| {
+                let around = lighting.sampling.filter.radius();
+                Seen::of(camera, scenes[0].space(), film).widened(around)
+            });
             let tile_list: Vec<Tile> = tiles(film, size).collect();
             while sums.samples() < total {
                 let first = sums.samples();
@@ -215,8 +221,12 @@ impl Headless {
                 // All tiles' sums, so that a batch counts as a whole or not at all.
                 let mut gathered = Vec::new();
                 for (number, tile) in tile_list.iter().enumerate() {
-                    let frames = scenes
-                        .map(|scene| Frame::of_tile(camera, scene.space(), film, *tile, limit));
+                    let all = Groups::of_size(tile.size);
+                    let traced = seen.map_or(all, |seen| seen.groups_of(*tile));
+                    let [scene, occluders] = scenes.map(SceneBuffers::space);
+                    let frames = [(scene, all), (scene, traced), (occluders, traced)].map(
+                        |(space, groups)| Frame::of_tile(camera, space, film, *tile, groups, limit),
+                    );
                     let tiles_done = number as f64 / tile_list.len() as f64;
                     progress.part =
                         (f64::from(first) + f64::from(count) * tiles_done) / f64::from(total);

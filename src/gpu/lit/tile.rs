@@ -17,6 +17,9 @@ use crate::lighting::{Lighting, SkyLight};
 /// How many dispatches one submission has at most.
 pub(super) const MOST_STAGES: usize = 1024;
 
+/// Records of a tile.
+pub(super) const FRAMES: usize = 3;
+
 /// The most pixels of a tile: their state then takes 88 MiB.
 const MOST_PIXELS: u64 = 1 << 19;
 
@@ -24,7 +27,7 @@ const MOST_PIXELS: u64 = 1 << 19;
 #[derive(Debug)]
 pub(super) struct TileBuffers {
     pub(super) size: [u32; 2],
-    /// One record for searching the scene, one for searching what casts shadows.
+    /// Records: of all of a tile; for searching the scene, and for searching what casts shadows, where there is any.
     frames: Buffer,
     frame_stride: usize,
     stages: Buffer,
@@ -36,7 +39,8 @@ pub(super) struct TileBuffers {
     pub(super) status_back: ReadableBuffer,
     pub(super) film_back: ReadableBuffer,
     pub(super) search: [BindGroup; 2],
-    pub(super) shade: BindGroup,
+    /// Of all of a tile, and of where the scene may be seen.
+    pub(super) shade: [BindGroup; 2],
     pub(super) deposit: BindGroup,
     pub(super) look: BindGroup,
     pub(super) sky: Option<BindGroup>,
@@ -97,7 +101,7 @@ impl TileBuffers {
             };
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let uniform = BufferUsages::UNIFORM;
-            let frames = buffer("pinhole frames", 2 * frame_stride as u64, uniform);
+            let frames = buffer("pinhole frames", FRAMES as u64 * frame_stride as u64, uniform);
             let stages = buffer("pinhole stages", (MOST_STAGES * stage_stride) as u64, uniform);
             let hits = buffer("pinhole hits", pixels * size_of::<Hit>() as u64, storage);
             let paths = buffer("pinhole paths", bytes_of(PATH_SLOTS), storage);
@@ -124,12 +128,11 @@ impl TileBuffers {
             let frame = |index: usize| (0, part(&frames, index * frame_stride, size_of::<Frame>()));
             let stage = || (4, part(&stages, 0, size_of::<Stage>()));
             let layouts = &renderer.layouts;
-            let search = [0, 1].map(|index| {
+            let search = [1, 2].map(|index| {
                 let entries =
                     [frame(index), whole(1, &hits), whole(2, &status), whole(3, &paths), stage()];
                 group("pinhole search", &layouts.search, &entries)
             });
-            let shaded = [frame(0), whole(1, &hits), whole(3, &paths), stage()];
             let deposited = [frame(0), whole(3, &paths), stage(), whole(5, &film)];
             let known = [whole(0, &look), whole(1, &tables)];
             let sky = sky_image.map(|environment| {
@@ -152,7 +155,10 @@ impl TileBuffers {
                 status_back: ReadableBuffer::new(device, "pinhole status read-back", status.size()),
                 film_back: ReadableBuffer::new(device, "pinhole film read-back", film.size()),
                 search,
-                shade: group("pinhole shade", &layouts.shade, &shaded),
+                shade: [0, 1].map(|index| {
+                    let entries = [frame(index), whole(1, &hits), whole(3, &paths), stage()];
+                    group("pinhole shade", &layouts.shade, &entries)
+                }),
                 deposit: group("pinhole deposit", &layouts.film, &deposited),
                 look: group("pinhole look", &layouts.look, &known),
                 sky,
@@ -168,7 +174,7 @@ impl TileBuffers {
     }
 
     /// Queues what the next submission's dispatches do, and which workgroups they are.
-    pub(super) fn queue_records(&self, queue: &Queue, frames: &[Frame; 2], stages: &[Stage]) {
+    pub(super) fn queue_records(&self, queue: &Queue, frames: &[Frame; FRAMES], stages: &[Stage]) {
         for (index, frame) in frames.iter().enumerate() {
             let offset = (index * self.frame_stride) as u64;
             queue.write_buffer(&self.frames, offset, bytemuck::bytes_of(frame));
