@@ -87,8 +87,7 @@ impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
         let LightArgs { samples, seed, ao, outline, .. } = *args;
         let refused = |flag: &str, error: &RangeError| {
-            let RangeError { value, range, .. } = error;
-            Failure::usage(format!("--{flag} {value:?}: it must be {range}").replace(".0:", ":"))
+            Failure::usage(format!("--{flag} {}: it must be {}", error.value(), error.range))
         };
         if let Some(samples) = samples {
             let sampling = Sampling { samples, ..Sampling::default() };

@@ -182,7 +182,7 @@ fn a_depth_cue_reaches_over_the_scene() {
     assert!((cue.far - (10.0 + root)).abs() < 1e-12, "{}", cue.far);
     assert_eq!(cue.color, LinearRgb::from_srgb8([255, 0, 0]));
     // However little is given, far is farther than near.
-    for keys in ["near = 100", "far = 1", "far = 1e-300"] {
+    for keys in ["near = 100", "far = 1", "far = 1e-16"] {
         let text = text.replace("depth_cue]", &format!("depth_cue]\n{keys}"));
         let cue = studio(&text).depth_cue;
         assert!(cue.is_none_or(|cue| cue.near < cue.far), "{keys}: {cue:?}");
@@ -288,23 +288,23 @@ fn what_is_out_of_range_is_named_with_its_place() {
     for (text, expected) in [
         (
             "[sampling]\nsamples = 0\n",
-            "line 2, column 11: `samples` is 0.0; it must be from 1 to 16777216",
+            "line 2, column 11: `samples` is 0; it must be from 1 to 16777216",
         ),
         (
             "[path]\nmax_depth = 65\n",
-            "line 2, column 13: `max_depth` is 65.0; it must be from 1 to 64",
+            "line 2, column 13: `max_depth` is 65; it must be from 1 to 64",
         ),
         (
             "[studio]\nmax_surfaces = 0\n",
-            "line 2, column 16: `max_surfaces` is 0.0; it must be from 1 to 64",
+            "line 2, column 16: `max_surfaces` is 0; it must be from 1 to 64",
         ),
         (
             "[studio.occlusion]\nsamples = 2000\n",
-            "line 2, column 11: `samples` is 2000.0; it must be from 1 to 1024",
+            "line 2, column 11: `samples` is 2000; it must be from 1 to 1024",
         ),
         (
             "[studio.occlusion]\nradius = -1\n",
-            "line 2, column 10: `radius` is -1.0; it must be a length greater than 0, from 2^-56 to 2^56",
+            "line 2, column 10: `radius` is -1; it must be a length greater than 0, from 2^-56 to 2^56",
         ),
         (
             "[studio.outline]\nwidth = 0.1\n",
@@ -316,19 +316,16 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[studio.outline]\nangle = 200\n",
-            "line 2, column 9: `angle` is 200.0; it must be from 0 to 180 degrees",
+            "line 2, column 9: `angle` is 200; it must be from 0 to 180 degrees",
         ),
-        (
-            "[studio.outline]\ndepth = -1\n",
-            "line 2, column 9: `depth` is -1.0; it must be 0 or more",
-        ),
+        ("[studio.outline]\ndepth = -1\n", "line 2, column 9: `depth` is -1; it must be 0 or more"),
         (
             "[studio.depth_cue]\nnear = 5\nfar = 5\n",
-            "line 3, column 7: `far` is 5.0; it must be more than `near`",
+            "line 3, column 7: `far` is 5; it must be more than `near`",
         ),
         (
             "[studio.depth_cue]\nnear = inf\n",
-            "line 2, column 8: `near` is inf; it must be 0 or more, and less than 2^56",
+            "line 2, column 8: `near` is inf; it must be 0 or more, and at most 2^56",
         ),
         (
             "[materials.a]\nkind = 'lambert'\nspecular = 1.1\n",
@@ -336,7 +333,7 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[materials.a]\nkind = 'conductor'\nroughness = 0\n",
-            "line 3, column 13: `roughness` is 0.0; it must be from 0.02 to 1",
+            "line 3, column 13: `roughness` is 0; it must be from 0.02 to 1",
         ),
         (
             "[materials.a]\nkind = 'dielectric'\nior = 0.9\n",
@@ -344,7 +341,7 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[materials.a]\nkind = 'emissive'\nstrength = -1\n",
-            "line 3, column 12: `strength` is -1.0; it must be from 0 to 1e6",
+            "line 3, column 12: `strength` is -1; it must be from 0 to 1e6",
         ),
         (
             "[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\nopacity = 1.5\n",
@@ -356,11 +353,11 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "data = 'a'\n[elements.Fe]\nradius = 0\n",
-            "line 3, column 10: `radius` is 0.0; it must be finite and greater than 0",
+            "line 3, column 10: `radius` is 0; it must be finite and greater than 0",
         ),
         (
             "[[lights]]\nkind = 'head'\nstrength = -2\n",
-            "line 3, column 12: `strength` is -2.0; it must be from 0 to 1e6",
+            "line 3, column 12: `strength` is -2; it must be from 0 to 1e6",
         ),
         (
             "[[lights]]\nkind = 'directional'\ntoward = [0, 0, 0]\n",
@@ -376,7 +373,7 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[[lights]]\nkind = 'sphere'\nposition = [0, 0, 0]\nradius = 0\n",
-            "line 4, column 10: `radius` is 0.0; it must be a length greater than 0, from 2^-56 to 2^56",
+            "line 4, column 10: `radius` is 0; it must be a length greater than 0, from 2^-56 to 2^56",
         ),
         (
             "[sky]\nkind = 'image'\nimage = 'a.hdr'\nrotation = nan\n",
@@ -384,7 +381,7 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[sky]\nkind = 'constant'\nstrength = 1e7\n",
-            "line 3, column 12: `strength` is 10000000.0; it must be from 0 to 1e6",
+            "line 3, column 12: `strength` is 10000000; it must be from 0 to 1e6",
         ),
         (
             "[ground]\nheight = nan\n",
@@ -410,7 +407,7 @@ fn what_is_wrong_is_named_with_a_remedy() {
         ),
         (
             "[[lights]]\nkind = 'spot'\n",
-            "line 2, column 8: unknown name `spot`; known here: head, directional, point, sphere",
+            "line 2, column 8: unknown name `spot`; did you mean `point`?",
         ),
         ("[[lights]]\nstrength = 1\n", "line 1, column 1: missing key `kind`"),
         (
