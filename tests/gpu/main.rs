@@ -14,6 +14,7 @@ mod embedding;
 mod faults;
 mod lens;
 mod light;
+mod light_program;
 mod parts;
 mod pictures;
 mod plan;
@@ -63,6 +64,7 @@ fn main() {
         agreement::trials(),
         lens::trials(),
         light::trials(),
+        light_program::trials(),
         pictures::trials(),
         parts::trials(),
         embedding::trials(),
