@@ -33,7 +33,7 @@ fn message(text: &str) -> String {
 
 fn lighting(text: &str) -> Lighting {
     let file = parse(text);
-    let kind = file.integrator().expect("it asks for light");
+    let kind = file.integrator().unwrap();
     lighting_by(text, kind)
 }
 
@@ -45,7 +45,7 @@ fn lighting_by(text: &str, kind: IntegratorKind) -> Lighting {
 }
 
 fn studio(text: &str) -> Studio {
-    lighting(text).studio().expect("a studio").clone()
+    lighting(text).studio().unwrap().clone()
 }
 
 fn first_finish(text: &str) -> Finish {
