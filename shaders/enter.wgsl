@@ -20,11 +20,6 @@ fn inverse_direction(direction: vec3f) -> vec3f {
     return 1.0 / select(-size, size, direction >= vec3f(0.0));
 }
 
-// The ray through the centres of a pixel and of the lens.
-fn make_entry(pixel_in_tile: vec2u) -> Entry {
-    return enter_scene(camera_ray(relative_location(frame.tile_origin + pixel_in_tile), vec2f(0.5)));
-}
-
 fn enter_scene(camera_ray: CameraRay) -> Entry {
     let ray = camera_ray.ray;
     let inverse = inverse_direction(ray.direction);

@@ -3,9 +3,8 @@
 
 // Row by row; the fourth component is not used.
 @group(3) @binding(0) var<storage, read> environment_texels: array<vec4f>;
-// Multiples of 2^-24, which f32 subtracts exactly: height + 1 numbers, and width + 1 for each row.
-@group(3) @binding(1) var<storage, read> environment_rows: array<f32>;
-@group(3) @binding(2) var<storage, read> environment_columns: array<f32>;
+// Multiples of 2^-24, which f32 subtracts exactly: height + 1 numbers for the rows, and width + 1 for each row.
+@group(3) @binding(1) var<storage, read> environment_shares: array<f32>;
 
 struct EnvironmentSample {
     direction: vec3f,
@@ -26,10 +25,10 @@ fn sample_environment(u: vec2u) -> EnvironmentSample {
     let size = look.environment_size;
     let chance = vec2f(u >> vec2u(8u)) * 0x1p-24;
     let row = environment_row(chance.y);
-    let columns = row * (size.x + 1u);
+    let columns = environment_columns(row);
     let column = environment_column(chance.x, columns);
-    let low = vec2f(environment_columns[columns + column], environment_rows[row]);
-    let high = vec2f(environment_columns[columns + column + 1u], environment_rows[row + 1u]);
+    let low = vec2f(environment_shares[columns + column], environment_shares[row]);
+    let high = vec2f(environment_shares[columns + column + 1u], environment_shares[row + 1u]);
     let rest = (vec2f(u & vec2u(0xffu)) + 0.5) * 0x1p-32;
     let share = max(high - low, vec2f(0x1p-24));
     let along = min((chance.x - low.x + rest.x) / share.x, 1.0);
@@ -55,6 +54,11 @@ fn environment_turned(flat: vec2f, sign: f32) -> vec2f {
     return rotation.x * flat + rotation.y * vec2f(flat.y, -flat.x);
 }
 
+// Where the shares of a row's columns start.
+fn environment_columns(row: u32) -> u32 {
+    return look.environment_size.y + 1u + row * (look.environment_size.x + 1u);
+}
+
 // Column and row.
 fn environment_place(direction: vec3f) -> vec2u {
     let flat = environment_turned(direction.xz, -1.0);
@@ -66,9 +70,9 @@ fn environment_place(direction: vec3f) -> vec2u {
 
 fn environment_density_of(place: vec2u) -> f32 {
     let size = vec2f(look.environment_size);
-    let entry = place.y * (look.environment_size.x + 1u) + place.x;
-    let share = vec2f(environment_columns[entry + 1u] - environment_columns[entry],
-        environment_rows[place.y + 1u] - environment_rows[place.y]);
+    let entry = environment_columns(place.y) + place.x;
+    let share = vec2f(environment_shares[entry + 1u] - environment_shares[entry],
+        environment_shares[place.y + 1u] - environment_shares[place.y]);
     let sines = sin_cos_turns(f32(2u * place.y + 1u) / (4.0 * size.y)).x
         * sin_cos_turns(0.25 / size.y).x;
     // 4 pi.
@@ -80,7 +84,7 @@ fn environment_row(chance: f32) -> u32 {
     var range = vec2u(0u, look.environment_size.y);
     for (var i = 0u; i < 12u; i++) {
         let middle = (range.x + range.y) >> 1u;
-        range = select(vec2u(range.x, middle), vec2u(middle, range.y), environment_rows[middle] <= chance);
+        range = select(vec2u(range.x, middle), vec2u(middle, range.y), environment_shares[middle] <= chance);
     }
     return range.x;
 }
@@ -90,7 +94,7 @@ fn environment_column(chance: f32, first: u32) -> u32 {
     for (var i = 0u; i < 12u; i++) {
         let middle = (range.x + range.y) >> 1u;
         range = select(vec2u(range.x, middle), vec2u(middle, range.y),
-            environment_columns[first + middle] <= chance);
+            environment_shares[first + middle] <= chance);
     }
     return range.x;
 }

@@ -1,7 +1,4 @@
-// Which pixel an invocation renders, and what it reports.
-
-// Not 0 if an invocation ran into the limit of iterations.
-@group(0) @binding(2) var<storage, read_write> status: array<atomic<u32>, 1>;
+// Which pixel an invocation renders.
 
 // A workgroup renders 8x8 pixels. Its lanes follow a Z-order curve, so that the 8 or 32 that run together
 // lie close together. Rows of workgroups are taken in the order that the host chose: software devices give
@@ -24,10 +21,4 @@ fn remainder(a: u32, b: u32) -> u32 {
 
 fn every_second_bit(lane: u32) -> u32 {
     return (lane & 1u) | ((lane >> 1u) & 2u) | ((lane >> 2u) & 4u);
-}
-
-fn report_spent() {
-    if (spent > frame.iteration_limit) {
-        atomicOr(&status[0], 1u);
-    }
 }

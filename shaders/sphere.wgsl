@@ -29,7 +29,7 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     let is_sum = b * from_foot >= 0.0;
     let t = select(c / select(b - from_foot, 1.0, is_sum), b + from_foot, is_sum);
     // Behind the origin t is negative; on the wall and leaving it is zero.
-    let is_hit = discriminant >= 0.0 && t > 0.0;
+    let is_hit = discriminant >= 0.0 && t > 0.0 && !is_left(sphere);
     return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
 }
 

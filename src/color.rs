@@ -104,6 +104,20 @@ pub fn to_srgb8(linear: [f32; 3]) -> [u8; 3] {
     linear.map(encode_srgb8)
 }
 
+/// As [`to_srgb8`], with 16 bits: rounded to the nearest of 65536 steps.
+#[must_use]
+pub fn to_srgb16(linear: [f32; 3]) -> [u16; 3] {
+    linear.map(|linear| {
+        // The conversion makes 0 of NaN.
+        (encode_srgb(f64::from(linear).clamp(0.0, 1.0)) * 65535.0).round() as u16
+    })
+}
+
+/// IEC 61966-2-1, the inverse of [`decode_srgb`].
+fn encode_srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// IEC 61966-2-1, electro-optical transfer function.
 fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
@@ -139,15 +153,20 @@ mod tests {
     fn encoding_rounds_to_the_nearest_byte() {
         for i in 0..=100_000 {
             let linear = i as f32 / 100_000.0;
-            let exact = f64::from(linear);
-            let encoded = if exact <= 0.003_130_8 {
-                exact * 12.92
-            } else {
-                1.055 * exact.powf(1.0 / 2.4) - 0.055
-            };
+            let encoded = encode_srgb(f64::from(linear));
             let [byte, ..] = to_srgb8([linear; 3]);
             assert!((encoded * 255.0 - f64::from(byte)).abs() <= 0.500_01, "{linear}: {byte}");
         }
+    }
+
+    /// What is flat and 8 bits comes out as the same colour with 16: a byte twice.
+    #[test]
+    fn sixteen_bits_of_a_byte_are_that_byte_twice() {
+        for byte in 0..=255 {
+            let linear = LinearRgb::from_srgb8([byte; 3]).to_array();
+            assert_eq!(to_srgb16(linear), [u16::from(byte) * 257; 3]);
+        }
+        assert_eq!(to_srgb16([-1.0, 2.0, f32::NAN]), [0, 65535, 0]);
     }
 
     #[test]

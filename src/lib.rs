@@ -24,8 +24,8 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `scene-file`, `xyz`, `png` and `npy` are readers and writers; `run-file`
-//! keeps what a device rendered; `cli` (default) is the program. An embedder wants
+//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr`, `hdr` and `npy` are readers and
+//! writers; `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
 //! `default-features = false, features = ["gpu"]`.
 //!
 //! # Units
@@ -44,7 +44,9 @@ pub mod camera;
 pub mod cli;
 pub mod color;
 pub mod cpu;
+pub mod denoise;
 mod disk;
+pub mod encoding;
 pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;
@@ -58,6 +60,7 @@ pub mod io;
 pub mod lighting;
 pub mod material;
 pub mod math;
+mod outline;
 mod parallel;
 pub mod points;
 pub mod range;
@@ -69,9 +72,11 @@ pub mod scene_file;
 pub mod settings;
 pub mod sphere;
 mod text;
+pub mod tone;
 pub mod verify;
 
 pub use color::LinearRgb;
+pub use encoding::Encoding;
 pub use environment::Environment;
 pub use film::Film;
 pub use filter::PixelFilter;
@@ -82,6 +87,7 @@ pub use points::Points;
 pub use scene::Scene;
 pub use settings::{Settings, Shading};
 pub use sphere::Sphere;
+pub use tone::ToneCurve;
 
 /// Compiles the example in the README.
 #[cfg(doctest)]

@@ -132,11 +132,37 @@ impl Scene {
         Ok(Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds })
     }
 
+    #[cfg(feature = "gpu")]
+    fn of_one_color(
+        origin: DVec3,
+        spheres: Vec<[f32; 4]>,
+        color: LinearRgb,
+        bounds: Option<Bounds>,
+    ) -> Self {
+        Self { origin, spheres, colors: Arc::new(SceneColors::one(color)), bounds }
+    }
+
     /// The same spheres, all of one finish.
     #[must_use]
     pub fn with_finish(mut self, finish: Finish) -> Self {
         Arc::make_mut(&mut self.colors).finishes.fill(finish);
         self
+    }
+
+    /// The opaque spheres in the same frame; `None` if that is all of them.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn opaque(&self) -> Option<Self> {
+        if self.finishes().iter().all(|finish| finish.opacity >= 1.0) {
+            return None;
+        }
+        let is_opaque = |id: &usize| self.finish(*id as u32).opacity >= 1.0;
+        let spheres: Vec<[f32; 4]> =
+            (0..self.len()).filter(is_opaque).map(|id| self.spheres[id]).collect();
+        let in_world = |[x, y, z, radius]: [f64; 4]| {
+            Bounds::of_sphere(self.origin + DVec3::new(x, y, z), radius)
+        };
+        let bounds = spheres.iter().map(|s| in_world(s.map(f64::from))).reduce(Bounds::union);
+        Some(Self::of_one_color(self.origin, spheres, LinearRgb::WHITE, bounds))
     }
 
     /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.

@@ -7,7 +7,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::camera::CameraArgs;
 use super::data::DataFormat;
 use super::generate::kinds;
+use super::light::LightArgs;
+use super::patience::PatienceArgs;
 use crate::accel::AccelChoice;
+use crate::tone::ToneCurve;
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]
@@ -45,16 +48,77 @@ pub(super) enum Command {
 pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
-    /// The picture (.png), or - for PNG on standard output
+    /// The picture (.png, .exr), or - for PNG on standard output
     #[arg(short, long, value_name = "OUT.png")]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) encoding: EncodingArgs,
+    #[command(flatten)]
+    pub(super) light: LightArgs,
+    #[command(flatten)]
+    pub(super) patience: PatienceArgs,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Also write a layer (color, depth, normal, id) as a NumPy array; may be repeated
-    #[arg(long = "layer", value_name = "LAYER=FILE.npy")]
+    /// Also write a layer (color, alpha, depth, normal, position, albedo, id, samples, variance): as a NumPy array,
+    /// or without a file into an .exr picture; may be repeated
+    #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
     pub(super) layers: Vec<String>,
+    /// How the pictures of a camera with two eyes are written [default: side-by-side]
+    #[arg(long, value_enum)]
+    pub(super) stereo: Option<Stereo>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Stereo {
+    /// In one picture, twice as wide, the left eye's on the left
+    SideBySide,
+    /// In files of their own: OUT-left.png and OUT-right.png
+    TwoFiles,
+}
+
+/// How the picture is written. [`super::encoding::EncodingFlags`] checks it.
+#[derive(Debug, Args)]
+pub(super) struct EncodingArgs {
+    /// Bits of a sample of a PNG, 8 or 16 [default: the scene's, or 8]
+    #[arg(long, value_name = "N")]
+    pub(super) bits: Option<u32>,
+    /// No background: RGBA, with alpha where spheres are [default: the scene's, or false]
+    #[arg(
+        long,
+        value_name = "BOOL",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "true"
+    )]
+    pub(super) transparent: Option<bool>,
+    /// Make a PNG brighter by so many stops [default: the scene's, or 0]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    pub(super) exposure: Option<f32>,
+    /// How light that a PNG cannot show is brought into range [default: the scene's, or none]
+    #[arg(long, value_enum)]
+    pub(super) tone: Option<Tone>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Tone {
+    /// It is cut off
+    None,
+    /// A curve like film's, for each of red, green and blue
+    Filmic,
+    /// AgX: strong light turns white
+    Agx,
+}
+
+impl From<Tone> for ToneCurve {
+    fn from(tone: Tone) -> Self {
+        match tone {
+            Tone::None => Self::None,
+            Tone::Filmic => Self::Filmic,
+            Tone::Agx => Self::Agx,
+        }
+    }
 }
 
 /// What is shown, and from where. [`super::input::Source`] checks it.
@@ -174,7 +238,7 @@ impl From<Structure> for AccelChoice {
 }
 
 /// Arguments of `verify` that say what is rendered, and by what; a recording has all that in it.
-const RENDERING: [&str; 18] = [
+const RENDERING: [&str; 26] = [
     "path",
     "format",
     "radius",
@@ -189,6 +253,14 @@ const RENDERING: [&str; 18] = [
     "fov",
     "distance",
     "half_extent",
+    "aperture_radius",
+    "f_stop",
+    "focal_length",
+    "focus_distance",
+    "focus_on",
+    "angle",
+    "separation",
+    "convergence",
     "adapter",
     "limits",
     "accel",
@@ -247,10 +319,13 @@ pub(super) struct PlanArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
     #[command(flatten)]
+    pub(super) light: LightArgs,
+    #[command(flatten)]
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// A layer that would be written beside the picture (depth, normal, id); may be repeated
+    /// A layer that would be written beside the picture (alpha, depth, normal, position, albedo, id, samples,
+    /// variance); may be repeated
     #[arg(long = "layer", value_name = "LAYER")]
     pub(super) layers: Vec<String>,
     /// Print JSON

@@ -9,7 +9,7 @@ use super::args::DemoArgs;
 use super::device::Device;
 use super::failure::Failure;
 use super::input::Source;
-use super::output::Outputs;
+use super::picture::Outputs;
 use super::render::render;
 use super::speak::tell;
 use super::threads;
@@ -27,7 +27,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     threads::start()?;
     let input = Source::of_scene(&scene_file).scene_from_text(SCENE)?;
     let image = render(&input, LayerSet::COLOR, &device.open()?)?;
-    outputs.write(&image, (!is_there).then_some((&scene_file, SCENE)))?;
+    outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(
         "wrote {SCENE_FILE} and {PICTURE_FILE}; change the scene and run \
          `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"

@@ -82,6 +82,19 @@ pub(super) enum Opened {
     },
 }
 
+impl Opened {
+    /// The name of the adapter, if it is one.
+    pub(super) fn adapter(&self) -> Option<&str> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Device { headless, .. } => Some(&headless.adapter_info().name),
+            #[cfg(feature = "gpu")]
+            Self::CpuInstead => None,
+            Self::Cpu => None,
+        }
+    }
+}
+
 impl Device {
     /// Opens it, and sees whether it computes as it should.
     pub(super) fn open(&self) -> Result<Opened, Failure> {

@@ -11,73 +11,7 @@ use tempfile::NamedTempFile;
 use super::failure::Failure;
 use super::input::extension;
 use super::interrupt;
-use super::progress;
-use super::speak::answer;
-use crate::image::{Image, Layer};
-use crate::io::{npy, png, raw};
-
-/// Where the results go, checked before any work is done.
-#[derive(Debug)]
-pub(super) struct Outputs {
-    /// `None` is standard output.
-    picture: Option<PathBuf>,
-    layers: Vec<(Layer, PathBuf)>,
-}
-
-impl Outputs {
-    /// Checks what the user typed: extensions, folders, layers, and that no file is named twice.
-    pub(super) fn new(picture: &Path, layers: &[String]) -> Result<Self, Failure> {
-        let picture = if picture == Path::new("-") {
-            None
-        } else {
-            check_file(picture, "png")?;
-            Some(picture.to_path_buf())
-        };
-        let layers = layers.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>, _>>()?;
-        let outputs = Self { picture, layers };
-        check_distinct(outputs.paths())?;
-        Ok(outputs)
-    }
-
-    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
-        self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
-    }
-
-    /// Refuses to overwrite what was read.
-    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        spare(self.paths(), inputs)
-    }
-
-    /// The layers to render.
-    pub(super) fn layers(&self) -> impl Iterator<Item = Layer> {
-        self.layers.iter().map(|(layer, _)| *layer)
-    }
-
-    /// Encodes and writes everything, and `text` to a file if there is one; files get their names once
-    /// all of them are complete.
-    pub(super) fn write(&self, image: &Image, text: Option<(&PathBuf, &str)>) -> Result<()> {
-        progress::stage("writing");
-        let picture = png::encode(image)?;
-        let mut files = Vec::new();
-        if let Some((path, text)) = text {
-            files.push((path, unnamed(path, text.as_bytes())?));
-        }
-        if let Some(path) = &self.picture {
-            files.push((path, unnamed(path, &picture)?));
-        }
-        for (layer, path) in &self.layers {
-            files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
-        }
-        name_all(files)?;
-        if self.picture.is_none() {
-            interrupt::words(
-                "stopped; what was written to standard output is not the whole picture",
-            );
-            answer(&picture).context("standard output: cannot be written")?;
-        }
-        Ok(())
-    }
-}
+use crate::io::{npy, raw};
 
 /// Refuses one file for two outputs.
 pub(super) fn check_distinct<'a>(
@@ -262,29 +196,6 @@ fn real(path: &Path) -> PathBuf {
     let folder = folder(path);
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     path.file_name().map_or_else(|| path.to_path_buf(), |name| folder.join(name))
-}
-
-/// `LAYER=FILE.npy`
-fn parse_layer(text: &str) -> Result<(Layer, PathBuf), Failure> {
-    let (name, path) = text.split_once('=').ok_or_else(|| {
-        Failure::usage(format!("--layer {text}: write LAYER=FILE.npy, such as depth=depth.npy"))
-    })?;
-    if path.is_empty() {
-        return Err(Failure::usage(format!("--layer {text}: name a file behind the =")));
-    }
-    let layer = name.parse().map_err(|error| Failure::usage(format!("--layer {text}: {error}")))?;
-    check_file(Path::new(path), "npy")?;
-    Ok((layer, PathBuf::from(path)))
-}
-
-fn check_file(path: &Path, wanted: &str) -> Result<(), Failure> {
-    if extension(path).as_deref() != Some(wanted) {
-        return Err(Failure::usage(format!(
-            "{}: this output is written as .{wanted}; change its extension",
-            path.display()
-        )));
-    }
-    check_place(path)
 }
 
 /// Refuses folders, and files in folders that are not there or cannot be written.

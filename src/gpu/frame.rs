@@ -109,7 +109,7 @@ impl Frame {
         let (records, hits, rays, status, band_groups, target_group) = scoped(device, || {
             let status = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole status"),
-                size: size_of::<u32>() as u64,
+                size: size_of::<records::Status>() as u64,
                 usage: wgpu::BufferUsages::STORAGE
                     | wgpu::BufferUsages::COPY_SRC
                     | wgpu::BufferUsages::COPY_DST,
@@ -291,7 +291,7 @@ impl Frame {
         (&self.hits, self.rays.as_ref())
     }
 
-    /// One u32 that kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
+    /// Two u32, of which kernels set the first if a ray tried so many spheres that it was given up: then some pixels are wrong.
     /// 0 after creation, and not set back; read it once a submission is done, and clear it then.
     ///
     /// Usage: `COPY_SRC`, `COPY_DST`. Software devices give up after 8,000 spheres and cells, because old ones

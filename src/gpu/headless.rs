@@ -13,6 +13,7 @@ use super::derived::Derived;
 use super::error::{GpuError, scoped};
 use super::faults::Faults;
 use super::frame::{Frame, Part, tile_size};
+use super::lit::{LitKey, LitRenderer};
 use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
 use super::quirks;
 use super::readback::ReadableTexture;
@@ -337,6 +338,15 @@ impl Headless {
         work: impl FnOnce(&Renderer) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(|renderers| renderers.of(&self.device, key).and_then(work))
+    }
+
+    /// Works with the lit renderer that a key stands for, alone on this device.
+    pub(super) fn with_lit_renderer<T>(
+        &self,
+        key: LitKey,
+        work: impl FnOnce(&LitRenderer) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
+        self.alone(|renderers| renderers.lit(&self.device, key).and_then(work))
     }
 
     /// Works with the device while no other thread does.

@@ -33,7 +33,7 @@ impl Layouts {
         let mut frame = vec![
             uniform::<records::Frame>(),
             storage::<records::Hit>(false),
-            storage::<u32>(false),
+            storage::<records::Status>(false),
         ];
         if keeps_rays {
             frame.push(storage::<records::TracedRay>(false));
@@ -73,7 +73,17 @@ pub(super) fn self_test<Input, Answer>(device: &Device) -> BindGroupLayout {
 }
 
 fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
-    let entries: Vec<_> = (0..).zip(kinds).map(|(binding, ty)| entry(binding, *ty)).collect();
+    let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
+    layout_of(device, label, &kinds)
+}
+
+/// A layout of some bindings.
+pub(super) fn layout_of(
+    device: &Device,
+    label: &str,
+    kinds: &[(u32, BindingType)],
+) -> BindGroupLayout {
+    let entries: Vec<_> = kinds.iter().map(|(binding, ty)| entry(*binding, *ty)).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries: &entries,
@@ -99,7 +109,7 @@ fn entry(binding: u32, ty: BindingType) -> BindGroupLayoutEntry {
 }
 
 /// With a minimum size, wgpu compares record and WGSL when a pipeline is created.
-fn uniform<Record>() -> BindingType {
+pub(super) fn uniform<Record>() -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,
@@ -107,7 +117,7 @@ fn uniform<Record>() -> BindingType {
     }
 }
 
-fn storage<Element>(read_only: bool) -> BindingType {
+pub(super) fn storage<Element>(read_only: bool) -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only },
         has_dynamic_offset: false,

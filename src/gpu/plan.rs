@@ -234,7 +234,7 @@ impl HostPeak {
 }
 
 /// The structure's, and what shading reads.
-fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
+pub(super) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
     // A sphere that is copied into several cells has its colour as often as its id.
     let ids = buffers.iter().find(|buffer| buffer.name == "ids");
@@ -246,7 +246,7 @@ fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     buffers
 }
 
-fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
+pub(super) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
     u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
 }
 
@@ -259,12 +259,15 @@ fn in_words(name: &str) -> &'static str {
         "palette" => "the palette",
         "hits" => "the buffer of hits",
         "rays" => "the buffer of rays",
+        "paths" => "the paths of a tile",
+        "tables" => "the tables of lights and materials",
+        "sky" | "sky shares" => "the image of the sky",
         "nodes" | "cells" | "references" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
 }
 
-fn total(buffers: &[PlannedBuffer]) -> u64 {
+pub(super) fn total(buffers: &[PlannedBuffer]) -> u64 {
     buffers.iter().map(|buffer| buffer.bytes).sum()
 }
 
@@ -273,6 +276,7 @@ mod tests {
     use super::*;
     use crate::accel::AccelChoice;
     use crate::color::LinearRgb;
+    use crate::image::Layer;
     use crate::sphere::Sphere;
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
@@ -296,6 +300,19 @@ mod tests {
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
         let all = super::tests::plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
+    }
+
+    #[test]
+    fn the_host_keeps_every_layer_and_the_device_four() {
+        let plan = |layers| plan(1024, layers, DeviceType::DiscreteGpu);
+        let (color, alpha) = (plan(LayerSet::COLOR), plan(LayerSet::COLOR.with(Layer::Alpha)));
+        let (data, all) = (plan(LayerSet::DATA), plan(LayerSet::ALL));
+        assert_eq!(color.host_bytes, (12 + 16) << 20);
+        assert_eq!(alpha.host_bytes, color.host_bytes + (4 << 20));
+        assert_eq!(data.host_bytes, color.host_bytes + ((4 + 12 + 4) << 20));
+        assert_eq!(all.host_bytes, data.host_bytes + ((4 + 12 + 12 + 4 + 4) << 20));
+        assert_eq!(all.tile_textures, data.tile_textures);
+        assert_eq!(alpha.tile_textures, data.tile_textures);
     }
 
     #[test]

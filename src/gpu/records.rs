@@ -56,6 +56,9 @@ pub(super) struct Brick {
     pub(super) _pad: u32,
 }
 
+/// Whether an invocation was given up, and whether a path goes on.
+pub(super) type Status = [u32; 2];
+
 /// The bits of t, id and place, and of where the ray starts: one `vec4u`.
 pub(super) type Hit = [u32; 4];
 
@@ -153,6 +156,22 @@ impl Frame {
     }
 }
 
+impl Frame {
+    /// For lit pictures, which have settings of their own.
+    pub(super) fn of_tile(
+        camera: &dyn crate::camera::Camera,
+        scene: &SceneSpace,
+        film: &Film,
+        tile: Tile,
+        traced: Groups,
+        iteration_limit: u32,
+    ) -> Self {
+        let settings = Settings::default();
+        let view = (camera.kind(), &camera.vectors());
+        Self::new(view, scene, film, tile, traced, &settings, iteration_limit)
+    }
+}
+
 /// The step with which rows of workgroups are taken: about the golden ratio of their number, so that any
 /// run of rows is spread evenly over the picture, and without a common factor, so that none is left out.
 fn row_step(row_count: u32) -> u32 {
@@ -175,6 +194,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::gpu::denoise::Denoise;
+    use crate::gpu::lit::records::{Look, Stage};
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
     use crate::gpu::shaders;
 
@@ -285,6 +306,37 @@ mod tests {
                 tiny_sum
             }),
             layout!(Looped { count, state }),
+            layout!(Denoise { size, step, zero }),
+            layout!(Stage { sample, surface, is_last, light, count }),
+            layout!(Look {
+                background,
+                flags,
+                ambient,
+                light_count,
+                zenith,
+                roulette_from,
+                horizon,
+                source_count,
+                nadir,
+                light_sampling,
+                cue_color,
+                cue_near,
+                ground_normal,
+                cue_scale,
+                ground_point,
+                occlusion_radius,
+                ground_color,
+                occlusion_samples,
+                seed,
+                emitter_first,
+                emitter_count,
+                material_first,
+                environment_size,
+                environment_rotation,
+                environment_strength,
+                lamp_sources,
+                filter_table
+            }),
         ];
         let mut declared = BTreeSet::new();
         for kernel in shaders::all_kernels() {

@@ -6,6 +6,7 @@ use std::collections::hash_map::Entry;
 use wgpu::Device;
 
 use super::error::GpuError;
+use super::lit::{LitKey, LitRenderer, LitRenderers};
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
 use super::shaders::ShaderEdit;
@@ -41,13 +42,14 @@ impl RendererKey {
 #[derive(Debug)]
 pub(super) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
+    lit: LitRenderers,
     edits: Vec<ShaderEdit>,
 }
 
 impl Renderers {
     /// None yet; all will be built with these changes of their shaders.
     pub(super) fn new(edits: Vec<ShaderEdit>) -> Self {
-        Self { built: HashMap::new(), edits }
+        Self { built: HashMap::new(), lit: LitRenderers::new(), edits }
     }
 
     /// The renderer that a key stands for.
@@ -68,6 +70,14 @@ impl Renderers {
                 };
                 Ok(place.insert(Renderer::new(device, &options)?))
             }
+        }
+    }
+
+    /// The lit renderer that a key stands for.
+    pub(super) fn lit(&mut self, device: &Device, key: LitKey) -> Result<&LitRenderer, GpuError> {
+        match self.lit.entry(key) {
+            Entry::Occupied(built) => Ok(built.into_mut()),
+            Entry::Vacant(place) => Ok(place.insert(LitRenderer::new(device, key, &self.edits)?)),
         }
     }
 }

@@ -14,6 +14,8 @@ use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
+use crate::color::LinearRgb;
+use crate::material::Finish;
 use crate::scene::{Scene, SceneColors};
 
 /// Tells scenes on devices apart.
@@ -99,7 +101,7 @@ impl SceneBuffers {
     ) -> Result<Self, GpuError> {
         let mut upload = Upload { renderer, device, queue, scene, first_place: 0, bytes: 0 };
         let palette: Vec<records::Color> =
-            or_one(scene.palette().iter().map(|c| pad(c.to_array())).collect());
+            or_one(scene.palette().iter().zip(scene.finishes()).map(painted).collect());
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
@@ -317,8 +319,10 @@ fn or_one<T: bytemuck::Zeroable>(mut values: Vec<T>) -> Vec<T> {
     values
 }
 
-fn pad([r, g, b]: [f32; 3]) -> records::Color {
-    [r, g, b, 0.0]
+/// A colour, and its opacity.
+fn painted((color, finish): (&LinearRgb, &Finish)) -> records::Color {
+    let [r, g, b] = color.to_array();
+    [r, g, b, finish.opacity]
 }
 
 /// Binds a part of a buffer, in bytes.

@@ -30,18 +30,25 @@ pub struct ShaderEdit {
 
 macro_rules! part {
     ($($piece:literal),+) => {
-        Part {
-            file: concat!($($piece),+),
-            source: Cow::Borrowed(include_str!(concat!("../../shaders/", $($piece),+))),
-        }
+        $crate::gpu::shaders::Part::new(
+            concat!($($piece),+),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $($piece),+)),
+        )
     };
+}
+pub(super) use part;
+
+impl Part {
+    pub(super) const fn new(file: &'static str, source: &'static str) -> Self {
+        Self { file, source: Cow::Borrowed(source) }
+    }
 }
 
 /// An entry point, and the parts that it is composed of.
 #[derive(Clone, Debug)]
 pub(super) struct Kernel {
     pub(super) entry_point: &'static str,
-    parts: Vec<Part>,
+    pub(super) parts: Vec<Part>,
 }
 
 /// Whether a brick is the first that a picture's rays meet.
@@ -87,34 +94,39 @@ pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Tu
 
 fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part> {
     let mut parts = common_parts(camera);
-    parts.extend([part!("schedule.wgsl"), part!("brick.wgsl")]);
+    parts.extend([part!("schedule.wgsl"), part!("spend.wgsl"), part!("brick.wgsl")]);
     parts.push(match turn {
         Turn::First => part!("first_brick.wgsl"),
         Turn::Later => part!("later_brick.wgsl"),
     });
+    parts.extend(structure_parts(structure));
+    parts
+}
+
+/// What walks a structure.
+pub(super) fn structure_parts(structure: Structure) -> Vec<Part> {
     match structure {
-        Structure::List => parts.push(part!("list.wgsl")),
-        Structure::WideTree => parts.extend([
+        Structure::List => vec![part!("list.wgsl")],
+        Structure::WideTree => vec![
             part!("slab.wgsl"),
             part!("leaf.wgsl"),
             part!("wide_group.wgsl"),
             part!("wide_node.wgsl"),
             part!("wide_tree.wgsl"),
-        ]),
-        Structure::BinaryTree => parts.extend([
+        ],
+        Structure::BinaryTree => vec![
             part!("slab.wgsl"),
             part!("leaf.wgsl"),
             part!("binary_node.wgsl"),
             part!("binary_tree.wgsl"),
-        ]),
+        ],
         Structure::Grid(layout) => {
-            parts.extend([part!("grid_ray.wgsl"), part!("grid.wgsl"), list_part(layout)]);
+            vec![part!("grid_ray.wgsl"), part!("grid.wgsl"), list_part(layout)]
         }
         Structure::NestedGrid(layout) => {
-            parts.extend([part!("grid_ray.wgsl"), part!("nested_grid.wgsl"), list_part(layout)]);
+            vec![part!("grid_ray.wgsl"), part!("nested_grid.wgsl"), list_part(layout)]
         }
     }
-    parts
 }
 
 /// Turns hits into colour and, if wanted, data layers.
@@ -151,18 +163,24 @@ fn list_part(layout: ListLayout) -> Part {
 }
 
 fn common_parts(camera: CameraKind) -> Vec<Part> {
-    vec![
+    let mut parts = vec![
         part!("records.wgsl"),
         part!("frame.wgsl"),
         part!("fence.wgsl"),
         part!("film.wgsl"),
         part!("ray.wgsl"),
-        part!("trigonometry.wgsl"),
-        part!("disk.wgsl"),
-        camera_part(camera),
         part!("enter.wgsl"),
+        part!("camera_entry.wgsl"),
+        part!("origin_none.wgsl"),
         part!("sphere.wgsl"),
-    ]
+    ];
+    parts.extend(camera_parts(camera));
+    parts
+}
+
+/// A camera, and what cameras compute with.
+pub(super) fn camera_parts(camera: CameraKind) -> [Part; 3] {
+    [part!("trigonometry.wgsl"), part!("disk.wgsl"), camera_part(camera)]
 }
 
 macro_rules! define_camera_part {
@@ -189,6 +207,13 @@ impl Kernel {
             "wide_tree",
             "binary_tree",
             "entry_re",
+            "entry_path",
+            "direct",
+            "scatter_",
+            "medium_",
+            "settle_",
+            "start_",
+            "sky_",
         ];
         self.parts
             .iter()
@@ -279,6 +304,8 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
             }
         }
     }
+    kernels.extend(super::lit::all_kernels());
+    kernels.push(super::denoise::denoise_kernel());
     kernels
 }
 
@@ -309,7 +336,9 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len()) + 3
+            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+                + 4
+                + super::super::lit::all_kernels().len()
         );
         for kernel in kernels {
             let module =

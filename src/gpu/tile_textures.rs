@@ -6,7 +6,7 @@ use super::derived::Derived;
 use super::error::GpuError;
 use super::frame::{DataTargets, Targets};
 use super::readback::{ReadableBuffer, ReadableTexture};
-use super::records::NO_HIT;
+use super::records::{self, NO_HIT};
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::tiles::Tile;
 use crate::accel::PlannedBuffer;
@@ -57,7 +57,11 @@ impl TileTextures {
                 normal: texture("pinhole normal", NORMAL_FORMAT),
                 id: texture("pinhole id", ID_FORMAT),
             }),
-            status: ReadableBuffer::new(device, "pinhole status", size_of::<u32>() as u64),
+            status: ReadableBuffer::new(
+                device,
+                "pinhole status",
+                size_of::<records::Status>() as u64,
+            ),
         }
     }
 

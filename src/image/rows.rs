@@ -19,10 +19,15 @@ pub(crate) struct RowMut<'a> {
 }
 
 impl RowMut<'_> {
+    /// What a pixel's only ray says of how much spheres cover it.
+    pub(crate) fn coverage(id: u32) -> f32 {
+        if id == NO_ID { 0.0 } else { 1.0 }
+    }
+
     /// Sets what one ray says of a pixel.
     pub(crate) fn set(&mut self, column: usize, pixel: &Pixel) {
         self.color[column] = pixel.color;
-        put(&mut self.alpha, column, coverage(pixel.id));
+        put(&mut self.alpha, column, Self::coverage(pixel.id));
         put(&mut self.depth, column, pixel.depth);
         put(&mut self.normal, column, pixel.normal);
         put(&mut self.position, column, pixel.position);
@@ -52,11 +57,6 @@ pub(crate) struct Averages {
     pub(crate) samples: u32,
     /// Of the mean luminance.
     pub(crate) variance: f32,
-}
-
-/// What a pixel's only ray says of how much spheres cover it.
-pub(crate) fn coverage(id: u32) -> f32 {
-    if id == NO_ID { 0.0 } else { 1.0 }
 }
 
 fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {

@@ -21,6 +21,7 @@ mod sky;
 mod studio;
 
 pub use check::LightingError;
+pub use emitters::Emitters;
 pub use ground::Ground;
 pub use light::{Light, LightFrame, LightKind};
 pub use sky::{Sky, SkyLight};
@@ -94,6 +95,11 @@ pub struct Sampling {
     pub seed: u32,
     /// How samples around a pixel's centre are weighted.
     pub filter: PixelFilter,
+}
+
+impl Sampling {
+    /// The most samples of a pixel, 2²⁴.
+    pub const MAX_SAMPLES: u32 = 1 << 24;
 }
 
 impl Default for Sampling {

@@ -15,8 +15,10 @@ mod arrays;
 
 mod basis;
 mod camera;
+mod camera_tables;
 mod comparator;
 mod environment;
+mod environment_files;
 mod generate;
 mod grid_check;
 mod hostile_rays;
@@ -28,6 +30,7 @@ mod lens;
 mod light;
 mod npy;
 mod perspective;
+mod pictures;
 mod rays;
 mod reference;
 mod round_cameras;

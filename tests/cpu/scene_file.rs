@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use pinhole::camera::CameraKind;
+use pinhole::encoding::{Bits, Encoding};
 use pinhole::film::YAxis;
 use pinhole::scene_file::SceneFile;
-use pinhole::{LinearRgb, Shading, glam};
+use pinhole::{LinearRgb, Shading, ToneCurve, glam};
 
 fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
@@ -48,6 +49,27 @@ fn the_example_says_what_it_should() {
 }
 
 #[test]
+fn how_the_picture_is_written() {
+    assert_eq!(parse("[output]\n").encoding, Encoding::default());
+    let all = "[output]\nexposure = 1.5\ntone = 'filmic'\ntransparent = true\nbits = 16\n";
+    let expected = Encoding::default()
+        .with_exposure(1.5)
+        .unwrap()
+        .with_tone(ToneCurve::Filmic)
+        .with_transparent(true)
+        .with_bits(Bits::Sixteen);
+    assert_eq!(parse(all).encoding, expected);
+    for tone in ToneCurve::ALL {
+        let file = parse(&format!("[output]\ntone = '{}'\nexposure = -2\n", tone.name()));
+        assert_eq!((file.encoding.tone(), file.encoding.exposure()), (*tone, -2.0));
+    }
+    assert_eq!(
+        message("[output]\nbits = 8\nexposure = -32.5\n"),
+        "line 3, column 12: `exposure` is -32.5 stops; it must lie between -32 and 32"
+    );
+}
+
+#[test]
 fn colors_in_three_ways() {
     let file = parse(
         "[[spheres]]\ncenter=[0,0,0]\nradius=1\ncolor='tomato'\n\
@@ -78,7 +100,14 @@ fn data_comes_behind_the_files_own_spheres() {
 
 #[test]
 fn a_camera_without_an_eye_frames_the_scene() {
-    for camera in ["", "[camera.pinhole]\nvertical_fov = 50\n", "[camera.orthographic]\n"] {
+    for camera in [
+        "",
+        "[camera.pinhole]\nvertical_fov = 50\n",
+        "[camera.orthographic]\n",
+        "[camera.thin-lens]\naperture_radius = 0.1\n",
+        "[camera.fisheye]\nangle = 120\n",
+        "[camera.fisheye]\nangle = 360\n",
+    ] {
         let file = parse(&format!("{camera}[[spheres]]\ncenter=[10,20,30]\nradius=2\n"));
         let scene = file.scene(&[]).unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
@@ -103,7 +132,7 @@ fn errors_name_place_and_remedy() {
         ),
         (
             "[camera.pinhole]\nfocus = 3\n",
-            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov",
+            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov, stereo",
         ),
         ("[camera.pinhol]\n", "line 1, column 9: unknown name `pinhol`; did you mean `pinhole`?"),
         (

@@ -13,6 +13,7 @@ mod device;
 mod embedding;
 mod faults;
 mod lens;
+mod light;
 mod parts;
 mod pictures;
 mod plan;
@@ -61,6 +62,7 @@ fn main() {
     let groups = [
         agreement::trials(),
         lens::trials(),
+        light::trials(),
         pictures::trials(),
         parts::trials(),
         embedding::trials(),

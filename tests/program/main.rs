@@ -12,5 +12,7 @@ mod bad_input;
 mod generate;
 mod good_input;
 mod interrupt;
+mod pictures;
+mod stereo;
 mod support;
 mod verify;

@@ -14,6 +14,7 @@ use crate::camera::Camera;
 use crate::film::Film;
 use crate::image::{Averages, Image, ImageTooLarge, LayerSet, Pixel};
 use crate::lighting::{Integrator, Lighting, LightingError};
+use crate::outline;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -99,7 +100,10 @@ impl<'a> LitPicture<'a> {
     /// # Errors
     /// If the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
-        let mut image = Image::new(self.film.width(), self.film.height(), layers)?;
+        let lines = self.stage.lighting.studio().and_then(|studio| studio.outline);
+        let by = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
+        let wanted = layers.iter().fold(by, LayerSet::with);
+        let mut image = Image::new(self.film.width(), self.film.height(), wanted)?;
         let height = self.film.height() as usize;
         for start in (0..height).step_by(ROWS_AT_ONCE) {
             let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
@@ -111,6 +115,10 @@ impl<'a> LitPicture<'a> {
                     row.set_averages(i as usize, &averages);
                 }
             });
+        }
+        if let Some(lines) = &lines {
+            outline::draw(&mut image, lines);
+            image.keep(layers);
         }
         Ok(image)
     }

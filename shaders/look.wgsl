@@ -1,0 +1,31 @@
+// What lights, sky, ground and materials are.
+
+@group(2) @binding(0) var<uniform> look: Look;
+// Lights, emitters, materials and energies, each at its own place. Bits, because there are whole numbers among them,
+// which as f32 are subnormal and might be flushed.
+@group(2) @binding(1) var<storage, read> tables: array<vec4u>;
+
+fn table(index: u32) -> vec4f {
+    return bitcast<vec4f>(tables[index]);
+}
+
+fn is_look(flag: u32) -> bool {
+    return (look.flags & flag) != 0u;
+}
+
+fn filter_table(index: u32) -> f32 {
+    return look.filter_table[index >> 2u][index & 3u];
+}
+
+// Where a ray meets the ground from above, or NO_HIT; perhaps behind its origin, as far as it has come already.
+fn ground_distance(ray: Ray, behind: f32) -> f32 {
+    let toward = dot(ray.direction, look.ground_normal);
+    let height = dot(ray.origin - look.ground_point, look.ground_normal);
+    let is_toward = is_look(LOOK_GROUND) && toward < 0.0;
+    let t = height / select(1.0, -toward, is_toward);
+    return select(NO_HIT, t, is_toward && t > -behind);
+}
+
+fn luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}

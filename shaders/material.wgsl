@@ -1,0 +1,39 @@
+// What a surface does with light. Twin: src/material.rs.
+
+const LAMBERT: u32 = 0u;
+const CONDUCTOR: u32 = 1u;
+const DIELECTRIC: u32 = 2u;
+const EMISSIVE: u32 = 3u;
+
+struct Material {
+    kind: u32,
+    // The share of Lambert's lobe, the index of refraction, or the strength of an emitter.
+    parameter: f32,
+    // The square of the roughness; 0 is smooth.
+    alpha: f32,
+    // Where the energies of its lobe start in `tables`.
+    energies: u32,
+    // How much light is absorbed inside, for each unit of length.
+    absorption: vec3f,
+}
+
+fn material_of(vertex: Vertex) -> Material {
+    // The ground is the first.
+    let place = select(vertex.material + 1u, 0u, vertex.sphere.w == 0.0);
+    let bits = tables[look.material_first + 2u * place];
+    let numbers = bitcast<vec2f>(bits.yz);
+    let absorption = table(look.material_first + 2u * place + 1u).rgb;
+    return Material(bits.x, numbers.x, numbers.y, bits.w, absorption);
+}
+
+// A table of an energy has so many numbers, and starts at the next multiple of four.
+const ENERGIES: u32 = 256u;
+
+// What a lobe keeps of the light that it gets at a cosine. Twin: `lookup` in src/lighting/energy.rs.
+fn energy(first: u32, cosine: f32) -> f32 {
+    let along = sqrt(sqrt(clamp(cosine, 0.0, 1.0))) * f32(ENERGIES - 1u);
+    let below = min(u32(along), ENERGIES - 2u);
+    let a = bitcast<f32>(tables[first + (below >> 2u)][below & 3u]);
+    let b = bitcast<f32>(tables[first + ((below + 1u) >> 2u)][(below + 1u) & 3u]);
+    return a + (along - f32(below)) * (b - a);
+}

@@ -1,0 +1,24 @@
+// Whether anything is between a path's surface and the light that it looks for. One dispatch per brick.
+
+@compute @workgroup_size(64)
+fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    zero_bits = frame.zero;
+    let pixel = pixel_in_tile(group.xy, lane);
+    if (any(pixel >= frame.tile_size)) {
+        return;
+    }
+    let index = hit_index(pixel);
+    let shadow = load(index, SHADOW);
+    left = load(index, LEFT);
+    target_sphere = load(index, TARGET);
+    let entry = enter_scene(CameraRay(Ray(load_start(index).position, shadow.xyz), 0.0, true));
+    let rest = shadow.w - entry.distance;
+    if (rest > 0.0 && entry.is_inside) {
+        if (find_any(entry.ray, entry.inverse, rest)) {
+            // Nor need any other brick be searched.
+            paths[slot(index, SHADOW)].w = 0u;
+            paths[slot(index, PENDING)].w = 0u;
+        }
+    }
+    report_spent();
+}

@@ -1,0 +1,88 @@
+// Where a ray meets a sphere or the ground, and what is there.
+
+@group(1) @binding(0) var<uniform> brick: Brick;
+@group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
+@group(1) @binding(2) var<storage, read> color_indices: array<u32>;
+// Linear colour, and opacity.
+@group(1) @binding(3) var<storage, read> palette: array<vec4f>;
+
+struct Vertex {
+    position: vec3f,
+    // Unit, on the side that is seen.
+    normal: vec3f,
+    // Whether that is the inside of a sphere.
+    is_back: bool,
+    // Along the ray.
+    distance: f32,
+    // The sphere; radius 0 for the ground.
+    sphere: vec4f,
+    color: vec3f,
+    opacity: f32,
+    // Its material's place in the palette.
+    material: u32,
+}
+
+// Whose turn it is to go on with a pixel: that of the brick with its sphere, and of the first for the rest.
+const NOBODY: u32 = 0u;
+const NOTHING_MET: u32 = 1u;
+const GROUND_MET: u32 = 2u;
+const SPHERE_MET: u32 = 3u;
+
+// How far the ray has come before its origin, where the ground may have been met already: a camera's starts where
+// spheres begin.
+fn come_from_camera(length: f32) -> f32 {
+    return select(0.0, length, stage.surface == 0u);
+}
+
+fn what_is_met(ray: Ray, hit: Hit, is_on_ground: bool, behind: f32) -> u32 {
+    let sphere_distance = select(hit.distance + hit.t, NO_HIT, hit.id == NO_ID);
+    let to_ground = select(ground_distance(ray, behind), NO_HIT, is_on_ground);
+    let place = hit.place - brick.first_place;
+    let is_ground = to_ground < sphere_distance;
+    if (is_ground || hit.id == NO_ID) {
+        let met = select(NOTHING_MET, GROUND_MET, is_ground);
+        return select(NOBODY, met, brick.is_first != 0u);
+    }
+    // What lies before the brick has become a large number.
+    return select(NOBODY, SPHERE_MET, place < brick.place_count);
+}
+
+// What a ray meets. On the ground no other brick is to take the sphere behind for it.
+fn vertex_of(index: u32, ray: Ray, hit: Hit, met: u32, flags: u32, behind: f32) -> Vertex {
+    if (met == GROUND_MET) {
+        store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
+        return ground_vertex(ray, behind);
+    }
+    return sphere_vertex(ray, hit, load(index, LEFT), has(flags, PATH_INSIDE));
+}
+
+// `left` is the sphere on which the ray starts; if it goes inside, its far wall may be what it meets.
+fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Vertex {
+    let place = hit.place - brick.first_place;
+    let sphere = vec4f(spheres[place].xyz, abs(spheres[place].w));
+    let is_far_wall = is_inside && all(sphere == left_sphere);
+    let entered = Ray(fence3(ray.origin + hit.distance * ray.direction), ray.direction);
+    var found = intersect_sphere(entered, sphere);
+    let middle = dot(sphere.xyz - entered.origin, ray.direction);
+    // Which wall it is, the search has decided.
+    let half_chord = select(abs(found.from_foot), abs(middle), is_far_wall);
+    found.from_foot = select(-half_chord, half_chord, is_far_wall || hit.t > middle);
+    let outward = sphere_normal(entered, found);
+    let is_back = dot(outward, ray.direction) > 0.0;
+    // Back on the sphere, unless that is so large that its own numbers are coarser than the ray's.
+    let on_sphere = sphere.xyz + sphere.w * outward;
+    let on_ray = entered.origin + hit.t * ray.direction;
+    let position = fence3(select(on_sphere, on_ray, sphere.w > 64.0 * (hit.t + hit.distance)));
+    let material = color_indices[min(place, brick.last_color)];
+    let normal = select(outward, -outward, is_back);
+    let paint = palette[material];
+    return Vertex(position, normal, is_back, hit.distance + hit.t, sphere, paint.rgb, paint.a, material);
+}
+
+fn ground_vertex(ray: Ray, behind: f32) -> Vertex {
+    let distance = ground_distance(ray, behind);
+    let on_ray = ray.origin + distance * ray.direction;
+    let n = look.ground_normal;
+    let position = fence3(on_ray - dot(on_ray - look.ground_point, n) * n);
+    return Vertex(position, n, false, distance, vec4f(0.0), look.ground_color, 1.0, 0u);
+}

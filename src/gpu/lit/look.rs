@@ -1,0 +1,268 @@
+//! A lighting as kernels have it: one record, and one buffer of lights, emitters, materials and energies.
+
+use bytemuck::Zeroable;
+use glam::DVec3;
+
+use super::kernels::{Mode, SkyKind, Sources, Surfaces};
+use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::gpu::records::NO_HIT;
+use crate::lighting::emitters::Emitters;
+use crate::lighting::energy::EnergyTables;
+use crate::lighting::{Integrator, LightKind, LightSampling, Lighting, Sky, SkyLight};
+use crate::material::{Finish, Material};
+use crate::math::unit;
+use crate::scene::Scene;
+
+/// What a picture's kernels get to know of its lighting.
+#[derive(Debug)]
+pub(super) struct Lit {
+    pub(super) mode: Mode,
+    pub(super) look: Look,
+    /// Never empty.
+    pub(super) tables: Vec<[f32; 4]>,
+    /// Whether every sphere is opaque.
+    pub(super) is_opaque: bool,
+    /// Of each light, whether shadow rays are sent to it.
+    pub(super) casts_shadow: Vec<bool>,
+}
+
+impl Lit {
+    /// Of a lighting that has been checked, for a scene in its own frame.
+    pub(super) fn new(lighting: &Lighting, scene: &Scene, camera: &dyn Camera) -> Self {
+        let mut tables = Vec::new();
+        let lights: Vec<LightKind> =
+            lighting.lights.iter().filter_map(|light| light.in_world(camera)).collect();
+        let emitters = Emitters::of(scene);
+        let sources = SourceList::of(lighting, &lights, &emitters);
+        for (index, light) in lights.iter().enumerate() {
+            let source = sources.lamps.get(index).copied().unwrap_or(0);
+            tables.extend(light_record(light, scene.origin(), source));
+        }
+        let emitter_first = tables.len() as u32;
+        if sources.emitters {
+            tables.extend(emitter_records(scene, &emitters));
+        }
+        let material_first = tables.len() as u32;
+        let energies = EnergyTables::of(scene.finishes());
+        let energy_first = material_first + 2 * (1 + scene.finishes().len()) as u32;
+        tables.extend(material_record(LinearRgb::WHITE, &Finish::default(), 0));
+        let painted = scene.palette().iter().zip(scene.finishes()).zip(energies.starts());
+        for ((color, finish), start) in painted {
+            let energy = energy_first + start.unwrap_or(0) / 4;
+            tables.extend(material_record(*color, finish, energy));
+        }
+        tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
+        let mut look = look_of(lighting, scene);
+        look.light_count = lights.len() as u32;
+        look.source_count = sources.count();
+        look.lamp_sources = sources.lamps.len() as u32;
+        look.emitter_first = emitter_first;
+        look.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
+        look.material_first = material_first;
+        Self {
+            mode: mode_of(lighting, scene, &sources),
+            look,
+            tables,
+            is_opaque: scene.finishes().iter().all(|finish| finish.opacity >= 1.0),
+            casts_shadow: lights.iter().map(|l| !matches!(l, LightKind::Head { .. })).collect(),
+        }
+    }
+}
+
+impl Lit {
+    /// What its tables take on the device.
+    pub(super) fn table_bytes(&self) -> u64 {
+        size_of_val(&self.tables[..]) as u64
+    }
+}
+
+/// What direct light is chosen among.
+#[derive(Debug)]
+struct SourceList {
+    /// Which of the lights.
+    lamps: Vec<u32>,
+    emitters: bool,
+    image: bool,
+}
+
+impl SourceList {
+    fn of(lighting: &Lighting, lights: &[LightKind], emitters: &Emitters) -> Self {
+        let Integrator::Path(path) = &lighting.integrator else {
+            return Self { lamps: Vec::new(), emitters: false, image: false };
+        };
+        let is_looked_for = path.light_sampling != LightSampling::Chance;
+        let lamps = lights.iter().zip(0..).filter(|(light, _)| match light {
+            LightKind::Head { .. } => false,
+            LightKind::Directional { angular_radius, .. } => {
+                *angular_radius == 0.0 || is_looked_for
+            }
+            LightKind::Point { .. } | LightKind::Sphere { .. } => true,
+        });
+        let image = match &lighting.sky.light {
+            SkyLight::Image { environment, strength, .. } => {
+                environment.has_light() && *strength > 0.0
+            }
+            _ => false,
+        };
+        Self {
+            lamps: lamps.map(|(_, index)| index).collect(),
+            emitters: is_looked_for && !emitters.ids().is_empty(),
+            image: is_looked_for && image,
+        }
+    }
+
+    fn count(&self) -> u32 {
+        self.lamps.len() as u32 + u32::from(self.emitters) + u32::from(self.image)
+    }
+}
+
+fn mode_of(lighting: &Lighting, scene: &Scene, sources: &SourceList) -> Mode {
+    if lighting.studio().is_some() {
+        return Mode::Studio;
+    }
+    let is_matt = |finish: &Finish| match finish.material {
+        Material::Lambert { specular, .. } => specular == 0.0,
+        Material::Emissive { .. } => true,
+        Material::Conductor { .. } | Material::Dielectric { .. } => false,
+    };
+    Mode::Path(
+        if scene.finishes().iter().all(is_matt) { Surfaces::Matt } else { Surfaces::Any },
+        if sources.count() == 0 { Sources::None } else { Sources::Any },
+        match lighting.sky.light {
+            SkyLight::Image { .. } => SkyKind::Image,
+            _ => SkyKind::Plain,
+        },
+    )
+}
+
+fn look_of(lighting: &Lighting, scene: &Scene) -> Look {
+    let mut look = Look { seed: lighting.sampling.seed, ..Look::zeroed() };
+    look.background = lighting.background.to_array();
+    let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+    look.flags =
+        flag(lighting.is_transparent, TRANSPARENT) | flag(lighting.sky.is_visible, SKY_SEEN);
+    if let Some(ground) = &lighting.ground {
+        look.flags |= GROUND | flag(ground.is_shadow_catcher, CATCHER);
+        look.ground_point = (ground.point - scene.origin()).as_vec3().to_array();
+        look.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
+        look.ground_color = ground.color.to_array();
+    }
+    sky(&lighting.sky, &mut look);
+    match &lighting.integrator {
+        Integrator::Path(path) => {
+            look.roulette_from = path.roulette_from;
+            look.light_sampling = match path.light_sampling {
+                LightSampling::Chance => 0,
+                LightSampling::Direct => 1,
+                LightSampling::Multiple => 2,
+            };
+        }
+        Integrator::Studio(studio) => {
+            look.ambient = studio.ambient.to_array();
+            look.flags |= flag(studio.has_shadows, SHADOWS);
+            if let Some(occlusion) = &studio.occlusion {
+                look.occlusion_samples = occlusion.samples;
+                look.occlusion_radius = occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
+            }
+            if let Some(cue) = &studio.depth_cue {
+                look.cue_color = cue.color.to_array();
+                look.cue_near = cue.near as f32;
+                look.cue_scale = (1.0 / (cue.far - cue.near)) as f32;
+            }
+        }
+    }
+    let table = lighting.sampling.filter.offset_table();
+    for (place, offset) in table.iter().enumerate() {
+        look.filter_table[place / 4][place % 4] = *offset;
+    }
+    look
+}
+
+fn sky(sky: &Sky, look: &mut Look) {
+    match &sky.light {
+        SkyLight::Constant(radiance) => {
+            let radiance = radiance.to_array();
+            (look.zenith, look.horizon, look.nadir) = (radiance, radiance, radiance);
+        }
+        SkyLight::Gradient { zenith, horizon, nadir } => {
+            look.zenith = zenith.to_array();
+            look.horizon = horizon.to_array();
+            look.nadir = nadir.to_array();
+        }
+        SkyLight::Image { environment, strength, rotation } => {
+            look.environment_size = [environment.width(), environment.height()];
+            look.environment_rotation = crate::environment::Environment::rotation(*rotation);
+            look.environment_strength = *strength;
+        }
+    }
+}
+
+fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
+}
+
+/// As `shaders/lamp.wgsl` reads it.
+fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
+    let kind = |number: u32| f32::from_bits(number);
+    let near = |place: DVec3| (place - origin).as_vec3().to_array();
+    let [place, power] = match *light {
+        LightKind::Head { strength } => [four([0.0; 3], kind(0)), four(strength.to_array(), 0.0)],
+        LightKind::Directional { toward, strength, angular_radius } => {
+            // 1 minus the cosine, without cancellation.
+            let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
+            [four(toward.as_vec3().to_array(), kind(1)), four(strength.to_array(), k as f32)]
+        }
+        LightKind::Point { position, intensity } => {
+            [four(near(position), kind(2)), four(intensity.to_array(), 0.0)]
+        }
+        LightKind::Sphere { center, radius, radiance } => {
+            [four(near(center), kind(3)), four(radiance.to_array(), radius as f32)]
+        }
+    };
+    [place, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
+}
+
+/// As `shaders/emitters.wgsl` reads them.
+fn emitter_records<'a>(
+    scene: &'a Scene,
+    emitters: &'a Emitters,
+) -> impl Iterator<Item = [f32; 4]> + 'a {
+    emitters.ids().iter().enumerate().flat_map(move |(index, id)| {
+        let finish = scene.finish(*id);
+        // A surface that lets light through sends out its share.
+        let strength = match finish.material {
+            Material::Emissive { strength } => strength * finish.opacity,
+            _ => 0.0,
+        };
+        let probability = emitters.probability(*id) as f32;
+        [
+            scene.spheres()[*id as usize],
+            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
+            four(scene.color(*id).to_array().map(|c| c * strength), 0.0),
+        ]
+    })
+}
+
+/// As `shaders/material.wgsl` reads it.
+fn material_record(color: LinearRgb, finish: &Finish, energies: u32) -> [[f32; 4]; 2] {
+    let record = |kind: u32, parameter: f32, roughness: f32, absorption: [f32; 3]| {
+        let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
+        [[kind, parameter, roughness * roughness, energies], four(absorption, 0.0)]
+    };
+    match finish.material {
+        Material::Lambert { specular, roughness } => record(0, specular, roughness, [0.0; 3]),
+        Material::Conductor { roughness } => record(1, 1.0, roughness, [0.0; 3]),
+        Material::Dielectric { ior, roughness, attenuation_distance } => {
+            let absorption = attenuation_distance.map_or([0.0; 3], |distance| {
+                color.to_array().map(|c| {
+                    let share = f64::from(c).max(1e-4);
+                    (-share.ln() / f64::from(distance)) as f32
+                })
+            });
+            record(2, ior, roughness, absorption)
+        }
+        Material::Emissive { strength } => record(3, strength, 0.0, [0.0; 3]),
+    }
+}

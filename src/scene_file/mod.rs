@@ -1,0 +1,191 @@
+//! Scene files: TOML text in; film, camera, settings, lighting and spheres out. No file system.
+//!
+//! `examples/*.toml` show every part with comments.
+
+mod data;
+mod document;
+mod lighting;
+mod materials;
+mod output;
+mod place;
+mod value;
+mod words;
+
+pub use data::{Data, Element};
+pub use lighting::IntegratorKind;
+pub use place::SceneFileError;
+pub use value::DEFAULT_COLOR;
+
+use data::DataKeys;
+use document::{Document, FilmTable, SphereTable};
+use lighting::{LightingTables, SceneLighting};
+use materials::Materials;
+use place::{Lines, Place, Placed};
+use words::explain;
+
+use crate::camera::{Camera, CameraParameters};
+use crate::color::LinearRgb;
+use crate::encoding::Encoding;
+use crate::film::Film;
+use crate::points::Points;
+use crate::scene::{Scene, SceneError};
+use crate::settings::Settings;
+use crate::sphere::Sphere;
+
+/// What a scene file says.
+#[derive(Debug)]
+pub struct SceneFile {
+    /// The picture's size.
+    pub film: Film,
+    /// Background, and the shading of a picture without lights.
+    pub settings: Settings,
+    /// How the picture is written.
+    pub encoding: Encoding,
+    lighting: SceneLighting,
+    data: Option<Placed<Data>>,
+    camera: Placed<CameraParameters>,
+    spheres: Vec<Placed<Sphere>>,
+}
+
+impl SceneFile {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// The first thing in the text that is not as it should be.
+    pub fn parse(text: &str) -> Result<Self, SceneFileError> {
+        let lines = Lines::of(text);
+        let document: Document = toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            lines.place(start).error(explain(error.message()))
+        })?;
+        let materials = Materials::new(document.materials, &lines)?;
+        let has_looks = document.material.is_some() || document.opacity.is_some();
+        let data = DataKeys {
+            file: document.data,
+            frame: document.frame,
+            radius: document.radius,
+            radius_scale: document.radius_scale,
+            color: document.color,
+            material: document.material,
+            opacity: document.opacity,
+            elements: document.elements,
+        }
+        .read(&materials, &lines)?;
+        let spheres = document.spheres.into_iter();
+        let spheres: Vec<_> = spheres
+            .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
+            .collect::<Result<_, _>>()?;
+        let lighting = LightingTables {
+            shading: document.shading.as_ref().map(|shading| shading.span().start),
+            integrator: document.integrator,
+            studio: document.studio,
+            path: document.path,
+            sampling: document.sampling,
+            lights: document.lights,
+            sky: document.sky,
+            sun: document.sun,
+            ground: document.ground,
+            has_materials: has_looks || has_finish(&spheres, data.as_ref()),
+        }
+        .read(&lines)?;
+        let defaults = Settings::default();
+        let shading = document.shading.map_or(defaults.shading(), |shading| shading.into_inner());
+        Ok(Self {
+            film: FilmTable::film(document.film, &lines)?,
+            settings: defaults
+                .with_shading(shading)
+                .with_background(document.background.map_or(defaults.background(), |c| c.0)),
+            encoding: document.output.0.encoding(&lines)?,
+            lighting,
+            data,
+            camera: lines.placed(document.camera),
+            spheres,
+        })
+    }
+
+    /// The scene: the file's own spheres, then those of its data.
+    ///
+    /// # Errors
+    /// The first sphere that is out of range, with its place if it stands in this file.
+    pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
+        let own = self.spheres.iter().map(|sphere| sphere.value);
+        let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
+        Scene::new(&spheres).map_err(|error| self.placed(&error))
+    }
+
+    /// As [`SceneFile::scene`], with data that has no colours; where the file has no spheres of its own,
+    /// without a copy. They get the finish that the file says.
+    ///
+    /// # Errors
+    /// As [`SceneFile::scene`].
+    pub fn scene_with_points(
+        &self,
+        data: Points,
+        color: LinearRgb,
+    ) -> Result<Scene, SceneFileError> {
+        let finish = self.data().map(|data| data.finish).unwrap_or_default();
+        if self.spheres.is_empty() {
+            let scene = data.scene(color).map_err(|error| self.placed(&error))?;
+            return Ok(scene.with_finish(finish));
+        }
+        let dressed = data.spheres(color).map(|sphere| Sphere { finish, ..sphere });
+        self.scene(&dressed.collect::<Vec<_>>())
+    }
+
+    fn placed(&self, error: &SceneError) -> SceneFileError {
+        let &SceneError::Sphere { index, error: fault } = error else {
+            return Place::START.error(error);
+        };
+        match (self.spheres.get(index), &self.data) {
+            (Some(sphere), _) => sphere.place.error(error),
+            (None, Some(data)) => {
+                let in_data = index - self.spheres.len();
+                data.place.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
+            }
+            (None, None) => Place::START.error(error),
+        }
+    }
+
+    /// The file with more spheres, if there is one.
+    #[must_use]
+    pub fn data(&self) -> Option<&Data> {
+        self.data.as_ref().map(|data| &data.value)
+    }
+
+    /// The camera, or of two eyes that in the middle, for a film of this shape; without a fixed place it frames
+    /// the scene.
+    ///
+    /// # Errors
+    /// If a parameter is out of range, or parameters exclude each other.
+    pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
+        self.camera
+            .value
+            .camera(film.aspect(), &scene.bounds_to_frame())
+            .map_err(|error| self.camera.place.error(error))
+    }
+
+    /// The cameras of the left and of the right eye, if the camera has two.
+    ///
+    /// # Errors
+    /// As [`SceneFile::camera`].
+    pub fn stereo_pair(
+        &self,
+        film: &Film,
+        scene: &Scene,
+    ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
+        self.camera
+            .value
+            .stereo_pair(film.aspect(), &scene.bounds_to_frame())
+            .map_err(|error| self.camera.place.error(error))
+    }
+}
+
+/// Whether any sphere is to be more than matt and opaque.
+fn has_finish(spheres: &[Placed<Sphere>], data: Option<&Placed<Data>>) -> bool {
+    let matt = crate::material::Finish::default();
+    let of_data = data.iter().flat_map(|data| {
+        let elements = data.value.elements.iter().map(|element| element.finish);
+        elements.chain([data.value.finish])
+    });
+    spheres.iter().map(|sphere| sphere.value.finish).chain(of_data).any(|finish| finish != matt)
+}

@@ -1,0 +1,34 @@
+//! The table `[output]`: how the picture is written.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Lines, SceneFileError};
+use crate::encoding::{Bits, Encoding, EncodingError};
+use crate::tone::ToneCurve;
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct OutputTable {
+    exposure: Option<Spanned<f32>>,
+    tone: ToneCurve,
+    transparent: bool,
+    bits: Option<Spanned<u32>>,
+}
+
+impl OutputTable {
+    pub(super) fn encoding(self, lines: &Lines<'_>) -> Result<Encoding, SceneFileError> {
+        let place = |start| move |error: EncodingError| lines.place(start).error(error);
+        let mut encoding =
+            Encoding::default().with_tone(self.tone).with_transparent(self.transparent);
+        if let Some(exposure) = self.exposure {
+            let start = exposure.span().start;
+            encoding = encoding.with_exposure(exposure.into_inner()).map_err(place(start))?;
+        }
+        if let Some(bits) = self.bits {
+            let start = bits.span().start;
+            encoding = encoding.with_bits(Bits::new(bits.into_inner()).map_err(place(start))?);
+        }
+        Ok(encoding)
+    }
+}

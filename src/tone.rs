@@ -1,0 +1,157 @@
+//! Curves that bring light of any strength into a display's range.
+
+/// How linear light that may exceed 1 becomes light that a display can show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
+pub enum ToneCurve {
+    /// Nothing is changed, and what exceeds 1 is cut off. A flat colour comes out as the bytes that went in.
+    #[default]
+    None,
+    /// A fit of the filmic curve of ACES, to every component alone: Narkowicz, "ACES Filmic Tone Mapping Curve",
+    /// 2016, as printed there, without the factor of 0.6 that would bring it nearer to ACES.
+    Filmic,
+    /// AgX by Troy Sobotka, with its base look: strong light loses its colour on the way to white. By the
+    /// polynomial of Benjamin Wrensch ("Minimal AgX Implementation", 2023), whose mean squared error is
+    /// 3.7 · 10⁻⁶.
+    Agx,
+}
+
+impl ToneCurve {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[Self::None, Self::Filmic, Self::Agx];
+
+    /// The name on the command line and in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Filmic => "filmic",
+            Self::Agx => "agx",
+        }
+    }
+
+    /// Linear light in, linear light of a display out, both with the Rec. 709 primaries. All but
+    /// [`ToneCurve::None`] give numbers in [0, 1], take negative ones for 0, and NaN too.
+    #[must_use]
+    pub fn apply(self, linear: [f32; 3]) -> [f32; 3] {
+        match self {
+            Self::None => linear,
+            Self::Filmic => linear.map(|x| filmic(bounded(x))),
+            Self::Agx => agx(linear.map(bounded)),
+        }
+    }
+}
+
+/// Beyond this all is white; squares stay finite.
+const BRIGHTEST: f32 = 1e6;
+
+fn bounded(x: f32) -> f32 {
+    // False for NaN as well.
+    if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 }
+}
+
+/// The five constants are Narkowicz's.
+fn filmic(x: f32) -> f32 {
+    let (a, b, c, d, e) = (2.51, 0.03, 2.43, 0.59, 0.14);
+    (x * (a * x + b) / (x * (c * x + d) + e)).min(1.0)
+}
+
+/// Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2, with which light is linear again.
+fn agx(linear: [f32; 3]) -> [f32; 3] {
+    const INSET: [[f32; 3]; 3] = [
+        [0.842_479_06, 0.078_433_6, 0.079_223_745],
+        [0.042_328_242, 0.878_468_64, 0.079_166_13],
+        [0.042_375_655, 0.078_433_6, 0.879_143],
+    ];
+    const OUTSET: [[f32; 3]; 3] = [
+        [1.196_879, -0.098_020_88, -0.099_029_74],
+        [-0.052_896_85, 1.151_903_1, -0.098_961_18],
+        [-0.052_971_636, -0.098_043_45, 1.151_073_7],
+    ];
+    const MIN_EV: f32 = -12.473_93;
+    const MAX_EV: f32 = 4.026_069;
+    let encoded = product(&INSET, linear).map(|x| {
+        // The logarithm of 0 is −∞, which the range takes in.
+        let ev = x.log2().clamp(MIN_EV, MAX_EV);
+        sigmoid((ev - MIN_EV) / (MAX_EV - MIN_EV))
+    });
+    product(&OUTSET, encoded).map(|x| x.clamp(0.0, 1.0).powf(2.2))
+}
+
+/// Of AgX, its contrast.
+fn sigmoid(x: f32) -> f32 {
+    const COEFFICIENTS: [f32; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
+    COEFFICIENTS.iter().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}
+
+fn product(rows: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    rows.map(|[a, b, c]| a * x + b * y + c * z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::to_srgb8;
+
+    fn grey(curve: ToneCurve, x: f32) -> f32 {
+        curve.apply([x; 3])[1]
+    }
+
+    #[test]
+    fn nothing_is_changed_by_none() {
+        let color = [-1.0, 0.25, f32::INFINITY];
+        assert_eq!(ToneCurve::None.apply(color).map(f32::to_bits), color.map(f32::to_bits));
+    }
+
+    /// From the formulas, by hand.
+    #[test]
+    fn known_answers() {
+        assert!((grey(ToneCurve::Filmic, 0.18) - 0.266_9).abs() < 1e-4);
+        assert!((grey(ToneCurve::Filmic, 1.0) - 0.803_8).abs() < 1e-4);
+        // Middle grey lies 10 stops above the range's lower end, where the curve's pivot is: half-way up.
+        let encoded = grey(ToneCurve::Agx, 0.18).powf(1.0 / 2.2);
+        assert!((encoded - 0.5).abs() < 5e-3, "{encoded}");
+        for curve in [ToneCurve::Filmic, ToneCurve::Agx] {
+            assert_eq!(to_srgb8(curve.apply([0.0; 3])), [0; 3], "{curve:?}");
+            assert_eq!(to_srgb8(curve.apply([1e4; 3])), [255; 3], "{curve:?}");
+        }
+    }
+
+    #[test]
+    fn more_light_is_never_darker_and_grey_stays_grey() {
+        for curve in [ToneCurve::Filmic, ToneCurve::Agx] {
+            let mut before = 0.0;
+            for step in 0..4000 {
+                let x = (step as f32 / 100.0 - 20.0).exp2();
+                let [r, g, b] = curve.apply([x; 3]);
+                assert!(g >= before - 1e-6 && g <= 1.0, "{curve:?} {x}: {g} after {before}");
+                assert!((r - g).abs() < 1e-3 && (b - g).abs() < 1e-3, "{curve:?} {x}: {r} {g} {b}");
+                before = g;
+            }
+        }
+    }
+
+    #[test]
+    fn strong_light_loses_its_color_with_agx_alone() {
+        let red = [64.0, 0.0, 0.0];
+        let [r, g, b] = ToneCurve::Agx.apply(red);
+        assert!(r > 0.9 && g > 0.2 && b > 0.2, "{r} {g} {b}");
+        assert_eq!(to_srgb8(ToneCurve::Filmic.apply(red)), [255, 0, 0]);
+    }
+
+    #[test]
+    fn what_is_no_light_is_black_or_white() {
+        for curve in [ToneCurve::Filmic, ToneCurve::Agx] {
+            assert_eq!(to_srgb8(curve.apply([f32::NAN; 3])), [0; 3]);
+            assert_eq!(to_srgb8(curve.apply([-1.0; 3])), [0; 3]);
+            assert_eq!(to_srgb8(curve.apply([f32::INFINITY; 3])), [255; 3]);
+        }
+    }
+
+    #[test]
+    fn every_curve_has_a_name_of_its_own() {
+        let names: std::collections::HashSet<_> = ToneCurve::ALL.iter().map(|c| c.name()).collect();
+        assert_eq!(names.len(), ToneCurve::ALL.len());
+    }
+}
