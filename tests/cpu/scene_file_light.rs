@@ -491,6 +491,25 @@ fn what_is_wrong_is_named_with_a_remedy() {
     ] {
         assert_eq!(message(text), expected, "{text}");
     }
+    for (bright, what) in [
+        (
+            "[[lights]]\nkind = 'head'\ncolor = [1e30, 0, 0]\n",
+            "line 1, column 1: the light shines with [1e30, 0.0, 0.0]",
+        ),
+        (
+            "[path]\n[sky]\nkind = 'constant'\ncolor = [0, 1e19, 0]\n",
+            "line 2, column 1: the sky shines with",
+        ),
+        ("[studio]\nambient = [1e20, 0, 0]\n", "the ambient light, or the background, shines with"),
+        (
+            "[materials.a]\nkind = 'emissive'\nstrength = 1e6\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\
+             color = [1e13, 0, 0]\nmaterial = 'a'\n",
+            "line 4, column 1: sphere 0 shines with",
+        ),
+    ] {
+        let found = message(bright);
+        assert!(found.contains(what) && found.ends_with("at most 1e18"), "{found}");
+    }
     // What shines may be brighter than white, and a picture without light as well.
     let lamp = "[materials.a]\nkind = 'emissive'\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\
                 color = [5, 5, 5]\nmaterial = 'a'\n";
