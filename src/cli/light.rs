@@ -43,6 +43,9 @@ pub(super) struct LightArgs {
     /// Lines of so many pixels around shapes (studio)
     #[arg(long, help_heading = HEADING, value_name = "PIXELS", allow_hyphen_values = true)]
     outline: Option<f32>,
+    /// Filter noise by shapes and colours
+    #[arg(long, help_heading = HEADING)]
+    denoise: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -79,13 +82,14 @@ pub(super) struct LightFlags {
     filter: Option<PixelFilter>,
     ao: Option<u32>,
     outline: Option<f32>,
+    denoise: bool,
     /// As many samples as it takes, unless there are `samples`.
     is_open_ended: bool,
 }
 
 impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
-        let LightArgs { samples, seed, ao, outline, .. } = *args;
+        let LightArgs { samples, seed, ao, outline, denoise, .. } = *args;
         let refused = |flag: &str, error: &RangeError| {
             Failure::usage(format!("--{flag} {}: it must be {}", error.value(), error.range))
         };
@@ -103,7 +107,7 @@ impl LightFlags {
             IntegratorArg::Path => IntegratorKind::Path,
         });
         let filter = args.filter.map(Into::into);
-        Ok(Self { integrator, samples, seed, filter, ao, outline, is_open_ended: false })
+        Ok(Self { integrator, samples, seed, filter, ao, outline, denoise, is_open_ended: false })
     }
 
     /// The same, for a picture that takes as many samples as it takes.
@@ -119,6 +123,7 @@ impl LightFlags {
             self.filter.is_some(),
             self.ao.is_some(),
             self.outline.is_some(),
+            self.denoise,
             self.is_open_ended,
         ];
         let by_flags = given.contains(&true).then_some(IntegratorKind::Studio);
@@ -132,6 +137,7 @@ impl LightFlags {
         sampling.samples = self.samples.unwrap_or(most);
         sampling.seed = self.seed.unwrap_or(sampling.seed);
         sampling.filter = self.filter.unwrap_or(sampling.filter);
+        lighting.is_denoised |= self.denoise;
         let flag = if self.ao.is_some() { "--ao" } else { "--outline" };
         match &mut lighting.integrator {
             Integrator::Studio(studio) => add_to_studio(studio, self.ao, self.outline),

@@ -97,7 +97,7 @@ impl Headless {
                     let step = 1 << pass;
                     let contents = Denoise { size, step, zero: 0 };
                     queue.write_buffer(&record, 0, bytemuck::bytes_of(&contents));
-                    let (from, to) = if pass % 2 == 0 { (&front, &back) } else { (&back, &front) };
+                    let (from, to) = if pass & 1 == 0 { (&front, &back) } else { (&back, &front) };
                     let buffers = [&record, from, &shapes, &albedos, to];
                     let entries: Vec<_> = (0..)
                         .zip(buffers.map(Buffer::as_entire_binding))
@@ -110,7 +110,7 @@ impl Headless {
                     })
                 })
                 .collect();
-            let result = if PASSES % 2 == 0 { front.clone() } else { back.clone() };
+            let result = if PASSES & 1 == 0 { front.clone() } else { back.clone() };
             let read = ReadableBuffer::new(device, "pinhole denoise read-back", bytes);
             (filter, passes, result, read)
         })?;

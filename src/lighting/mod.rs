@@ -10,7 +10,10 @@
 //! unit: a sky of radiance 1 all around makes a white Lambert surface white.
 
 use crate::color::LinearRgb;
+use crate::denoise;
 use crate::filter::PixelFilter;
+use crate::image::LayerSet;
+use crate::outline;
 
 mod check;
 pub mod emitters;
@@ -46,6 +49,8 @@ pub struct Lighting {
     pub background: LinearRgb,
     /// Whether there is nothing to be seen where there is nothing: the colour then is multiplied by alpha.
     pub is_transparent: bool,
+    /// Whether noise is filtered, by shapes and colours; see [`denoise`](crate::denoise).
+    pub is_denoised: bool,
 }
 
 /// How light is followed.
@@ -121,11 +126,20 @@ impl Default for Lighting {
             ground: None,
             background: LinearRgb::WHITE,
             is_transparent: false,
+            is_denoised: false,
         }
     }
 }
 
 impl Lighting {
+    /// The layers that making a picture needs beside those that are wanted.
+    pub(crate) fn layers_for(&self, wanted: LayerSet) -> LayerSet {
+        let lines = self.studio().and_then(|studio| studio.outline);
+        let for_lines = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
+        let for_noise = if self.is_denoised { denoise::GUIDES } else { LayerSet::COLOR };
+        wanted.iter().chain(for_lines.iter()).chain(for_noise.iter()).collect()
+    }
+
     /// The studio's parameters, if it is one.
     #[must_use]
     pub fn studio(&self) -> Option<&Studio> {

@@ -9,7 +9,7 @@ use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
 use self::stage::{Stage, luminance};
 use self::studio::follow as follow_in_studio;
-use super::{ROWS_AT_ONCE, for_each_row, shade, trace};
+use super::{ROWS_AT_ONCE, denoise, for_each_row, shade, trace};
 use crate::camera::Camera;
 use crate::film::Film;
 use crate::image::{Averages, Image, ImageTooLarge, LayerSet, Pixel};
@@ -100,9 +100,8 @@ impl<'a> LitPicture<'a> {
     /// # Errors
     /// If the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
-        let lines = self.stage.lighting.studio().and_then(|studio| studio.outline);
-        let by = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
-        let wanted = layers.iter().fold(by, LayerSet::with);
+        let lighting = self.stage.lighting;
+        let wanted = lighting.layers_for(layers);
         let mut image = Image::new(self.film.width(), self.film.height(), wanted)?;
         let height = self.film.height() as usize;
         for start in (0..height).step_by(ROWS_AT_ONCE) {
@@ -116,10 +115,14 @@ impl<'a> LitPicture<'a> {
                 }
             });
         }
-        if let Some(lines) = &lines {
-            outline::draw(&mut image, lines);
-            image.keep(layers);
+        if lighting.is_denoised {
+            // All guides are among the layers.
+            image = denoise(&image).unwrap_or(image);
         }
+        if let Some(lines) = lighting.studio().and_then(|studio| studio.outline) {
+            outline::draw(&mut image, &lines);
+        }
+        image.keep(layers);
         Ok(image)
     }
 

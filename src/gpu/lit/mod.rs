@@ -152,18 +152,19 @@ impl Headless {
         watch: &mut LitWatch<'_>,
     ) -> Result<LitPicture, GpuError> {
         lighting.check(scene)?;
-        let lines = lighting.studio().and_then(|studio| studio.outline);
-        let by = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
-        let wanted = layers.iter().fold(by, LayerSet::with);
+        let wanted = lighting.layers_for(layers);
         let mut image = self.data_layers(&buffers.all, camera, film, wanted)?;
         let lit = Lit::new(lighting, scene, camera);
         let mut sums = Sums::new(film)?;
         self.gather(buffers, (camera, film), lighting, &lit, &mut sums, watch)?;
         sums.write(&mut image);
-        if let Some(lines) = &lines {
-            outline::draw(&mut image, lines);
-            image.keep(layers);
+        if lighting.is_denoised {
+            image = self.denoise(&image)?;
         }
+        if let Some(lines) = lighting.studio().and_then(|studio| studio.outline) {
+            outline::draw(&mut image, &lines);
+        }
+        image.keep(layers);
         let (samples, noise, hits) = (sums.samples(), sums.noise(), sums.hits());
         Ok(LitPicture { image, samples, noise, hits })
     }

@@ -14,7 +14,6 @@ use crate::gpu::plan::{HostPeak, RenderPlan, scene_buffers, tile_count, total};
 use crate::gpu::records::Hit;
 use crate::image::LayerSet;
 use crate::lighting::Lighting;
-use crate::outline;
 use crate::scene::Scene;
 
 /// Bytes of a pixel's sums as they come from a tile.
@@ -32,9 +31,7 @@ impl RenderPlan {
         (limits, device_type): (&Limits, DeviceType),
         host_bytes_per_pixel: u64,
     ) -> Self {
-        let outline = lighting.studio().and_then(|studio| studio.outline);
-        let layers =
-            outline.map_or(layers, |_| layers.iter().chain(outline::LAYERS.iter()).collect());
+        let layers = lighting.layers_for(layers);
         // Depth, normals and ids are rendered first, by one ray a pixel; then that tile is gone.
         let device = (limits, device_type);
         let data = Self::new(scene, film, layers, accel, device, host_bytes_per_pixel);
@@ -131,6 +128,7 @@ mod tests {
     use crate::environment::Environment;
     use crate::image::Layer;
     use crate::lighting::{Integrator, Outline, PathTracing, Sky, SkyLight, Studio};
+    use crate::outline;
     use crate::sphere::Sphere;
 
     fn planned(

@@ -75,19 +75,19 @@ impl<'a> Run<'a> {
         let frame = usize::from(!is_whole);
         let group = &self.tile.shade[frame];
         self.dispatch(pipeline, group, Some(brick), stage, self.groups(frame))?;
-        self.submit_if_full()
+        self.run_if_full()
     }
 
     /// Adds the samples of all pixels.
     pub(super) fn deposit(&mut self, stage: Stage) -> Result<(), GpuError> {
         let (renderer, tile) = (self.renderer, self.tile);
         self.dispatch(&renderer.deposit, &tile.deposit, None, stage, self.groups(0))?;
-        self.submit_if_full()
+        self.run_if_full()
     }
 
-    fn submit_if_full(&mut self) -> Result<(), GpuError> {
+    fn run_if_full(&mut self) -> Result<(), GpuError> {
         if self.stages.len() == MOST_STAGES {
-            self.submit(&[])?;
+            self.run_gathered(&[])?;
         }
         Ok(())
     }
@@ -106,17 +106,17 @@ impl<'a> Run<'a> {
             self.dispatch(pipeline, group, Some(brick), stage, whole)?;
             self.gathered += whole.count();
             if self.gathered >= pace || self.stages.len() == MOST_STAGES {
-                self.submit(&[])?;
+                self.run_gathered(&[])?;
             }
             return Ok(());
         }
-        self.submit(&[])?;
+        self.run_gathered(&[])?;
         let mut left = vec![whole];
         while let Some(slice) = Groups::take(&mut left, self.scene.pace().groups()) {
             self.frames.iter_mut().for_each(|frame| frame.first_group = slice.first);
             self.dispatch(pipeline, group, Some(brick), stage, slice)?;
             self.gathered = slice.count();
-            self.submit(&[])?;
+            self.run_gathered(&[])?;
         }
         self.frames.iter_mut().for_each(|frame| frame.first_group = [0, 0]);
         Ok(())
@@ -157,7 +157,7 @@ impl<'a> Run<'a> {
     }
 
     /// Submits what was gathered, waits until it is done and the buffers are mapped.
-    pub(super) fn submit(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
+    pub(super) fn run_gathered(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
         let Some(encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -176,7 +176,7 @@ impl<'a> Run<'a> {
     pub(super) fn is_alive(&mut self) -> Result<bool, GpuError> {
         let tile = self.tile;
         tile.record_copy_status(self.encoder());
-        self.submit(&[tile.status_back.buffer()])?;
+        self.run_gathered(&[tile.status_back.buffer()])?;
         let [spent, alive] = tile.status_back.read(|words: &[u32]| [words[0], words[1]])?;
         if spent == 0 { Ok(alive != 0) } else { Err(GpuError::Steps) }
     }

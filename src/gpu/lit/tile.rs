@@ -26,7 +26,6 @@ const MOST_PIXELS: u64 = 1 << 19;
 /// What a dispatch is bound to beside the scene.
 #[derive(Debug)]
 pub(super) struct TileBuffers {
-    pub(super) size: [u32; 2],
     /// Records: of all of a tile; for searching the scene, and for searching what casts shadows, where there is any.
     frames: Buffer,
     frame_stride: usize,
@@ -34,8 +33,6 @@ pub(super) struct TileBuffers {
     pub(super) stage_stride: usize,
     status: Buffer,
     film: Buffer,
-    pub(super) paths: Buffer,
-    pub(super) hits: Buffer,
     pub(super) status_back: ReadableBuffer,
     pub(super) film_back: ReadableBuffer,
     pub(super) search: [BindGroup; 2],
@@ -44,7 +41,6 @@ pub(super) struct TileBuffers {
     pub(super) deposit: BindGroup,
     pub(super) look: BindGroup,
     pub(super) sky: Option<BindGroup>,
-    pub(super) bytes: u64,
 }
 
 /// The size of the tiles of a lit picture.
@@ -149,7 +145,6 @@ impl TileBuffers {
                 group("pinhole sky", &layouts.sky, &entries)
             });
             Self {
-                size,
                 frame_stride,
                 stage_stride,
                 status_back: ReadableBuffer::new(device, "pinhole status read-back", status.size()),
@@ -162,13 +157,10 @@ impl TileBuffers {
                 deposit: group("pinhole deposit", &layouts.film, &deposited),
                 look: group("pinhole look", &layouts.look, &known),
                 sky,
-                bytes: paths.size() + hits.size() + 2 * film.size() + table_bytes,
                 frames,
                 stages,
                 status,
                 film,
-                paths,
-                hits,
             }
         })
     }

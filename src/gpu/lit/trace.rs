@@ -31,7 +31,7 @@ impl Run<'_> {
         }
         buffers.record_copy_status(self.encoder());
         buffers.record_copy_film(self.encoder());
-        self.submit(&[buffers.status_back.buffer(), buffers.film_back.buffer()])?;
+        self.run_gathered(&[buffers.status_back.buffer(), buffers.film_back.buffer()])?;
         let spent = buffers.status_back.read(|words: &[u32]| words[0])?;
         let used = 2 * tile.size[0] as usize * tile.size[1] as usize;
         let sums = buffers.film_back.read(|sums: &[[f32; 4]]| sums[..used].to_vec())?;

@@ -66,6 +66,7 @@ pub(super) struct SceneLighting {
     integrator: Option<IntegratorKind>,
     studio: StudioPlan,
     path: PathTracing,
+    is_denoised: bool,
     sampling: Sampling,
     /// `None` if the file says nothing of light that comes from elsewhere than spheres.
     lights: Option<Vec<Light>>,
@@ -84,6 +85,7 @@ impl LightingTables {
             integrator,
             studio: StudioPlan::read(self.studio, lines)?,
             path: samples::read_path(self.path, lines)?,
+            is_denoised: samples::is_denoised(&self.sampling),
             sampling: samples::read_sampling(self.sampling, lines)?,
             lights: names_light.then_some(lights),
             sky: self.sky.map(|sky| SkyPlan::read(sky, lines)).transpose()?,
@@ -175,6 +177,7 @@ impl SceneFile {
             ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
             background,
             is_transparent: false,
+            is_denoised: says.is_denoised,
         };
         self.check_colors()?;
         lighting.check(scene).map(|()| lighting).map_err(|error| self.place_of(&error).error(error))

@@ -14,6 +14,11 @@ pub(in crate::scene_file) struct SamplingTable {
     samples: Option<Spanned<u32>>,
     seed: Option<u32>,
     filter: Option<PixelFilter>,
+    denoise: Option<bool>,
+}
+
+pub(super) fn is_denoised(table: &Option<Spanned<Table<SamplingTable>>>) -> bool {
+    table.as_ref().and_then(|table| table.get_ref().0.denoise).unwrap_or(false)
 }
 
 pub(super) fn read_sampling(
@@ -25,7 +30,7 @@ pub(super) fn read_sampling(
         return Ok(defaults);
     };
     let start = table.span().start;
-    let SamplingTable { samples, seed, filter } = table.into_inner().0;
+    let SamplingTable { samples, seed, filter, .. } = table.into_inner().0;
     let sampling = Sampling {
         samples: samples.as_ref().map_or(defaults.samples, |samples| *samples.get_ref()),
         seed: seed.unwrap_or(defaults.seed),

@@ -40,6 +40,7 @@ pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> Lighting {
         ground: None,
         background: LinearRgb::BLACK,
         is_transparent: false,
+        is_denoised: false,
     }
 }
 
