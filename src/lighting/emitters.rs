@@ -1,5 +1,7 @@
 //! Which emissive sphere is sampled, by chance in proportion to its power.
 
+use std::collections::HashMap;
+
 use crate::material::{Finish, Material};
 use crate::scene::Scene;
 
@@ -15,7 +17,7 @@ pub struct Emitters {
 
 impl Emitters {
     /// The spheres of a scene that send out light, weighted by the luminance of what they send out, times opacity,
-    /// times the square of their radius.
+    /// times the square of their radius. A sphere with the centre and radius of one before it is never met, and none.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let brightness: Vec<f64> = scene
@@ -28,13 +30,23 @@ impl Emitters {
             return Self::default();
         }
         let place = |id: usize| scene.color_indices().map_or(0, |places| places[id] as usize);
-        let weights: Vec<(u32, f64)> = (0..scene.len())
+        let mut weights: Vec<(u32, f64)> = (0..scene.len())
             .map(|id| {
                 let radius = f64::from(scene.spheres()[id][3]);
                 (id as u32, brightness[place(id)] * radius * radius)
             })
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
+        let spheres = scene.spheres();
+        // The first of all spheres in the place of each.
+        let mut firsts: HashMap<_, u32> =
+            weights.iter().rev().map(|(id, _)| (bits(&spheres[*id as usize]), *id)).collect();
+        for (id, sphere) in spheres.iter().enumerate().rev() {
+            if let Some(first) = firsts.get_mut(&bits(sphere)) {
+                *first = id as u32;
+            }
+        }
+        weights.retain(|(id, _)| firsts.get(&bits(&spheres[*id as usize])) == Some(id));
         let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
         // Each has one by right, and its share of the others.
         let others = (1_u64 << 32) - weights.len() as u64;
@@ -91,6 +103,11 @@ impl Emitters {
     }
 }
 
+/// Alike for spheres whose numbers are equal: zeros lose their signs.
+fn bits(sphere: &[f32; 4]) -> [u32; 4] {
+    sphere.map(|x| (x + 0.0).to_bits())
+}
+
 fn brightness([r, g, b]: [f64; 3], finish: &Finish) -> f64 {
     match finish.material {
         Material::Emissive { strength } => {
@@ -116,7 +133,11 @@ mod tests {
     fn probabilities_follow_power() {
         let matt = Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
         let dark = lamp(1.0, 1.0).with_opacity(0.0);
-        let spheres = [matt, lamp(1.0, 3.0), lamp(1.0, 0.0), lamp(2.0, 1.0), dark, lamp(1.0, 1.0)];
+        let mut spheres =
+            [matt, lamp(1.0, 3.0), lamp(1.0, 0.0), lamp(2.0, 1.0), dark, lamp(1.0, 1.0)];
+        for (x, sphere) in spheres.iter_mut().enumerate() {
+            sphere.center[0] = x as f64;
+        }
         let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
         assert_eq!(emitters.ids(), [1, 3, 5]);
         for (id, eighths) in [(0, 0.0), (1, 3.0), (2, 0.0), (3, 4.0), (4, 0.0), (5, 1.0), (9, 0.0)]
@@ -130,7 +151,7 @@ mod tests {
     /// All 2³² numbers pick, each sphere as many as its probability says.
     #[test]
     fn every_number_picks_and_the_faintest_is_picked() {
-        let spheres = [lamp(1e-9, 1e-9), lamp(1e9, 1e6), lamp(1e-9, 1e-9), lamp(1.0, 1e-3)];
+        let spheres = [lamp(1e-9, 1e-9), lamp(1e9, 1e6), lamp(2e-9, 1e-9), lamp(1.0, 1e-3)];
         let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
         let mut first = 0_u64;
         for (place, id) in emitters.ids().iter().enumerate() {
@@ -144,6 +165,16 @@ mod tests {
             first = last + 1;
         }
         assert_eq!(first, 1 << 32);
+    }
+
+    /// A lamp in the place of another sphere that comes before it is never seen.
+    #[test]
+    fn what_is_never_met_is_not_picked() {
+        let matt = Sphere::new([-0.0; 3], 2.0, LinearRgb::WHITE);
+        let twice = [lamp(1.0, 1.0), matt, lamp(1.0, 1.0), lamp(2.0, 1.0), lamp(3.0, 1.0), matt];
+        assert_eq!(Emitters::of(&Scene::new(&twice).unwrap()).ids(), [0, 4]);
+        let first = [lamp(2.0, 1.0), matt];
+        assert_eq!(Emitters::of(&Scene::new(&first).unwrap()).ids(), [0]);
     }
 
     #[test]

@@ -13,7 +13,8 @@ pub(super) struct Flight {
     pub(super) start: Start,
 }
 
-/// What a ray leaves, and on which side.
+/// What a ray leaves, and on which side. Spheres with the same centre and radius as it are left with it: only the
+/// first of them is ever met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
     /// The camera.
@@ -113,7 +114,7 @@ pub(super) fn nearest(stage: &Stage<'_>, flight: &Flight) -> Option<Meeting> {
     })
 }
 
-/// Whether anything but the sphere `exempt` is nearer than `t_max`.
+/// Whether anything but the sphere `exempt`, and what is in its place, is nearer than `t_max`.
 pub(super) fn is_occluded(
     stage: &Stage<'_>,
     flight: &Flight,
@@ -127,7 +128,7 @@ pub(super) fn is_occluded(
     };
     ground(stage, flight).is_some_and(|t| t < t_max)
         || (0..stage.scene.len() as u32)
-            .filter(|id| Some(*id) != exempt && hides(*id))
+            .filter(|id| !exempt.is_some_and(|own| stage.is_same(own, *id)) && hides(*id))
             .any(|id| sphere(stage, flight, id).is_some_and(|wall| wall.distance < t_max))
 }
 
@@ -147,8 +148,8 @@ fn sphere(stage: &Stage<'_>, flight: &Flight, id: u32) -> Option<Wall> {
     let Flight { ray, start } = flight;
     let from_center = ray.origin - center;
     match *start {
-        Start::Outside(own) if own == id => None,
-        Start::Inside(own) if own == id => {
+        Start::Outside(own) if stage.is_same(own, id) => None,
+        Start::Inside(own) if stage.is_same(own, id) => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
             Some(Wall { distance, outward, is_outside: false })
@@ -250,6 +251,31 @@ mod tests {
             let ray = Ray { origin: met.point, ..ray };
             let met = nearest(stage, &Flight { ray, start: met.other_side() }).unwrap();
             assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
+        });
+    }
+
+    /// Where several spheres are in one place, they are one.
+    #[test]
+    fn equal_spheres_do_not_hide_each_other() {
+        let mut random = fastrand::Rng::with_seed(23);
+        with_spheres(&[Sphere::new([0.1, 0.2, 0.3], 0.7, LinearRgb::WHITE); 3], |stage| {
+            let (center, radius) = stage.sphere(0);
+            for _ in 0..2000 {
+                let outward = direction(&mut random);
+                let along = direction(&mut random);
+                let is_outward = along.dot(outward) >= 0.0;
+                let start = if is_outward { Start::Outside(1) } else { Start::Inside(1) };
+                let ray = Ray { origin: center + radius * outward, direction: along };
+                let flight = Flight { ray, start };
+                let hides = |exempt| is_occluded(stage, &flight, 9.0, Hiding::All, exempt);
+                if is_outward {
+                    assert!(nearest(stage, &flight).is_none() && !hides(None));
+                } else {
+                    let met = nearest(stage, &flight).unwrap();
+                    assert_eq!((met.surface, met.is_outside), (Surface::Sphere(0), false));
+                    assert!(hides(None) && !hides(Some(2)));
+                }
+            }
         });
     }
 

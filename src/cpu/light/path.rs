@@ -85,16 +85,16 @@ impl Path<'_> {
             self.miss();
             return None;
         };
-        if v == 0 {
-            self.found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
-        }
         self.throughput *= (-self.absorption * meeting.distance).exp();
         let [choice, pass] = self.pair(v, Purpose::Choice).map(unit);
         if pass >= stage.opacity(meeting.surface) {
             self.pass(&meeting);
             return Some(());
         }
-        self.found.alpha = 1.0;
+        if !self.has_scattered {
+            self.found.alpha = 1.0;
+            self.found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
+        }
         if let Some(emission) = stage.emission(meeting.surface) {
             let Surface::Sphere(id) = meeting.surface else { return None };
             let weight = self.weight(|point| self.stage.density_at_emitter(point, id));

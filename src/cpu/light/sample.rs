@@ -16,7 +16,8 @@ pub struct Sample {
     pub color: [f64; 3],
     /// How much of what is behind everything is hidden: 0 to 1.
     pub alpha: f64,
-    /// The colour of the first surface, at most 1; 0 for a miss.
+    /// The colour of the first surface, at most 1: on paths the first that does not let light pass; 0 for a miss, and
+    /// for a ground on which only shadows are seen.
     pub albedo: [f64; 3],
 }
 

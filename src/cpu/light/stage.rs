@@ -100,6 +100,11 @@ impl<'a> Stage<'a> {
         (DVec3::new(x, y, z), radius)
     }
 
+    /// Whether two spheres have the same centre and radius.
+    pub(super) fn is_same(&self, one: u32, other: u32) -> bool {
+        self.sphere(one) == self.sphere(other)
+    }
+
     pub(super) fn color(&self, surface: Surface) -> DVec3 {
         match surface {
             Surface::Sphere(id) => rgb(self.scene.color(id)),

@@ -26,9 +26,6 @@ pub(super) fn follow(
     for m in 0..studio.max_surfaces {
         let Some(meeting) = nearest(stage, &flight) else { break };
         way += meeting.distance;
-        if m == 0 {
-            found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
-        }
         let view = View { stage, studio, meeting, direction: flight.ray.direction, address, m };
         if let Some(plane) = stage.ground.filter(|g| g.is_shadow_catcher)
             && meeting.surface == Surface::Ground
@@ -37,6 +34,9 @@ pub(super) fn follow(
             found.alpha += clear * shadow;
             clear *= 1.0 - shadow;
             break;
+        }
+        if m == 0 {
+            found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
         }
         let opacity = stage.opacity(meeting.surface);
         let weight = clear * opacity;

@@ -2,7 +2,8 @@
 
 use pinhole::camera::{FisheyeCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::filter::PixelFilter;
-use pinhole::lighting::{Integrator, LightSampling, LightingError, Sky, SkyLight, Studio};
+use pinhole::glam::DVec3;
+use pinhole::lighting::{Ground, Integrator, LightSampling, LightingError, Sky, SkyLight, Studio};
 use pinhole::{Film, LayerSet, Lighting, Material, Scene, Settings, Sphere, cpu, image::NO_ID};
 
 use super::{Shot, furnace, gray, paths, rgb, white};
@@ -149,6 +150,35 @@ fn a_lens_blurs_what_is_out_of_focus() {
     let (sharp, through_lens) = (render(near, false), render(near, true));
     assert!((sharp.0 - through_lens.0).abs() < 0.02 * sharp.0, "{sharp:?}, {through_lens:?}");
     assert!(through_lens.2 < 0.24, "{through_lens:?}");
+}
+
+/// On paths the colour of what stops the ray, in a studio that of what is first; of a catcher neither.
+#[test]
+fn albedo_is_that_of_the_first_surface() {
+    let veil = Sphere::new([0.0; 3], 1.0, rgb([0.0, 0.5, 0.0])).with_opacity(0.0);
+    let core = Sphere::new([0.0; 3], 0.5, rgb([0.5, 0.0, 0.0]));
+    let shot = Shot::from(4.0, &[veil, core], [0.0; 3], 0.1, 2);
+    let studio = Integrator::Studio(Studio::default());
+    let path = furnace(2);
+    for (integrator, wanted) in
+        [(path.integrator.clone(), [0.5, 0.0, 0.0]), (studio, [0.0, 0.5, 0.0])]
+    {
+        let lighting = Lighting { integrator, ..path.clone() };
+        assert_eq!(shot.render(&lighting).albedo().unwrap(), [wanted; 4]);
+    }
+    for is_shadow_catcher in [false, true] {
+        let ground = Some(Ground {
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+            color: gray(0.25),
+            is_shadow_catcher,
+        });
+        let integrator = Integrator::Studio(Studio::default());
+        let lighting = Lighting { integrator, ground, ..path.clone() };
+        let image = Shot::from(4.0, &[], [0.0; 3], 0.1, 2).render(&lighting);
+        let wanted = if is_shadow_catcher { [0.0; 3] } else { [0.25; 3] };
+        assert_eq!(image.albedo().unwrap(), [wanted; 4]);
+    }
 }
 
 /// What is seen where nothing is: the sky, if it is to be seen, or the background, or nothing; and where the camera

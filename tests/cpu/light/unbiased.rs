@@ -11,8 +11,8 @@ use pinhole::{Environment, Film, Image, Lighting, Material, Scene, Sphere};
 
 use super::{Shot, blocks, gray, paths, rgb, standard_errors};
 
-/// Lobes, metal, glass, what lets light pass, and emissive spheres, one of which lets light pass and one of which is
-/// partly inside another sphere.
+/// Lobes, metal, glass, what lets light pass, and emissive spheres, of which one lets light pass, one is partly
+/// inside another sphere, and one is where another is.
 fn spheres() -> Vec<Sphere> {
     let sphere =
         |x: f64, y: f64, z: f64, r: f64, color: [f32; 3]| Sphere::new([x, y, z], r, rgb(color));
@@ -31,6 +31,7 @@ fn spheres() -> Vec<Sphere> {
         sphere(-0.2, 1.6, 0.6, 0.3, [1.0, 0.7, 0.4]).with_material(lamp(4.0)),
         sphere(1.5, 1.4, 0.2, 0.4, [0.5, 0.7, 1.0]).with_material(lamp(2.0)).with_opacity(0.5),
         sphere(-1.0, 0.3, 0.75, 0.25, [0.7, 1.0, 0.7]).with_material(lamp(1.5)),
+        sphere(-1.0, 0.3, 0.75, 0.25, [1.0, 0.7, 0.7]).with_material(lamp(3.0)),
     ]
 }
 
