@@ -12,6 +12,7 @@ mod compute;
 mod device;
 mod embedding;
 mod faults;
+mod lens;
 mod parts;
 mod pictures;
 mod plan;
@@ -59,6 +60,7 @@ fn main() {
     }
     let groups = [
         agreement::trials(),
+        lens::trials(),
         pictures::trials(),
         parts::trials(),
         embedding::trials(),

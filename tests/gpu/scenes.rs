@@ -1,8 +1,10 @@
 //! Scenes on which every back end must agree.
 
-use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{
+    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+};
 use pinhole::film::YAxis;
-use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere};
+use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere, glam};
 
 use crate::support::View;
 
@@ -38,6 +40,20 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("random_pinhole_y_down", random_1000(YAxis::Down, Lens::Pinhole)),
         ("random_orthographic_y_up", random_1000(YAxis::Up, Lens::Orthographic)),
         ("random_orthographic_y_down", random_1000(YAxis::Down, Lens::Orthographic)),
+        ("thin_lens_y_up", random_1000(YAxis::Up, Lens::Thin)),
+        ("thin_lens_y_down", random_1000(YAxis::Down, Lens::Thin)),
+        ("left_eye", random_1000(YAxis::Up, Lens::LeftEye)),
+        ("right_eye_y_down", random_1000(YAxis::Down, Lens::RightEye)),
+        ("panorama_from_outside", random_1000(YAxis::Up, Lens::Panorama)),
+        ("panorama_from_outside_y_down", random_1000(YAxis::Down, Lens::Panorama)),
+        ("panorama", all_around(|pose, _| PanoramaCamera::new(pose))),
+        ("panorama_left_eye", all_around(|pose, _| around(pose)[0])),
+        ("panorama_right_eye", all_around(|pose, _| around(pose)[1])),
+        ("fisheye_from_outside", random_1000(YAxis::Up, Lens::Fisheye)),
+        ("fisheye_from_outside_y_down", random_1000(YAxis::Down, Lens::Fisheye)),
+        ("fisheye_180", all_around(|pose, aspect| fisheye(pose, 180.0, aspect))),
+        ("fisheye_360", all_around(|pose, aspect| fisheye(pose, 360.0, aspect))),
+        ("fisheye_higher_than_wide", random_fisheye_upright()),
     ]
 }
 
@@ -45,6 +61,11 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
 enum Lens {
     Pinhole,
     Orthographic,
+    Thin,
+    LeftEye,
+    RightEye,
+    Panorama,
+    Fisheye,
 }
 
 fn flat() -> Settings {
@@ -221,6 +242,14 @@ fn random_1000(y_axis: YAxis, lens: Lens) -> View {
     let camera: Box<dyn Camera> = match lens {
         Lens::Pinhole => Box::new(PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap()),
         Lens::Orthographic => Box::new(OrthographicCamera::new(pose, [3.2, 2.4]).unwrap()),
+        Lens::Thin => {
+            let pinhole = PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap();
+            Box::new(ThinLensCamera::new(pinhole, 0.2, 5.0).unwrap())
+        }
+        Lens::LeftEye => Box::new(eyes(pose)[0]),
+        Lens::RightEye => Box::new(eyes(pose)[1]),
+        Lens::Panorama => Box::new(PanoramaCamera::new(pose)),
+        Lens::Fisheye => Box::new(fisheye(pose, 60.0, 160.0 / 120.0)),
     };
     View {
         scene: Scene::new(&spheres).unwrap(),
@@ -228,4 +257,32 @@ fn random_1000(y_axis: YAxis, lens: Lens) -> View {
         film: Film::new(160, 120).unwrap().with_y_axis(y_axis),
         settings: headlight(),
     }
+}
+
+/// As far apart as no eyes are, so that rays are shifted by much.
+fn eyes(pose: Pose) -> [PinholeCamera; 2] {
+    PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap().stereo_pair(1.0, 4.0).unwrap()
+}
+
+fn around(pose: Pose) -> [PanoramaCamera; 2] {
+    PanoramaCamera::new(pose).stereo_pair(0.2, 2.0).unwrap()
+}
+
+fn fisheye(pose: Pose, degrees: f64, aspect: f64) -> FisheyeCamera {
+    FisheyeCamera::new(pose, degrees.to_radians(), aspect).unwrap()
+}
+
+/// Spheres on all sides, and a few around all of them.
+fn all_around<C: Camera + 'static>(camera: impl Fn(Pose, f64) -> C) -> View {
+    let mut spheres = random_spheres(10, 300, 0.2);
+    spheres.retain(|sphere| glam::DVec3::from(sphere.center).length() > 0.8);
+    spheres.push(sphere([0.2, -0.1, 0.3], 5.0));
+    let pose = Pose::looking_along([0.05, 0.1, -0.02], [0.3, -0.2, -1.0], [0.1, 1.0, 0.2]).unwrap();
+    view(&spheres, camera(pose, 1.5), (150, 100), headlight())
+}
+
+fn random_fisheye_upright() -> View {
+    let pose = Pose::looking_at([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], [0.0, 1.0, 0.0]).unwrap();
+    let camera = fisheye(pose, 50.0, 61.0 / 97.0);
+    view(&random_spheres(9, 200, 0.2), camera, (61, 97), headlight())
 }

@@ -39,13 +39,38 @@ fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (Tra
         [view.origin, view.right, view.up, view.forward, view.scene_min, view.scene_max]
             .map(Vec3::from);
     let location = location(film, pixel);
+    let [first, second, third] = view.numbers;
+    let mut is_seen = true;
     let aside = location.x * right + location.y * up;
-    let (origin, direction, distance) = if kind == CameraKind::Orthographic {
-        (origin + aside, forward, view.advance)
-    } else {
-        let toward = aside + forward;
-        let length = toward.dot(toward).sqrt();
-        (origin + view.advance * aside, toward * (1.0 / length), view.advance * length)
+    let (origin, toward, advance) = match kind {
+        CameraKind::Orthographic => (origin + aside, None, view.advance),
+        CameraKind::Panorama => {
+            let longitude = sin_cos_half_turns(location.x);
+            let latitude = sin_cos_half_turns(0.5 * location.y);
+            let heading = longitude.x * right + longitude.y * forward;
+            let tangent = longitude.y * right - longitude.x * forward;
+            let straight = latitude.y * heading + latitude.x * up;
+            let toward = second * straight - third * tangent;
+            (origin + first * tangent, Some(toward), 0.0)
+        }
+        CameraKind::Fisheye => {
+            let spot = location * Vec2::new(first, second);
+            let radius = spot.dot(spot).sqrt();
+            is_seen = radius <= 1.0;
+            let angle = sin_cos_half_turns(radius.min(1.0) * third);
+            let side = spot / radius.max(2_f32.powi(-40));
+            let aside = side.x * right + side.y * up;
+            (origin, Some(angle.x * aside + angle.y * forward), 0.0)
+        }
+        // The lens's centre is the pinhole.
+        _ => (origin + view.advance * aside, Some(aside + forward), view.advance),
+    };
+    let (direction, distance) = match toward {
+        None => (forward, advance),
+        Some(toward) => {
+            let length = toward.dot(toward).sqrt();
+            (toward * (1.0 / length), advance * length)
+        }
     };
     let size = direction.abs().max(Vec3::splat(2_f32.powi(-40)));
     let inverse = 1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size);
@@ -57,7 +82,27 @@ fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (Tra
         direction: direction.to_array(),
         distance: distance + near,
     };
-    (ray, near <= far)
+    (ray, is_seen && near <= far)
+}
+
+/// `sin_cos_half_turns` and `sin_cos_eighth` of shaders/trigonometry.wgsl.
+fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
+    let quarters = (2.0 * half_turns).round_ties_even();
+    let rest = half_turns - 0.5 * quarters;
+    let angle = std::f32::consts::PI * rest;
+    let z = angle * angle;
+    let sine = z * (-1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362_880.0))));
+    let cosine = z
+        * (-0.5
+            + z * (1.0 / 24.0
+                + z * (-1.0 / 720.0 + z * (1.0 / 40_320.0 + z * (-1.0 / 3_628_800.0)))));
+    let first = Vec2::new(angle + angle * sine, 1.0 + cosine);
+    match (quarters as i32).rem_euclid(4) {
+        0 => first,
+        1 => Vec2::new(first.y, -first.x),
+        2 => -first,
+        _ => Vec2::new(-first.y, first.x),
+    }
 }
 
 /// `surface_color` of shaders/shading.wgsl.

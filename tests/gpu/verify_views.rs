@@ -1,6 +1,8 @@
 //! Small views for the checker, each with something that a fault of its kind would show in.
 
-use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{
+    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+};
 use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere};
 
 use crate::support::View;
@@ -55,6 +57,28 @@ pub(crate) fn parallel() -> View {
     let camera =
         OrthographicCamera::new(pose([3.0, 2.0, 6.0], [0.1, 0.2, 0.3]), [3.4, 2.8]).unwrap();
     view(&random(400, 31), camera, [96, 80])
+}
+
+/// Through a lens; of a recording, through its centre.
+pub(crate) fn lens() -> View {
+    let pinhole = pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0);
+    view(&random(400, 31), ThinLensCamera::new(pinhole, 0.3, 5.0).unwrap(), [96, 80])
+}
+
+/// From the middle, for the right eye.
+pub(crate) fn around() -> View {
+    let pose = pose([0.1, 0.2, 0.3], [3.0, 2.0, 6.0]);
+    let [_, right] = PanoramaCamera::new(pose).stereo_pair(0.1, 1.0).unwrap();
+    view(&random(400, 31), right, [96, 48])
+}
+
+/// From the middle, in most directions; none sees the sky.
+pub(crate) fn disk() -> View {
+    let mut spheres = random(400, 31);
+    spheres.push(colored([0.0; 3], 5.0, 3));
+    let pose = pose([0.1, 0.2, 0.3], [3.0, 2.0, 6.0]);
+    let camera = FisheyeCamera::new(pose, 5.0, 1.2).unwrap();
+    view(&spheres, camera, [96, 80])
 }
 
 /// In a large sphere, with others in and around it.

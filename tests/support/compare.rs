@@ -5,6 +5,7 @@
 //! the rounding of the kernel can displace a ray; flat colours, albedo and misses must be equal to the bit.
 
 use glam::DVec3;
+use pinhole::camera::CameraKind;
 use pinhole::image::{NO_ID, Pixel};
 use pinhole::{Image, Shading, cpu, glam};
 
@@ -133,7 +134,13 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
     let normal = DVec3::from(reference.normal.map(f64::from));
     let cosine = normal.dot(ray.direction).abs();
 
-    let lengths = (ray.origin - view.scene.origin()).length() + f64::from(reference.depth) + radius;
+    let depth = f64::from(reference.depth);
+    // A fisheye rounds the angle itself, relative to it: at that angle from the view, it is an arc's length.
+    let arc = match view.camera.kind() {
+        CameraKind::Fisheye => depth * view.camera.vectors().forward.angle_between(ray.direction),
+        _ => 0.0,
+    };
+    let lengths = (ray.origin - view.scene.origin()).length() + depth + arc + radius;
     let displacement = DISPLACEMENT * lengths;
     // A ray displaced sideways meets the sphere earlier or later: by displacement/cosine where the
     // surface faces the ray, and at most by the half chord's change at the silhouette, sqrt(2 r d).

@@ -44,6 +44,7 @@ type Row = (&'static str, fn() -> View, How, &'static str, &'static str, &'stati
 pub(crate) fn all() -> Vec<Fault> {
     [
         rays::CAMERA,
+        rays::OTHER_CAMERAS,
         rays::ENTRY,
         hits::SPHERE,
         hits::SHADE,
