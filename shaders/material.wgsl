@@ -26,11 +26,11 @@ fn material_of(vertex: Vertex) -> Material {
 }
 
 // A table of an energy has so many numbers, and starts at the next multiple of four.
-const ENERGIES: u32 = 128u;
+const ENERGIES: u32 = 256u;
 
 // What a lobe keeps of the light that it gets at a cosine. Twin: `lookup` in src/lighting/energy.rs.
 fn energy(first: u32, cosine: f32) -> f32 {
-    let along = sqrt(clamp(cosine, 0.0, 1.0)) * f32(ENERGIES - 1u);
+    let along = sqrt(sqrt(clamp(cosine, 0.0, 1.0))) * f32(ENERGIES - 1u);
     let below = min(u32(along), ENERGIES - 2u);
     let a = tables[first + (below >> 2u)][below & 3u];
     let b = tables[first + ((below + 1u) >> 2u)][(below + 1u) & 3u];

@@ -26,8 +26,8 @@ pub struct Scene {
     bounds: Option<Bounds>,
 }
 
-/// The colours of a scene's spheres; shared with those who need nothing else of it.
-#[derive(Debug)]
+/// The colours and finishes of a scene's spheres; shared with those who need nothing else of it.
+#[derive(Clone, Debug)]
 pub(crate) struct SceneColors {
     palette: Vec<LinearRgb>,
     /// Of each place in the palette.
@@ -145,10 +145,7 @@ impl Scene {
     /// The same spheres, all of one finish.
     #[must_use]
     pub fn with_finish(mut self, finish: Finish) -> Self {
-        let SceneColors { palette, indices, .. } = &*self.colors;
-        let finishes = vec![finish; palette.len()];
-        let (palette, indices) = (palette.clone(), indices.clone());
-        self.colors = Arc::new(SceneColors { palette, finishes, indices });
+        Arc::make_mut(&mut self.colors).finishes.fill(finish);
         self
     }
 

@@ -94,6 +94,9 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
+    // As `render` has it.
+    let alpha = input.encoding.transparent().then_some(Layer::Alpha);
+    let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
     let (choice, encoding) = (choice(args.accel.accel), memory::ENCODING_BYTES_PER_PIXEL);

@@ -9,10 +9,12 @@ use crate::image::{Image, ImageTooLarge, LayerSet, RowMut};
 use crate::scene::Scene;
 use crate::settings::Settings;
 
+mod denoise;
 mod shade;
 mod sphere;
 mod trace;
 
+pub use denoise::denoise;
 pub use shade::shade;
 pub use trace::trace;
 

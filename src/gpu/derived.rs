@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::records::NO_HIT;
 use crate::camera::Camera;
+use crate::color::LinearRgb;
 use crate::film::Film;
-use crate::image::{RowMut, coverage};
+use crate::image::{NO_ID, RowMut};
 use crate::scene::SceneColors;
 
 /// What they follow from beside a tile's pixels.
@@ -35,7 +36,7 @@ impl Derived<'_> {
     pub(super) fn set_by_ids(&self, row: &mut RowMut<'_>, columns: Range<usize>, ids: &[u32]) {
         if let Some(alpha) = &mut row.alpha {
             for (alpha, id) in alpha[columns.clone()].iter_mut().zip(ids) {
-                *alpha = coverage(*id);
+                *alpha = RowMut::coverage(*id);
             }
         }
         if let Some(albedo) = &mut row.albedo {
@@ -58,7 +59,7 @@ impl Derived<'_> {
     }
 
     fn albedo(&self, id: u32) -> [f32; 3] {
-        let color = if coverage(id) > 0.0 { self.colors.of(id) } else { None };
-        color.map_or([0.0; 3], |color| color.to_array())
+        let color = if id == NO_ID { None } else { self.colors.of(id) };
+        color.map_or([0.0; 3], LinearRgb::to_array)
     }
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::shaders::ShaderEdit;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
+use crate::denoise::MissingGuide;
 use crate::image::ImageTooLarge;
 use crate::lighting::LightingError;
 use crate::scene::SceneError;
@@ -144,6 +145,9 @@ pub enum GpuError {
     /// The scene does not fit into host memory.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A picture lacks a layer by which it could be denoised.
+    #[error(transparent)]
+    Guide(#[from] MissingGuide),
     /// A lighting, or a material, is out of range.
     #[error(transparent)]
     Lighting(#[from] LightingError),

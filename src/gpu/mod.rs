@@ -10,6 +10,7 @@ pub use wgpu;
 pub mod adapter;
 #[cfg(test)]
 mod constant_tests;
+mod denoise;
 mod derived;
 mod error;
 mod faults;

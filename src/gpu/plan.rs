@@ -273,6 +273,7 @@ mod tests {
     use super::*;
     use crate::accel::AccelChoice;
     use crate::color::LinearRgb;
+    use crate::image::Layer;
     use crate::sphere::Sphere;
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
@@ -296,6 +297,19 @@ mod tests {
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
         let all = super::tests::plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
+    }
+
+    #[test]
+    fn the_host_keeps_every_layer_and_the_device_four() {
+        let plan = |layers| plan(1024, layers, DeviceType::DiscreteGpu);
+        let (color, alpha) = (plan(LayerSet::COLOR), plan(LayerSet::COLOR.with(Layer::Alpha)));
+        let (data, all) = (plan(LayerSet::DATA), plan(LayerSet::ALL));
+        assert_eq!(color.host_bytes, (12 + 16) << 20);
+        assert_eq!(alpha.host_bytes, color.host_bytes + (4 << 20));
+        assert_eq!(data.host_bytes, color.host_bytes + ((4 + 12 + 4) << 20));
+        assert_eq!(all.host_bytes, data.host_bytes + ((4 + 12 + 12 + 4 + 4) << 20));
+        assert_eq!(all.tile_textures, data.tile_textures);
+        assert_eq!(alpha.tile_textures, data.tile_textures);
     }
 
     #[test]

@@ -194,6 +194,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::gpu::denoise::Denoise;
+    use crate::gpu::lit::records::{Look, Stage};
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
     use crate::gpu::shaders;
 
@@ -304,6 +306,37 @@ mod tests {
                 tiny_sum
             }),
             layout!(Looped { count, state }),
+            layout!(Denoise { size, step, zero }),
+            layout!(Stage { sample, surface, light, is_last }),
+            layout!(Look {
+                background,
+                flags,
+                ambient,
+                light_count,
+                zenith,
+                roulette_from,
+                horizon,
+                source_count,
+                nadir,
+                light_sampling,
+                cue_color,
+                cue_near,
+                ground_normal,
+                cue_scale,
+                ground_point,
+                occlusion_radius,
+                ground_color,
+                occlusion_samples,
+                seed,
+                emitter_first,
+                emitter_count,
+                material_first,
+                environment_size,
+                environment_rotation,
+                environment_strength,
+                lamp_sources,
+                filter_table
+            }),
         ];
         let mut declared = BTreeSet::new();
         for kernel in shaders::all_kernels() {

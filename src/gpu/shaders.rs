@@ -304,6 +304,7 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
         }
     }
     kernels.extend(super::lit::all_kernels());
+    kernels.push(super::denoise::denoise_kernel());
     kernels
 }
 
@@ -335,7 +336,7 @@ mod tests {
         assert_eq!(
             kernels.len(),
             CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
-                + 3
+                + 4
                 + super::super::lit::all_kernels().len()
         );
         for kernel in kernels {

@@ -4,7 +4,7 @@ mod layer;
 mod rows;
 
 pub use layer::{Layer, LayerSet, UnknownLayer};
-pub(crate) use rows::{RowMut, coverage};
+pub(crate) use rows::RowMut;
 
 /// The id of a pixel whose ray hit nothing.
 pub const NO_ID: u32 = u32::MAX;
@@ -206,6 +206,19 @@ impl Image {
 /// For renderers that gather several samples for a pixel.
 #[allow(dead_code, reason = "renderers take one sample so far")]
 impl Image {
+    /// Drops all layers but these.
+    pub(crate) fn keep(&mut self, layers: LayerSet) {
+        let wants = |layer| layers.contains(layer);
+        self.alpha = self.alpha.take().filter(|_| wants(Layer::Alpha));
+        self.depth = self.depth.take().filter(|_| wants(Layer::Depth));
+        self.normal = self.normal.take().filter(|_| wants(Layer::Normal));
+        self.position = self.position.take().filter(|_| wants(Layer::Position));
+        self.albedo = self.albedo.take().filter(|_| wants(Layer::Albedo));
+        self.id = self.id.take().filter(|_| wants(Layer::Id));
+        self.samples = self.samples.take().filter(|_| wants(Layer::Samples));
+        self.variance = self.variance.take().filter(|_| wants(Layer::Variance));
+    }
+
     pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
         &mut self.color
     }

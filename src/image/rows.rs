@@ -19,10 +19,15 @@ pub(crate) struct RowMut<'a> {
 }
 
 impl RowMut<'_> {
+    /// What a pixel's only ray says of how much spheres cover it.
+    pub(crate) fn coverage(id: u32) -> f32 {
+        if id == NO_ID { 0.0 } else { 1.0 }
+    }
+
     /// Sets what one ray says of a pixel.
     pub(crate) fn set(&mut self, column: usize, pixel: &Pixel) {
         self.color[column] = pixel.color;
-        put(&mut self.alpha, column, coverage(pixel.id));
+        put(&mut self.alpha, column, Self::coverage(pixel.id));
         put(&mut self.depth, column, pixel.depth);
         put(&mut self.normal, column, pixel.normal);
         put(&mut self.position, column, pixel.position);
@@ -31,11 +36,6 @@ impl RowMut<'_> {
         put(&mut self.samples, column, 1);
         put(&mut self.variance, column, 0.0);
     }
-}
-
-/// What a pixel's only ray says of how much spheres cover it.
-pub(crate) fn coverage(id: u32) -> f32 {
-    if id == NO_ID { 0.0 } else { 1.0 }
 }
 
 fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {

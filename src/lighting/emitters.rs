@@ -1,19 +1,156 @@
-//! Stub.
+//! Which emissive sphere is sampled, by chance in proportion to its power.
+
+use crate::material::{Finish, Material};
 use crate::scene::Scene;
-/// Stub.
-#[derive(Debug)]
-pub struct Emitters;
+
+/// The emissive spheres of a scene, each with the probability by which light is sought at it.
+///
+/// Probabilities are multiples of 2⁻³², at least 2⁻³² each, and sum to 1, so that a device that counts in u32
+/// chooses the same spheres with the same probabilities.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Emitters {
+    ids: Vec<u32>,
+    last: Vec<u32>,
+}
+
 impl Emitters {
-    pub(crate) fn of(_: &Scene) -> Self {
-        Self
+    /// The spheres of a scene that send out light, weighted by the luminance of what they send out, times opacity,
+    /// times the square of their radius.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let brightness: Vec<f64> = scene
+            .palette()
+            .iter()
+            .zip(scene.finishes())
+            .map(|(color, finish)| brightness(color.to_array().map(f64::from), finish))
+            .collect();
+        if brightness.iter().all(|b| *b == 0.0) {
+            return Self::default();
+        }
+        let place = |id: usize| scene.color_indices().map_or(0, |places| places[id] as usize);
+        let weights: Vec<(u32, f64)> = (0..scene.len())
+            .map(|id| {
+                let radius = f64::from(scene.spheres()[id][3]);
+                (id as u32, brightness[place(id)] * radius * radius)
+            })
+            .filter(|(_, weight)| *weight > 0.0)
+            .collect();
+        let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
+        // Each has one by right, and its share of the others.
+        let others = (1_u64 << 32) - weights.len() as u64;
+        let mut sum = 0.0;
+        let last = weights.iter().enumerate().map(|(place, (_, weight))| {
+            sum += weight;
+            let shared = (sum / total * others as f64).floor() as u64;
+            // One less than what is up to here, of which there is at least one.
+            (place as u64 + shared.min(others)) as u32
+        });
+        let mut last: Vec<u32> = last.collect();
+        if let Some(end) = last.last_mut() {
+            *end = u32::MAX;
+        }
+        Self { ids: weights.iter().map(|(id, _)| *id).collect(), last }
     }
-    pub(crate) fn ids(&self) -> &[u32] {
-        &[]
+
+    /// Indices of the spheres in input order, ascending.
+    #[must_use]
+    pub fn ids(&self) -> &[u32] {
+        &self.ids
     }
-    pub(crate) fn last_choice(&self, _: usize) -> u32 {
-        0
+
+    /// For each of [`Emitters::ids`] the largest u32 that picks it: one less than 2³² times the sum of probabilities
+    /// up to it. Ascending; the last is 2³² − 1.
+    #[must_use]
+    pub fn last_picks(&self) -> &[u32] {
+        &self.last
     }
-    pub(crate) fn probability_of(&self, _: usize) -> f64 {
-        0.0
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// The place in [`Emitters::ids`] of the first whose last pick is not below `u`, and its probability; `None` if
+    /// there are no emitters.
+    #[must_use]
+    pub fn pick(&self, u: u32) -> Option<(usize, f64)> {
+        let place = self.last.partition_point(|last| *last < u);
+        (place < self.last.len()).then(|| (place, self.probability_at(place)))
+    }
+
+    /// The probability by which a sphere is picked; 0 for one that sends out no light.
+    #[must_use]
+    pub fn probability(&self, id: u32) -> f64 {
+        self.ids.binary_search(&id).map_or(0.0, |place| self.probability_at(place))
+    }
+
+    fn probability_at(&self, place: usize) -> f64 {
+        let before = if place == 0 { 0.0 } else { f64::from(self.last[place - 1]) + 1.0 };
+        (f64::from(self.last[place]) + 1.0 - before) / 2_f64.powi(32)
+    }
+}
+
+fn brightness([r, g, b]: [f64; 3], finish: &Finish) -> f64 {
+    match finish.material {
+        Material::Emissive { strength } => {
+            let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            luminance * f64::from(strength) * f64::from(finish.opacity)
+        }
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::LinearRgb;
+    use crate::sphere::Sphere;
+
+    fn lamp(radius: f64, strength: f32) -> Sphere {
+        Sphere::new([0.0; 3], radius, LinearRgb::WHITE)
+            .with_material(Material::Emissive { strength })
+    }
+
+    #[test]
+    fn probabilities_follow_power() {
+        let matt = Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
+        let dark = lamp(1.0, 1.0).with_opacity(0.0);
+        let spheres = [matt, lamp(1.0, 3.0), lamp(1.0, 0.0), lamp(2.0, 1.0), dark, lamp(1.0, 1.0)];
+        let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
+        assert_eq!(emitters.ids(), [1, 3, 5]);
+        for (id, eighths) in [(0, 0.0), (1, 3.0), (2, 0.0), (3, 4.0), (4, 0.0), (5, 1.0), (9, 0.0)]
+        {
+            let found = emitters.probability(id);
+            assert!((found - eighths / 8.0).abs() < 1e-9, "{id}: {found}");
+        }
+        assert_eq!(emitters.last_picks()[2], u32::MAX);
+    }
+
+    /// All 2³² numbers pick, each sphere as many as its probability says.
+    #[test]
+    fn every_number_picks_and_the_faintest_is_picked() {
+        let spheres = [lamp(1e-9, 1e-9), lamp(1e9, 1e6), lamp(1e-9, 1e-9), lamp(1.0, 1e-3)];
+        let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
+        let mut first = 0_u64;
+        for (place, id) in emitters.ids().iter().enumerate() {
+            let last = u64::from(emitters.last_picks()[place]);
+            let probability = (last + 1 - first) as f64 / 2_f64.powi(32);
+            assert!(last >= first, "{id}");
+            for u in [first, last] {
+                assert_eq!(emitters.pick(u as u32), Some((place, probability)));
+            }
+            assert_eq!(emitters.probability(*id), probability);
+            first = last + 1;
+        }
+        assert_eq!(first, 1 << 32);
+    }
+
+    #[test]
+    fn one_takes_all_and_none_takes_nothing() {
+        let one = Emitters::of(&Scene::new(&[lamp(1.0, 1.0)]).unwrap());
+        assert_eq!([0, u32::MAX].map(|u| one.pick(u)), [Some((0, 1.0)); 2]);
+        let none = Emitters::of(&Scene::new(&[lamp(1.0, 0.0)]).unwrap());
+        assert!(none.is_empty() && none.pick(0).is_none());
     }
 }

@@ -13,8 +13,8 @@ use crate::color::LinearRgb;
 use crate::filter::PixelFilter;
 
 mod check;
-mod emitters;
-pub(crate) mod energy;
+pub mod emitters;
+pub mod energy;
 mod ground;
 mod light;
 mod sky;

@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use pinhole::camera::CameraKind;
+use pinhole::encoding::{Bits, Encoding};
 use pinhole::film::YAxis;
 use pinhole::scene_file::SceneFile;
-use pinhole::{LinearRgb, Shading, glam};
+use pinhole::{LinearRgb, Shading, ToneCurve, glam};
 
 fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
@@ -45,6 +46,27 @@ fn the_example_says_what_it_should() {
     let vectors = file.camera(&file.film, &scene).unwrap().vectors();
     assert_eq!(vectors.origin, DVec3::new(0.0, 1.0, -8.0));
     assert_eq!(vectors.right, DVec3::X);
+}
+
+#[test]
+fn how_the_picture_is_written() {
+    assert_eq!(parse("[output]\n").encoding, Encoding::default());
+    let all = "[output]\nexposure = 1.5\ntone = 'filmic'\ntransparent = true\nbits = 16\n";
+    let expected = Encoding::default()
+        .with_exposure(1.5)
+        .unwrap()
+        .with_tone(ToneCurve::Filmic)
+        .with_transparent(true)
+        .with_bits(Bits::Sixteen);
+    assert_eq!(parse(all).encoding, expected);
+    for tone in ToneCurve::ALL {
+        let file = parse(&format!("[output]\ntone = '{}'\nexposure = -2\n", tone.name()));
+        assert_eq!((file.encoding.tone(), file.encoding.exposure()), (*tone, -2.0));
+    }
+    assert_eq!(
+        message("[output]\nbits = 8\nexposure = -32.5\n"),
+        "line 3, column 12: `exposure` is -32.5 stops; it must lie between -32 and 32"
+    );
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The program on an adapter, as a user runs it: what it writes is what the library renders.
 
+use std::io::Cursor;
 use std::path::Path;
 use std::process::Command;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
-use pinhole::{LayerSet, color};
+use pinhole::{Encoding, LayerSet, color, io};
 
 use crate::support::View;
 use crate::trial;
@@ -14,6 +15,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("program::the_demo_renders_on_the_adapter", demo),
         trial("program::layers_come_from_the_adapter", layers),
+        trial("program::an_exr_holds_what_the_adapter_rendered", exr),
         trial("program::info_lists_the_adapter", info),
         trial("program::self_test_of_the_adapter", self_test),
     ]
@@ -64,6 +66,26 @@ fn layers(headless: &'static Headless) {
     let id = read("id.npy");
     let id: Vec<u32> = npyz::NpyFile::new(&id[..]).unwrap().into_vec().unwrap();
     assert!(id == image.id().unwrap(), "id");
+}
+
+fn exr(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = include_str!("../../examples/three-spheres.toml");
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let adapter = &headless.adapter_info().name;
+    let mut arguments = vec!["render", "scene.toml", "-o", "out.exr", "--adapter", adapter];
+    for layer in LayerSet::ALL.iter() {
+        arguments.extend(["--layer", layer.name()]);
+    }
+    run(folder.path(), &arguments);
+
+    let View { scene, camera, film, settings } = View::three_spheres();
+    let image = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::ALL).unwrap();
+    let mut expected = Cursor::new(Vec::new());
+    let encoding = Encoding::default();
+    io::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();
+    let found = std::fs::read(folder.path().join("out.exr")).unwrap();
+    assert!(found == expected.into_inner(), "the file is not the library's");
 }
 
 fn self_test(headless: &'static Headless) {

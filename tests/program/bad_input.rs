@@ -100,13 +100,51 @@ fn outputs() {
     output("-o out.jpg", &["out.jpg", ".png"]);
     output("-o out", &["out", ".png"]);
     output("", &["--output"]);
-    output("-o out.png --layer depth", &["LAYER=FILE.npy"]);
+    output("-o out.jpg", &["out.jpg", ".exr"]);
+    output("-o out.png --layer depth", &["LAYER=FILE.npy", "depth=depth.npy", ".exr"]);
+    output("-o - --layer depth", &["LAYER=FILE.npy", "depth=depth.npy", ".exr"]);
+    output("-o out.exr --layer depht", &["no layer `depht`", "position"]);
+    output("-o out.exr --layer depth=d.exr", &["d.exr", ".npy"]);
+    output("-o no/out.exr", &["no/out.exr", "the folder no does not exist"]);
     output("-o out.png --layer depht=d.npy", &["no layer `depht`", "depth"]);
     output("-o out.png --layer depth=d.exr", &["d.exr", ".npy"]);
     output("-o out.png --layer depth=", &["--layer depth=", "name a file"]);
     output("-o out.png/", &["out.png/", "folder"]);
     output("-o out.png --layer depth=no/d.npy", &["the folder no does not exist"]);
     output("-o out.png --layer depth=d.npy --layer id=d.npy", &["d.npy", "two outputs"]);
+}
+
+#[test]
+fn how_pictures_are_written() {
+    let flags = |flags: &str, words: &[&str]| {
+        refused(&[], &format!("render scene.toml --backend cpu {flags}"), 2, words);
+    };
+    flags("-o out.png --bits 12", &["--bits", "12", "must be 8 or 16"]);
+    flags("-o out.png --bits many", &["--bits", "many"]);
+    flags("-o out.png --exposure 33", &["--exposure", "33", "between -32 and 32"]);
+    flags("-o out.png --exposure nan", &["--exposure", "NaN", "between -32 and 32"]);
+    flags("-o out.png --exposure bright", &["--exposure", "bright"]);
+    flags("-o out.png --tone reinhard", &["--tone", "reinhard", "filmic", "agx"]);
+    flags("-o out.png --transparent=maybe", &["--transparent", "maybe", "true, false"]);
+    for flag in ["--bits 8", "--exposure 1", "--tone none"] {
+        let name = flag.split(' ').next().unwrap();
+        flags(&format!("-o out.exr {flag}"), &[name, "concerns PNG", "drop it"]);
+    }
+    let scene = |text: &str, words: &[&str]| {
+        let text = format!("[output]\n{text}\n");
+        let arguments = "render bad.toml -o out.png --backend cpu";
+        refused(&[("bad.toml", &text)], arguments, 1, words);
+    };
+    scene("bits = 10", &["bad.toml: line 2, column 8", "`bits` is 10", "8 or 16"]);
+    scene("bits = -8", &["bad.toml: line 2", "whole number"]);
+    scene("exposure = 40.5", &["bad.toml: line 2, column 12", "`exposure` is 40.5", "-32 and 32"]);
+    scene("exposure = nan", &["bad.toml: line 2", "`exposure` is NaN"]);
+    scene("exposure = true", &["bad.toml: line 2", "expected a number"]);
+    scene("tone = 'agxx'", &["bad.toml: line 2", "did you mean `agx`?"]);
+    scene("transparent = 1", &["bad.toml: line 2", "expected a boolean"]);
+    scene("exposition = 1", &["bad.toml: line 2", "did you mean `exposure`?"]);
+    let list = [("bad.toml", "output = [1]\n")];
+    refused(&list, "render bad.toml -o out.png", 1, &["bad.toml: line 1", "a table"]);
 }
 
 /// Everything is rendered and the picture complete when a layer turns out to have no place: its name is

@@ -12,5 +12,6 @@ mod bad_input;
 mod generate;
 mod good_input;
 mod interrupt;
+mod pictures;
 mod support;
 mod verify;

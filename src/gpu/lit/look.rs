@@ -8,8 +8,9 @@ use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::gpu::records::NO_HIT;
-use crate::lighting::energy;
-use crate::lighting::{Emitters, Integrator, LightKind, LightSampling, Lighting, Sky, SkyLight};
+use crate::lighting::emitters::Emitters;
+use crate::lighting::energy::EnergyTables;
+use crate::lighting::{Integrator, LightKind, LightSampling, Lighting, Sky, SkyLight};
 use crate::material::{Finish, Material};
 use crate::math::unit;
 use crate::scene::Scene;
@@ -44,16 +45,15 @@ impl Lit {
             tables.extend(emitter_records(scene, &emitters));
         }
         let material_first = tables.len() as u32;
-        let ground = (LinearRgb::WHITE, Finish::default());
-        let painted = scene.palette().iter().copied().zip(scene.finishes().iter().copied());
-        let finishes: Vec<_> = std::iter::once(ground).chain(painted).collect();
-        let mut energies = Energies {
-            first: material_first + 2 * finishes.len() as u32,
-            known: Vec::new(),
-            data: Vec::new(),
-        };
-        tables.extend(finishes.iter().flat_map(|finish| material_record(finish, &mut energies)));
-        tables.extend(energies.data);
+        let energies = EnergyTables::of(scene.finishes());
+        let energy_first = material_first + 2 * (1 + scene.finishes().len()) as u32;
+        tables.extend(material_record(LinearRgb::WHITE, &Finish::default(), 0));
+        let painted = scene.palette().iter().zip(scene.finishes()).zip(energies.starts());
+        for ((color, finish), start) in painted {
+            let energy = energy_first + start.unwrap_or(0) / 4;
+            tables.extend(material_record(*color, finish, energy));
+        }
+        tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
         let mut look = look_of(lighting, scene);
         look.light_count = lights.len() as u32;
         look.source_count = sources.count();
@@ -223,85 +223,39 @@ fn emitter_records<'a>(
     emitters: &'a Emitters,
 ) -> impl Iterator<Item = [f32; 4]> + 'a {
     emitters.ids().iter().enumerate().flat_map(move |(index, id)| {
-        let strength = match scene.finish(*id).material {
-            Material::Emissive { strength } => strength,
+        let finish = scene.finish(*id);
+        // A surface that lets light through sends out its share.
+        let strength = match finish.material {
+            Material::Emissive { strength } => strength * finish.opacity,
             _ => 0.0,
         };
-        let probability = emitters.probability_of(index) as f32;
+        let probability = emitters.probability(*id) as f32;
         [
             scene.spheres()[*id as usize],
-            [f32::from_bits(*id), f32::from_bits(emitters.last_choice(index)), probability, 0.0],
+            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
             four(scene.color(*id).to_array().map(|c| c * strength), 0.0),
         ]
     })
 }
 
-/// Tables of energies that are in use, each once.
-struct Energies {
-    /// Where the first starts.
-    first: u32,
-    known: Vec<(Lobe, u32)>,
-    data: Vec<[f32; 4]>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Lobe {
-    Reflection(f32),
-    Dielectric(f32, f32),
-}
-
-impl Energies {
-    fn of(&mut self, lobe: Lobe) -> u32 {
-        if let Some((_, place)) = self.known.iter().find(|(known, _)| *known == lobe) {
-            return *place;
-        }
-        let place = self.first + self.data.len() as u32;
-        let mut add = |table: &[f32]| {
-            self.data
-                .extend(table.chunks_exact(4).map(|four| [four[0], four[1], four[2], four[3]]));
-        };
-        match lobe {
-            Lobe::Reflection(roughness) => add(&energy::reflection(roughness)),
-            Lobe::Dielectric(ior, roughness) => {
-                energy::dielectric(ior, roughness).iter().for_each(|table| add(table));
-            }
-        }
-        self.known.push((lobe, place));
-        place
-    }
-}
-
 /// As `shaders/material.wgsl` reads it.
-fn material_record(
-    (color, finish): &(LinearRgb, Finish),
-    energies: &mut Energies,
-) -> [[f32; 4]; 2] {
-    let record =
-        |kind: u32, parameter: f32, roughness: f32, energies: u32, absorption: [f32; 3]| {
-            let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
-            [[kind, parameter, roughness * roughness, energies], four(absorption, 0.0)]
-        };
+fn material_record(color: LinearRgb, finish: &Finish, energies: u32) -> [[f32; 4]; 2] {
+    let record = |kind: u32, parameter: f32, roughness: f32, absorption: [f32; 3]| {
+        let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
+        [[kind, parameter, roughness * roughness, energies], four(absorption, 0.0)]
+    };
     match finish.material {
-        Material::Lambert { specular: 0.0, roughness } => record(0, 0.0, roughness, 0, [0.0; 3]),
-        Material::Lambert { specular, roughness } => {
-            record(0, specular, roughness, energies.of(Lobe::Reflection(roughness)), [0.0; 3])
-        }
-        Material::Conductor { roughness } => {
-            record(1, 1.0, roughness, energies.of(Lobe::Reflection(roughness)), [0.0; 3])
-        }
+        Material::Lambert { specular, roughness } => record(0, specular, roughness, [0.0; 3]),
+        Material::Conductor { roughness } => record(1, 1.0, roughness, [0.0; 3]),
         Material::Dielectric { ior, roughness, attenuation_distance } => {
-            let place = match roughness {
-                0.0 => 0,
-                _ => energies.of(Lobe::Dielectric(ior, roughness)),
-            };
             let absorption = attenuation_distance.map_or([0.0; 3], |distance| {
                 color.to_array().map(|c| {
                     let share = f64::from(c).max(1e-4);
                     (-share.ln() / f64::from(distance)) as f32
                 })
             });
-            record(2, ior, roughness, place, absorption)
+            record(2, ior, roughness, absorption)
         }
-        Material::Emissive { strength } => record(3, strength, 0.0, 0, [0.0; 3]),
+        Material::Emissive { strength } => record(3, strength, 0.0, [0.0; 3]),
     }
 }

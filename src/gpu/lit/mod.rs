@@ -21,6 +21,7 @@ use crate::camera::Camera;
 use crate::film::Film;
 use crate::image::{Image, Layer, LayerSet};
 use crate::lighting::Lighting;
+use crate::outline;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
@@ -149,11 +150,18 @@ impl Headless {
         watch: &mut LitWatch<'_>,
     ) -> Result<LitPicture, GpuError> {
         lighting.check(scene)?;
-        let mut image = self.data_layers(&buffers.all, camera, film, lighting, layers)?;
+        let lines = lighting.studio().and_then(|studio| studio.outline);
+        let by = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
+        let wanted = layers.iter().fold(by, LayerSet::with);
+        let mut image = self.data_layers(&buffers.all, camera, film, wanted)?;
         let lit = Lit::new(lighting, scene, camera);
         let mut sums = Sums::new(film)?;
         self.gather(buffers, (camera, film), lighting, &lit, &mut sums, watch)?;
         sums.write(&mut image);
+        if let Some(lines) = &lines {
+            outline::draw(&mut image, lines);
+            image.keep(layers);
+        }
         let (samples, noise, hits) = (sums.samples(), sums.noise(), sums.hits());
         Ok(LitPicture { image, samples, noise, hits })
     }
@@ -164,11 +172,9 @@ impl Headless {
         scene: &SceneBuffers,
         camera: &dyn Camera,
         film: &Film,
-        lighting: &Lighting,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
         let by_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
-        let _ = lighting;
         if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
             return Ok(Image::new(film.width(), film.height(), layers)?);
         }
