@@ -28,6 +28,7 @@ use crate::settings::Settings;
 mod film;
 mod kernels;
 mod look;
+mod recording;
 pub(super) mod records;
 mod renderer;
 mod run;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::look::Lit;
+use super::recording::Moment;
 use super::records::Stage;
 use super::renderer::Shaders;
 use super::run::Run;
@@ -44,11 +45,13 @@ impl Run<'_> {
         let (renderer, tile) = (self.renderer, self.tile);
         let surface = &self.scene.bricks()[0].surface_group;
         self.shade(&renderer.start, &tile.shade, Some(surface), stage)?;
+        self.keep(Moment::Started)?;
         match &lighting.integrator {
             Integrator::Studio(studio) => self.studio(stage, lit, studio)?,
             Integrator::Path(path) => self.path(stage, lit, path.max_depth)?,
         }
-        self.shade(&renderer.deposit, &tile.deposit, None, stage)
+        self.shade(&renderer.deposit, &tile.deposit, None, stage)?;
+        self.keep(Moment::Deposited)
     }
 
     fn studio(&mut self, stage: Stage, lit: &Lit, studio: &Studio) -> Result<(), GpuError> {
@@ -94,11 +97,14 @@ impl Run<'_> {
             if !self.extend(stage)? {
                 break;
             }
+            self.keep(Moment::Traced)?;
             for brick in scene.bricks() {
                 self.shade(scatter, &tile.shade, Some(&brick.surface_group), stage)?;
             }
+            self.keep(Moment::Scattered)?;
             if lit.look.source_count > 0 && surface < max_depth {
                 self.occlude(stage)?;
+                self.keep(Moment::Occluded)?;
             }
         }
         Ok(())

@@ -1,0 +1,236 @@
+//! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/vertex.wgsl`.
+
+use glam::DVec3;
+
+use super::certificate::PathStage;
+use super::expected::Mismatch;
+use super::kernel::Kernel;
+use super::recording::{flag, slot};
+use crate::image::NO_ID;
+use crate::material::Material;
+use crate::math::wide;
+use crate::verify::line::Line;
+use crate::verify::number::{Number, Vector};
+use crate::verify::recording::NO_HIT;
+use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma};
+use crate::verify::shading::{Chord, normal_at};
+use crate::verify::sphere::{Slack, SphereTest};
+
+/// A surface that was met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    pub(super) position: Vector,
+    /// Unit, on the side that is seen.
+    pub(super) normal: Vector,
+    /// Whether that is the inside of a sphere.
+    pub(super) is_back: bool,
+    /// Along the ray.
+    pub(super) distance: Number,
+    /// The sphere; radius 0 for the ground.
+    pub(super) sphere: [f32; 4],
+    pub(super) color: [f32; 3],
+    /// Its place among the materials; the ground is the first.
+    pub(super) place: u32,
+    /// Whether the path goes through it as if there were nothing.
+    pub(super) is_passed: bool,
+}
+
+impl Vertex {
+    pub(super) fn is_sphere(&self) -> bool {
+        self.sphere[3] > 0.0
+    }
+}
+
+/// What is known of a surface before where it is.
+struct Paint {
+    color: [f32; 3],
+    place: u32,
+    is_passed: bool,
+    /// Whether the path's state tells where it is.
+    is_kept: bool,
+}
+
+const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was met");
+
+impl Kernel<'_> {
+    /// What the ray meets; `None` if nothing.
+    pub(super) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let origin = Vector::had(before.vector(slot::ORIGIN));
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        // A camera's ray starts where spheres begin, and may have met the ground before.
+        let behind = if self.address.surface == 0 {
+            Number::had(before.number(slot::FIRST))
+        } else {
+            Number::ZERO
+        };
+        let ground = if before.has(flag::ON_GROUND) {
+            None
+        } else {
+            self.ground_distance(origin, direction, behind)
+        };
+        let has_sphere = hit.id != NO_ID;
+        let to_sphere = if has_sphere {
+            Number::had(hit.distance) + Number::had(hit.t)
+        } else {
+            Number::known(NO_HIT.into())
+        };
+        if let Some(distance) = ground {
+            if self.choices.decide(distance.is_less(to_sphere)) {
+                return self.ground_vertex(origin, direction, distance).map(Some);
+            }
+        }
+        if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
+    }
+
+    /// Where a ray meets the ground from above, perhaps behind its origin.
+    pub(super) fn ground_distance(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        behind: Number,
+    ) -> Option<Number> {
+        let look = self.look();
+        if look.flags & flag::GROUND == 0 {
+            return None;
+        }
+        let normal = Vector::had(look.ground_normal);
+        let toward = direction.dot(normal);
+        if !self.choices.decide(toward.is_less(Number::ZERO)) {
+            return None;
+        }
+        let height = (origin - Vector::had(look.ground_point)).dot(normal);
+        let toward = toward.min(Number::known(-f64::MIN_POSITIVE));
+        let t = height / -toward;
+        self.choices.decide((-behind).is_less(t)).then_some(t)
+    }
+
+    fn paint(&self, color: [f32; 3], place: u32, opacity: f32, is_emissive: bool) -> Paint {
+        let [_, pass] = self.pair(3).map(crate::sampling::unit);
+        let is_passed = pass >= f64::from(opacity);
+        let is_kept = is_passed || !(is_emissive || self.is_last());
+        Paint { color, place, is_passed, is_kept }
+    }
+
+    /// The point, which is compared, and then known exactly, if the path goes on from there.
+    fn compared(&mut self, position: Vector, paint: &Paint, size: f64) -> Result<Vector, Mismatch> {
+        if !paint.is_kept {
+            return Ok(position);
+        }
+        let found = self.after.vector(slot::ORIGIN);
+        self.expected.vector_of(POSITION, found, position, size)?;
+        Ok(Vector::had(found))
+    }
+
+    fn ground_vertex(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        distance: Number,
+    ) -> Result<Vertex, Mismatch> {
+        let look = self.look();
+        let paint = self.paint(look.ground_color, 0, 1.0, false);
+        let normal = Vector::had(look.ground_normal);
+        let on_ray = origin + direction * distance;
+        let above = (on_ray - Vector::had(look.ground_point)).dot(normal);
+        let position = (on_ray - normal * above).fence();
+        let size = distance.interval().high;
+        let position = self.compared(position, &paint, size)?;
+        let Paint { color, place, is_passed, .. } = paint;
+        let sphere = [0.0; 4];
+        Ok(Vertex { position, normal, is_back: false, distance, sphere, color, place, is_passed })
+    }
+
+    fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
+        else {
+            let words = format!("there is no sphere {}", hit.id);
+            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+        };
+        let palette = self.scene.color_indices().map_or(0, |indices| indices[hit.id as usize]);
+        let finish = self.scene.finishes()[palette as usize];
+        let color = self.scene.palette()[palette as usize].to_array();
+        let is_emissive = matches!(finish.material, Material::Emissive { .. });
+        let paint = self.paint(color, palette + 1, finish.opacity, is_emissive);
+
+        let entered = Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let Entered { line, origin, slack } = &entered;
+        let Some(test) = SphereTest::new(line, sphere, *slack) else {
+            let words = format!("sphere {} is not met", hit.id);
+            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+        };
+        let center = Vector::had([x, y, z]);
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        let middle = (center - *origin).dot(direction);
+        let is_far_wall = before.has(flag::INSIDE) && hit.id == before.bits(slot::SURFACE);
+        let (half, exact) = if is_far_wall {
+            let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
+            (middle.abs().interval(), exact)
+        } else {
+            (test.half, test.exact_half())
+        };
+        let is_behind =
+            is_far_wall || self.choices.decide(middle.is_less(Number::had(hit.t)));
+        let chord = Chord { half, exact, is_behind };
+        let (normal, error) = normal_at(&test, line, chord, radius, *slack);
+        let mut outward = Vector::around(normal, error);
+
+        let r = Number::had(radius);
+        let far = Number::known(64.0) * (Number::had(hit.t) + Number::had(hit.distance));
+        let is_on_ray = self.choices.decide(r.is_more(far));
+        let position = if is_on_ray {
+            *origin + direction * Number::had(hit.t)
+        } else {
+            center + outward * r
+        };
+        let position = self.compared(position.fence(), &paint, radius.into())?;
+        if paint.is_kept && !is_on_ray {
+            // The point is that of the normal.
+            let error = |c: Number| {
+                let Interval { low, high } = c.interval();
+                let size = high.abs().max(low.abs()) + f64::from(radius);
+                PAD * gamma(2) * size + 2.0 * FLUSH
+            };
+            outward = outward.zip(position.zip(center, |p, c| {
+                let (p, center) = (p.interval().low, c.interval().low);
+                let (away, error) = (p - center, error(c));
+                let r = f64::from(radius);
+                Number::between((away - error) / r, (away + error) / r)
+            }), Number::narrowed);
+        }
+        let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
+        let normal = if is_back { -outward } else { outward };
+        let Paint { color, place, is_passed, .. } = paint;
+        let sphere = [x, y, z, radius];
+        Ok(Vertex { position, normal, is_back, distance, sphere, color, place, is_passed })
+    }
+}
+
+/// A ray from where it enters the scene's box, at a known distance.
+struct Entered {
+    line: Line,
+    origin: Vector,
+    slack: Slack,
+}
+
+impl Entered {
+    fn new(origin: [f32; 3], direction: [f32; 3], distance: f32) -> Self {
+        let (start, along) = (wide(origin), wide(direction));
+        let distance = f64::from(distance);
+        let moved = start + distance * along;
+        if distance == 0.0 {
+            let line = Line::new(origin, direction);
+            return Self { line, origin: Vector::had(origin), slack: Slack::default() };
+        }
+        let error = PAD * (gamma(2) * (start.abs() + (distance * along).abs()))
+            + DVec3::splat(2.0 * FLUSH);
+        let [x, y, z] = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
+        let length = error.length() + U * FLUSH;
+        Self {
+            line: Line::exact(moved, along),
+            origin: Vector([x, y, z]),
+            slack: Slack { across: length, along: length, direction: 0.0 },
+        }
+    }
+}
