@@ -1,26 +1,27 @@
 // Where a surface scatters a path. Twin: src/cpu/lit/path.rs.
 
-fn bounce(index: u32, at: Surface, hit: Hit, out: vec3f, lobe: f32, through: vec3f, seed: u32) {
+// On which side of a surface a ray starts.
+fn side_of(at: Surface, is_behind: bool) -> u32 {
+    let is_sphere = at.vertex.sphere.w > 0.0;
+    let side = select(0u, PATH_INSIDE, is_sphere && is_behind != at.vertex.is_back);
+    return side | select(PATH_ON_GROUND, 0u, is_sphere);
+}
+
+fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, medium: vec3f) -> Onward {
     let u = sample_pair(seed, stage.sample, 2u + 8u * stage.surface);
     let next = scatter_light(at, to_local(at.axes, out), lobe, u);
-    var carried = through * next.weight;
+    let carried = through * next.weight;
     let most = max(carried.x, max(carried.y, carried.z));
     // Russian roulette.
     let survival = select(1.0, min(most, 0.95), stage.surface >= look.roulette_from);
     let draw = unit2(sample_pair(seed, stage.sample, 6u + 8u * stage.surface)).x;
+    let is_alive = most > 0.0 && draw < survival;
     let is_behind = next.direction.z < 0.0;
     let is_glass = at.material.kind == DIELECTRIC;
-    let flags = PATH_SCATTERED | select(0u, PATH_FULL, is_glass);
-    go_on(index, at.vertex, hit, carried / max(survival, 1e-30), is_behind, flags);
-    let medium = select(vec3f(0.0), at.material.absorption, is_behind != at.vertex.is_back);
-    let before = load(index, MEDIUM).xyz;
-    store(index, MEDIUM, select(before, medium, is_glass && is_behind), 0.0);
-    store(index, DIRECTION, to_world(at.axes, next.direction), next.density);
-    if (most <= 0.0 || draw >= survival) {
-        // The light that is looked for is found from here.
-        let origin = load(index, ORIGIN);
-        store(index, ORIGIN, origin.xyz, bitcast<f32>(bitcast<u32>(origin.w) & ~PATH_ALIVE));
-    }
+    let flags = PATH_SCATTERED | select(0u, PATH_FULL, is_glass) | select(0u, PATH_ALIVE, is_alive);
+    let inside = select(vec3f(0.0), at.material.absorption, !at.vertex.is_back);
+    return Onward(at.vertex.position, flags | side_of(at, is_behind), to_world(at.axes, next.direction),
+        next.density, carried / max(survival, 1e-30), select(medium, inside, is_glass && is_behind), no_light());
 }
 
 // Lights at the eye, on what the camera sees.
@@ -30,7 +31,7 @@ fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
     let count = select(look.light_count, 0u, scattered != 0u || at.material.kind == DIELECTRIC);
     for (var light = 0u; light < count; light++) {
         let is_head = lamp_kind(light) == LAMP_HEAD;
-        sum += select(vec3f(0.0), tables[3u * light + 1u].rgb, is_head);
+        sum += select(vec3f(0.0), table(3u * light + 1u).rgb, is_head);
     }
     return PI * sum * reflect_toward(at.material, at.vertex.color, toward, toward).value;
 }

@@ -17,12 +17,12 @@ fn light_from_afar(direction: vec3f, flags: u32, density: f32) -> vec3f {
     let sources = f32(max(look.source_count, 1u));
     var sum = sky_radiance(direction) * chance_weight(flags, density, sky_density(direction) / sources);
     for (var light = 0u; light < look.light_count; light++) {
-        let place = tables[3u * light];
-        let power = tables[3u * light + 1u];
+        let place = table(3u * light);
+        let power = table(3u * light + 1u);
         let k = power.w;
         let aside = direction - place.xyz;
         // |d - a|^2 is twice 1 minus the cosine, and does not cancel.
-        let is_sun = bitcast<u32>(place.w) == LAMP_DIRECTIONAL && k > 0.0;
+        let is_sun = lamp_kind(light) == LAMP_DIRECTIONAL && k > 0.0;
         let is_met = is_sun && dot(aside, aside) <= 2.0 * k;
         let weight = chance_weight(flags, density, 1.0 / (2.0 * PI * max(k, 1e-30) * sources));
         let radiance = power.rgb / max(k * (2.0 - k), 1e-30);

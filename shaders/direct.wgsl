@@ -11,7 +11,7 @@ struct Found {
 }
 
 fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
-    let light = bitcast<u32>(tables[3u * source + 2u].x);
+    let light = tables[3u * source + 2u].x;
     let lamp = sample_lamp(light, position, u);
     let sources = f32(look.source_count);
     let density = select(0.0, 1.0 / (2.0 * PI * lamp.sun * sources), lamp.sun > 0.0);
@@ -39,7 +39,7 @@ fn find_sky(u: vec2u) -> Found {
     return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), vec4f(0.0));
 }
 
-fn look_for_light(index: u32, out: vec3f, at: Surface, through: vec3f, seed: u32) {
+fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, is_end: bool) -> DirectLight {
     let u = sample_pair(seed, stage.sample, 4u + 8u * stage.surface);
     let choice = sample_pair(seed, stage.sample, 5u + 8u * stage.surface);
     let source = min(u32(unit2(choice).x * f32(look.source_count)), look.source_count - 1u);
@@ -61,8 +61,7 @@ fn look_for_light(index: u32, out: vec3f, at: Surface, through: vec3f, seed: u32
     let to_far_wall = max(2.0 * dot(at.vertex.sphere.xyz - position, found.direction), 0.0);
     let is_in_own = at.vertex.is_back && to_far_wall < found.distance;
     let is_below = at.vertex.sphere.w > 0.0 && ground_distance(ray, 0.0) < found.distance;
-    let is_open = any(light > vec3f(0.0)) && !is_in_own && !is_below;
-    store(index, SHADOW, found.direction, select(0.0, found.distance, is_open));
-    store(index, PENDING, light, select(0.0, 1.0, is_open));
-    store(index, TARGET, found.sphere.xyz, found.sphere.w);
+    let is_open = any(light > vec3f(0.0)) && !is_in_own && !is_below && !is_end;
+    return DirectLight(vec4f(found.direction, select(0.0, found.distance, is_open)),
+        select(vec4f(0.0), vec4f(light, 1.0), is_open), found.sphere);
 }

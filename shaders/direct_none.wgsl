@@ -1,3 +1,17 @@
 // No light that could be looked for.
 
-fn look_for_light(index: u32, out: vec3f, at: Surface, through: vec3f, seed: u32) {}
+struct DirectLight {
+    is_none: u32,
+}
+
+fn no_light() -> DirectLight {
+    return DirectLight(1u);
+}
+
+fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, is_end: bool) -> DirectLight {
+    return no_light();
+}
+
+fn store_light(index: u32, light: DirectLight) {}
+
+fn forget_light(index: u32) {}

@@ -9,7 +9,7 @@ struct Emitter {
 
 fn emitter(index: u32) -> Emitter {
     let at = look.emitter_first + 3u * index;
-    return Emitter(tables[at], tables[at + 1u].z, tables[at + 2u].rgb);
+    return Emitter(table(at), table(at + 1u).z, table(at + 2u).rgb);
 }
 
 // The first emitter of which a word is at least so large; they ascend by both.
@@ -18,7 +18,7 @@ fn find_emitter(word: u32, value: u32) -> u32 {
     var count = look.emitter_count;
     for (var step = 0u; step < 32u && count > 0u; step++) {
         let half = count >> 1u;
-        let found = bitcast<u32>(tables[look.emitter_first + 3u * (low + half) + 1u][word]);
+        let found = tables[look.emitter_first + 3u * (low + half) + 1u][word];
         let is_before = found < value;
         low = select(low, low + half + 1u, is_before);
         count = select(half, count - half - 1u, is_before);

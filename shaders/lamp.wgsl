@@ -17,14 +17,14 @@ struct Lamp {
 }
 
 fn lamp_kind(light: u32) -> u32 {
-    return bitcast<u32>(tables[3u * light].w);
+    return tables[3u * light].w;
 }
 
 // A point of the light, chosen by `u`.
 fn sample_lamp(light: u32, position: vec3f, u: vec2u) -> Lamp {
-    let place = tables[3u * light];
-    let power = tables[3u * light + 1u];
-    let kind = bitcast<u32>(place.w);
+    let place = table(3u * light);
+    let power = table(3u * light + 1u);
+    let kind = lamp_kind(light);
     if (kind == LAMP_DIRECTIONAL) {
         let k = power.w;
         let direction = to_world(axes_around(place.xyz), cone_direction(u, k));

@@ -7,10 +7,12 @@ struct Stage {
     sample: u32,
     // Which of the surfaces that a ray meets, from 0.
     surface: u32,
-    // The light that is looked at; behind them, the direction of ambient light.
-    light: u32,
-    // Whether it is the last surface.
+    // Whether it is the last.
     is_last: u32,
+    // The light, or the direction of ambient light, that is looked for; or the first of some.
+    light: u32,
+    // How many.
+    count: u32,
 }
 
 struct Look {

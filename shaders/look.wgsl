@@ -1,8 +1,13 @@
 // What lights, sky, ground and materials are.
 
 @group(2) @binding(0) var<uniform> look: Look;
-// Lights, emitters, materials and energies, each at its own place.
-@group(2) @binding(1) var<storage, read> tables: array<vec4f>;
+// Lights, emitters, materials and energies, each at its own place. Bits, because there are whole numbers among them,
+// which as f32 are subnormal and might be flushed.
+@group(2) @binding(1) var<storage, read> tables: array<vec4u>;
+
+fn table(index: u32) -> vec4f {
+    return bitcast<vec4f>(tables[index]);
+}
 
 fn is_look(flag: u32) -> bool {
     return (look.flags & flag) != 0u;

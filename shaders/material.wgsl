@@ -20,9 +20,10 @@ struct Material {
 fn material_of(vertex: Vertex) -> Material {
     // The ground is the first.
     let place = select(vertex.material + 1u, 0u, vertex.sphere.w == 0.0);
-    let a = tables[look.material_first + 2u * place];
-    let b = tables[look.material_first + 2u * place + 1u];
-    return Material(bitcast<u32>(a.x), a.y, a.z, bitcast<u32>(a.w), b.rgb);
+    let bits = tables[look.material_first + 2u * place];
+    let numbers = bitcast<vec2f>(bits.yz);
+    let absorption = table(look.material_first + 2u * place + 1u).rgb;
+    return Material(bits.x, numbers.x, numbers.y, bits.w, absorption);
 }
 
 // A table of an energy has so many numbers, and starts at the next multiple of four.
@@ -32,7 +33,7 @@ const ENERGIES: u32 = 256u;
 fn energy(first: u32, cosine: f32) -> f32 {
     let along = sqrt(sqrt(clamp(cosine, 0.0, 1.0))) * f32(ENERGIES - 1u);
     let below = min(u32(along), ENERGIES - 2u);
-    let a = tables[first + (below >> 2u)][below & 3u];
-    let b = tables[first + ((below + 1u) >> 2u)][(below + 1u) & 3u];
+    let a = bitcast<f32>(tables[first + (below >> 2u)][below & 3u]);
+    let b = bitcast<f32>(tables[first + ((below + 1u) >> 2u)][(below + 1u) & 3u]);
     return a + (along - f32(below)) * (b - a);
 }

@@ -1,4 +1,4 @@
-// Whether anything is between a surface and a light. One dispatch per brick.
+// Whether anything is between a path's surface and the light that it looks for. One dispatch per brick.
 
 @compute @workgroup_size(64)
 fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -9,15 +9,15 @@ fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     let index = hit_index(pixel);
     let shadow = load(index, SHADOW);
-    let pending = load(index, PENDING);
-    let origin = load(index, ORIGIN).xyz;
     left = load(index, LEFT);
-    aim(index);
-    let entry = enter_scene(CameraRay(Ray(origin, shadow.xyz), 0.0, true));
+    target_sphere = load(index, TARGET);
+    let entry = enter_scene(CameraRay(Ray(load_start(index).position, shadow.xyz), 0.0, true));
     let rest = shadow.w - entry.distance;
-    if (pending.w > 0.0 && rest > 0.0 && entry.is_inside) {
+    if (rest > 0.0 && entry.is_inside) {
         if (find_any(entry.ray, entry.inverse, rest)) {
-            paths[slot(index, PENDING)] = vec4f(pending.xyz, 0.0);
+            // Nor need any other brick be searched.
+            paths[slot(index, SHADOW)].w = 0u;
+            paths[slot(index, PENDING)].w = 0u;
         }
     }
     report_spent();

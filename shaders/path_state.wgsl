@@ -1,7 +1,7 @@
 // What is known of every pixel's path between two dispatches.
 
-// Slot by slot, and in each row by row of the tile.
-@group(0) @binding(3) var<storage, read_write> paths: array<vec4f>;
+// Slot by slot, and in each row by row of the tile. Bits, because there are whole numbers among them.
+@group(0) @binding(3) var<storage, read_write> paths: array<vec4u>;
 @group(0) @binding(4) var<uniform> stage: Stage;
 
 // Where the ray starts, and the sum of its PATH_ flags.
@@ -10,25 +10,26 @@ const ORIGIN: u32 = 0u;
 const DIRECTION: u32 = 1u;
 // The sphere on which it starts; radius 0 for none.
 const LEFT: u32 = 2u;
-// What its light counts in the picture, and the place of that sphere.
+// What its light counts in the picture. In a studio: what is left for what is behind, and what the surface counts.
 const THROUGHPUT: u32 = 3u;
 // The sample's colour so far, and its opacity.
 const RADIANCE: u32 = 4u;
-// The direction in which a light is looked for from the origin, and how far; 0 for no light.
-const SHADOW: u32 = 5u;
-// What its light adds, and whether nothing has been found in between.
-const PENDING: u32 = 6u;
-// In a studio the normal of the surface, and what the pending light adds to opacity; of a path what absorbs light
-// on the way.
-const NORMAL: u32 = 7u;
-const MEDIUM: u32 = 7u;
-// In a studio the colour of the surface by what it counts; and the id of the sphere on which the ray starts.
-const SURFACE: u32 = 8u;
-// In a studio its lobe; of a path the sphere that is looked for, which hides itself from nobody.
-const LOBE: u32 = 9u;
-const TARGET: u32 = 9u;
-// The colour of the first surface, and how long the path is so far.
-const FIRST: u32 = 10u;
+// The colour of the first surface, and how long the ray is so far.
+const FIRST: u32 = 5u;
+// Of a path: the direction in which a light is looked for from the origin, and how far; 0 for no light.
+const SHADOW: u32 = 6u;
+// What its light adds, and 1 unless something has been found in between.
+const PENDING: u32 = 7u;
+// The sphere that is looked for, which hides itself from nobody.
+const TARGET: u32 = 8u;
+// What absorbs light on the way.
+const MEDIUM: u32 = 9u;
+// In a studio: the normal of the surface, and a bit for each of 32 lights that are hidden.
+const NORMAL: u32 = 6u;
+// The surface's colour by what it counts, and what is left for what is behind a ground that catches shadows.
+const PAINT: u32 = 7u;
+// The surface's lobe: its share, the square of its roughness, and where its energies are.
+const LOBE: u32 = 8u;
 
 // There is a ray to be traced.
 const PATH_ALIVE: u32 = 1u;
@@ -50,11 +51,25 @@ fn slot(index: u32, which: u32) -> u32 {
 }
 
 fn load(index: u32, which: u32) -> vec4f {
-    return paths[slot(index, which)];
+    return bitcast<vec4f>(paths[slot(index, which)]);
 }
 
-fn store(index: u32, which: u32, xyz: vec3f, w: f32) {
-    paths[slot(index, which)] = vec4f(xyz, w);
+fn store(index: u32, which: u32, value: vec4f) {
+    paths[slot(index, which)] = bitcast<vec4u>(value);
+}
+
+struct Start {
+    position: vec3f,
+    flags: u32,
+}
+
+fn load_start(index: u32) -> Start {
+    let bits = paths[slot(index, ORIGIN)];
+    return Start(bitcast<vec3f>(bits.xyz), bits.w);
+}
+
+fn store_start(index: u32, position: vec3f, flags: u32) {
+    paths[slot(index, ORIGIN)] = vec4u(bitcast<vec3u>(position), flags);
 }
 
 fn has(flags: u32, flag: u32) -> bool {

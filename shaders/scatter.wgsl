@@ -1,20 +1,15 @@
 // What a path meets, what light it finds there, and where it goes on. Twin: src/cpu/lit/path.rs.
 
-// Ends the path.
-fn end(index: u32, radiance: vec3f, alpha: f32) {
-    store(index, RADIANCE, radiance, alpha);
-    store(index, ORIGIN, vec3f(0.0), bitcast<f32>(0u));
-}
-
-// Lets the path go on from a point, on one side of it.
-fn go_on(index: u32, at: Vertex, hit: Hit, through: vec3f, is_behind: bool, flags: u32) {
-    let is_sphere = at.sphere.w > 0.0;
-    let side = select(0u, PATH_INSIDE, is_sphere && is_behind != at.is_back);
-    let on = side | select(PATH_ON_GROUND, 0u, is_sphere) | PATH_ALIVE | flags;
-    store(index, ORIGIN, at.position, bitcast<f32>(on));
-    store(index, LEFT, at.sphere.xyz, at.sphere.w);
-    store(index, THROUGHPUT, through, bitcast<f32>(hit.place));
-    store(index, SURFACE, vec3f(0.0), bitcast<f32>(hit.id));
+// A path as it goes on. Everything is stored once, at the end: a software device pays for stores in branches that are
+// not taken.
+struct Onward {
+    position: vec3f,
+    flags: u32,
+    direction: vec3f,
+    density: f32,
+    through: vec3f,
+    medium: vec3f,
+    light: DirectLight,
 }
 
 @compute @workgroup_size(64)
@@ -22,60 +17,61 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     zero_bits = frame.zero;
     let pixel = pixel_in_tile(group.xy, lane);
     let index = hit_index(pixel);
-    let origin = load(index, ORIGIN);
-    let flags = bitcast<u32>(origin.w);
-    if (any(pixel >= frame.tile_size) || !has(flags, PATH_ALIVE)) {
+    let start = load_start(index);
+    if (any(pixel >= frame.tile_size) || !has(start.flags, PATH_ALIVE)) {
         return;
     }
     let direction = load(index, DIRECTION);
-    let ray = Ray(origin.xyz, direction.xyz);
+    let ray = Ray(start.position, direction.xyz);
     let hit = load_hit(index);
-    let behind = come_from_camera(index);
-    let met = what_is_met(ray, hit, has(flags, PATH_ON_GROUND), behind);
+    let first = load(index, FIRST);
+    let behind = come_from_camera(first.w);
+    let met = what_is_met(ray, hit, has(start.flags, PATH_ON_GROUND), behind);
     if (met == NOBODY) {
         return;
     }
     var radiance = settled(index);
-    var through = load(index, THROUGHPUT).rgb;
-    store(index, PENDING, vec3f(0.0), 0.0);
+    let through = load(index, THROUGHPUT).rgb;
     if (met == NOTHING_MET) {
-        end(index, radiance.rgb + through * light_from_afar(ray.direction, flags, direction.w), radiance.a);
+        radiance += vec4f(through * light_from_afar(ray.direction, start.flags, direction.w), 0.0);
+        store(index, RADIANCE, radiance);
+        store_start(index, vec3f(0.0), 0u);
+        forget_light(index);
         return;
     }
-    var vertex = ground_vertex(ray, behind);
-    if (met == GROUND_MET) {
-        // No other brick is to take the sphere behind for what is met.
-        store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
-    } else {
-        vertex = sphere_vertex(ray, hit, has(flags, PATH_INSIDE) && hit.id == bitcast<u32>(load(index, SURFACE).w));
-    }
-    through *= exp(-load(index, MEDIUM).xyz * vertex.distance);
+    let vertex = vertex_of(index, ray, hit, met, start.flags, behind);
+    let at = Surface(vertex, material_of(vertex), axes_around(vertex.normal));
+    let medium = load_medium(index);
+    let arriving = through * kept_by(medium, vertex.distance);
     let seed = pixel_seed(frame.tile_origin + pixel, look.seed);
     let chance = unit2(sample_pair(seed, stage.sample, 3u + 8u * stage.surface));
-    let scattered = flags & PATH_SCATTERED;
-    if (chance.y >= vertex.opacity) {
-        store(index, RADIANCE, radiance.rgb, radiance.a);
-        go_on(index, vertex, hit, through, true, PATH_FULL | scattered);
-        return;
-    }
-    if (scattered == 0u && radiance.a == 0.0) {
-        let first = load(index, FIRST);
-        store(index, FIRST, min(vertex.color, vec3f(1.0)), first.w);
-    }
-    let at = Surface(vertex, material_of(vertex), axes_around(vertex.normal));
-    if (at.material.kind == EMISSIVE) {
+    let scattered = start.flags & PATH_SCATTERED;
+    let is_passed = chance.y >= vertex.opacity;
+    let is_emitter = at.material.kind == EMISSIVE;
+    let out = -ray.direction;
+
+    var light = head_light(at, out, scattered);
+    if (is_emitter) {
         let density = known_density(hit.id, ray.origin);
-        let light = vertex.color * at.material.parameter * chance_weight(flags, direction.w, density);
-        end(index, radiance.rgb + through * light, 1.0);
-        return;
+        light = vertex.color * at.material.parameter * chance_weight(start.flags, direction.w, density);
     }
-    radiance.a = 1.0;
-    radiance += vec4f(through * head_light(at, -ray.direction, scattered), 0.0);
-    if (stage.is_last != 0u) {
-        end(index, radiance.rgb, 1.0);
-        return;
+    radiance = select(vec4f(radiance.rgb + arriving * light, 1.0), radiance, is_passed);
+    let is_first = !is_passed && scattered == 0u && first.w >= 0.0;
+    let is_end = stage.is_last != 0u || (is_emitter && !is_passed);
+    var next = bounce(at, out, chance.x, arriving, seed, medium);
+    next.light = look_for_light(at, out, arriving, seed, is_end || is_passed);
+    let passed = Onward(vertex.position, PATH_FULL | PATH_ALIVE | scattered | side_of(at, true), ray.direction, 0.0,
+        arriving, medium, next.light);
+    if (is_passed) {
+        next = passed;
     }
-    store(index, RADIANCE, radiance.rgb, 1.0);
-    look_for_light(index, -ray.direction, at, through, seed);
-    bounce(index, at, hit, -ray.direction, chance.x, through, seed);
+    store(index, RADIANCE, radiance);
+    // A length below zero says that there has been a first surface.
+    store(index, FIRST, select(first, vec4f(min(vertex.color, vec3f(1.0)), -1.0), is_first));
+    store_start(index, next.position, select(next.flags, next.flags & ~PATH_ALIVE, is_end));
+    store(index, DIRECTION, vec4f(next.direction, next.density));
+    store(index, LEFT, vertex.sphere);
+    store(index, THROUGHPUT, vec4f(next.through, 0.0));
+    store_medium(index, next.medium);
+    store_light(index, next.light);
 }

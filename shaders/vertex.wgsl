@@ -30,8 +30,8 @@ const SPHERE_MET: u32 = 3u;
 
 // How far the ray has come before its origin, where the ground may have been met already: a camera's starts where
 // spheres begin.
-fn come_from_camera(index: u32) -> f32 {
-    return select(0.0, load(index, FIRST).w, stage.surface == 0u);
+fn come_from_camera(length: f32) -> f32 {
+    return select(0.0, length, stage.surface == 0u);
 }
 
 fn what_is_met(ray: Ray, hit: Hit, is_on_ground: bool, behind: f32) -> u32 {
@@ -47,10 +47,20 @@ fn what_is_met(ray: Ray, hit: Hit, is_on_ground: bool, behind: f32) -> u32 {
     return select(NOBODY, SPHERE_MET, place < brick.place_count);
 }
 
-// `is_far_wall` if the ray starts on the sphere and goes inside.
-fn sphere_vertex(ray: Ray, hit: Hit, is_far_wall: bool) -> Vertex {
+// What a ray meets. On the ground no other brick is to take the sphere behind for it.
+fn vertex_of(index: u32, ray: Ray, hit: Hit, met: u32, flags: u32, behind: f32) -> Vertex {
+    if (met == GROUND_MET) {
+        store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
+        return ground_vertex(ray, behind);
+    }
+    return sphere_vertex(ray, hit, load(index, LEFT), has(flags, PATH_INSIDE));
+}
+
+// `left` is the sphere on which the ray starts; if it goes inside, its far wall may be what it meets.
+fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Vertex {
     let place = hit.place - brick.first_place;
     let sphere = vec4f(spheres[place].xyz, abs(spheres[place].w));
+    let is_far_wall = is_inside && all(sphere == left_sphere);
     let entered = Ray(fence3(ray.origin + hit.distance * ray.direction), ray.direction);
     var found = intersect_sphere(entered, sphere);
     let middle = dot(sphere.xyz - entered.origin, ray.direction);

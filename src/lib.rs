@@ -24,8 +24,8 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr` and `npy` are readers and writers;
-//! `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
+//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr`, `hdr` and `npy` are readers and
+//! writers; `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
 //! `default-features = false, features = ["gpu"]`.
 //!
 //! # Units

@@ -117,7 +117,7 @@ impl CameraVectors {
         // They are lengths, or quotients of two.
         const LARGEST: f64 = 2.0 * MAX_LENGTH * MAX_LENGTH;
         let numbers = numbers.to_array();
-        match numbers.into_iter().find(|number| !(number.abs() <= LARGEST)) {
+        match numbers.into_iter().find(|number| !(-LARGEST..=LARGEST).contains(number)) {
             None => Ok(Self { origin, right, up, forward, numbers }),
             Some(value) => {
                 let (parameter, low, high) = ("camera's number", -LARGEST, LARGEST);

@@ -101,7 +101,7 @@ impl PinholeCamera {
         let (separation, convergence) = stereo_lengths(separation, convergence)?;
         let eye = |aside: f64| {
             let shift = self.shift - aside * (self.distance / convergence);
-            if !(shift.abs() <= MAX_LENGTH) {
+            if !(-MAX_LENGTH..=MAX_LENGTH).contains(&shift) {
                 let (parameter, low, high) = ("shift of the view plane", -MAX_LENGTH, MAX_LENGTH);
                 return Err(CameraError::Range { parameter, value: shift, low, high });
             }

@@ -7,6 +7,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::camera::CameraArgs;
 use super::data::DataFormat;
 use super::generate::kinds;
+use super::light::LightArgs;
+use super::patience::PatienceArgs;
 use crate::accel::AccelChoice;
 use crate::tone::ToneCurve;
 
@@ -52,6 +54,10 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]
+    pub(super) light: LightArgs,
+    #[command(flatten)]
+    pub(super) patience: PatienceArgs,
+    #[command(flatten)]
     pub(super) device: DeviceArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
@@ -59,6 +65,17 @@ pub(super) struct RenderArgs {
     /// or without a file into an .exr picture; may be repeated
     #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
     pub(super) layers: Vec<String>,
+    /// How the pictures of a camera with two eyes are written [default: side-by-side]
+    #[arg(long, value_enum)]
+    pub(super) stereo: Option<Stereo>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Stereo {
+    /// In one picture, twice as wide, the left eye's on the left
+    SideBySide,
+    /// In files of their own: OUT-left.png and OUT-right.png
+    TwoFiles,
 }
 
 /// How the picture is written. [`super::encoding::EncodingFlags`] checks it.
@@ -221,7 +238,7 @@ impl From<Structure> for AccelChoice {
 }
 
 /// Arguments of `verify` that say what is rendered, and by what; a recording has all that in it.
-const RENDERING: [&str; 18] = [
+const RENDERING: [&str; 26] = [
     "path",
     "format",
     "radius",
@@ -236,6 +253,14 @@ const RENDERING: [&str; 18] = [
     "fov",
     "distance",
     "half_extent",
+    "aperture_radius",
+    "f_stop",
+    "focal_length",
+    "focus_distance",
+    "focus_on",
+    "angle",
+    "separation",
+    "convergence",
     "adapter",
     "limits",
     "accel",
@@ -293,6 +318,8 @@ pub(super) struct VerifyArgs {
 pub(super) struct PlanArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
+    #[command(flatten)]
+    pub(super) light: LightArgs,
     #[command(flatten)]
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]

@@ -14,6 +14,7 @@ use crate::io::npz::NpzError;
 use crate::io::{npy, npz, raw, xyz};
 use crate::points::Points;
 use crate::scene::{Scene, SceneError};
+use crate::scene_file;
 use crate::sphere::Sphere;
 
 /// The formats of data.
@@ -47,6 +48,8 @@ pub(super) struct DataOptions {
 pub(super) enum Data {
     /// With their colours.
     Spheres(Vec<Sphere>),
+    /// Atoms, with their colours.
+    Atoms(xyz::Frame),
     /// Without.
     Points(Points),
 }
@@ -113,7 +116,7 @@ impl Data {
                 let atoms =
                     xyz::read(bytes, options.frame.unwrap_or_default()).with_context(place)?;
                 let notes = unknown_species(&atoms.unknown_species, path).into_iter().collect();
-                return Ok((Self::Spheres(atoms.spheres), notes));
+                return Ok((Self::Atoms(atoms), notes));
             }
             DataFormat::Npy => npy::read_spheres(bytes, options.radius).with_context(place),
             DataFormat::Npz => {
@@ -129,15 +132,40 @@ impl Data {
 
     pub(super) fn scale_radii(&mut self, factor: f64) {
         match self {
-            Self::Spheres(spheres) => spheres.iter_mut().for_each(|s| s.radius *= factor),
+            Self::Spheres(spheres) | Self::Atoms(xyz::Frame { spheres, .. }) => {
+                spheres.iter_mut().for_each(|s| s.radius *= factor);
+            }
             Self::Points(points) => points.scale_radii(factor),
+        }
+    }
+
+    /// Gives spheres the look that a scene file says they have; also notes for the user.
+    pub(super) fn dress(&mut self, says: &scene_file::Data) -> Result<Vec<String>, String> {
+        match self {
+            Self::Atoms(atoms) => {
+                let absent = says.dress(&mut atoms.spheres, &atoms.species, &atoms.species_indices);
+                let note =
+                    |name| format!("`[elements.{name}]`: there is no such atom in {}", says.file);
+                Ok(absent.into_iter().map(note).collect())
+            }
+            _ if !says.elements.is_empty() => {
+                Err("`elements` concerns atoms (.xyz, .extxyz); drop it".to_owned())
+            }
+            Self::Spheres(spheres) => {
+                says.dress(spheres, &[], &[]);
+                Ok(Vec::new())
+            }
+            // The scene gives it to all.
+            Self::Points(_) => Ok(Vec::new()),
         }
     }
 
     /// The scene of this data alone.
     pub(super) fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         match self {
-            Self::Spheres(spheres) => Scene::new(&spheres),
+            Self::Spheres(spheres) | Self::Atoms(xyz::Frame { spheres, .. }) => {
+                Scene::new(&spheres)
+            }
             Self::Points(points) => points.scene(color),
         }
     }

@@ -10,23 +10,32 @@ use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
 use super::data::{Data, DataFormat, DataOptions, as_usage};
 use super::failure::Failure;
+use super::light::{self, LightFlags};
 use super::memory;
 use super::progress;
-use crate::camera::{Camera, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters};
 use crate::color::LinearRgb;
 use crate::encoding::Encoding;
+use crate::environment::Environment;
 use crate::film::Film;
+use crate::io::{environment, xyz};
+use crate::lighting::Lighting;
 use crate::scene::Scene;
-use crate::scene_file::{DEFAULT_COLOR, SceneFile};
+use crate::scene_file::{DEFAULT_COLOR, IntegratorKind, SceneFile};
 use crate::settings::Settings;
 
 /// Everything that a render needs.
 pub(super) struct Input {
     pub(super) scene: Scene,
+    /// Of two eyes, that in the middle.
     pub(super) camera: Box<dyn Camera>,
+    /// Left and right, if there are two.
+    pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(super) film: Film,
     pub(super) settings: Settings,
     pub(super) encoding: Encoding,
+    /// How the picture is lit, if it is.
+    pub(super) lighting: Option<Lighting>,
     /// What says how large the picture is: a flag or a file.
     pub(super) size_from: String,
     /// What the user should know although it is no error.
@@ -88,6 +97,7 @@ pub(super) struct Source {
     size: Option<(u32, u32)>,
     options: DataOptions,
     camera: Option<CameraParameters>,
+    light: LightFlags,
 }
 
 impl Source {
@@ -111,13 +121,26 @@ impl Source {
             size: args.size.as_deref().map(parse_size).transpose()?,
             options,
             camera: args.camera.parameters()?,
+            light: LightFlags::default(),
         })
+    }
+
+    /// The same with flags that say how it is lit.
+    pub(super) fn with_light(self, light: LightFlags) -> Self {
+        Self { light, ..self }
     }
 
     /// A scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
-        Self { path: path.to_path_buf(), format: Format::Scene, size: None, options, camera: None }
+        Self {
+            path: path.to_path_buf(),
+            format: Format::Scene,
+            size: None,
+            options,
+            camera: None,
+            light: LightFlags::default(),
+        }
     }
 
     /// A file to measure.
@@ -158,11 +181,23 @@ impl Source {
             notes.push(format!("{}: there are no spheres in it", path.display()));
         }
         let parameters = self.camera.unwrap_or_default();
-        let camera =
-            parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?;
+        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(place)?;
         let (settings, encoding) = (Settings::default(), Encoding::default());
         let files = vec![path.clone()];
-        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
+        let lighting = self.light.integrator(None).map(light::plain);
+        let lighting = lighting.map(|lighting| self.light.over(lighting)).transpose()?;
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            lighting,
+            size_from,
+            notes,
+            files,
+        })
     }
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
@@ -170,22 +205,52 @@ impl Source {
         let place = || self.path.display().to_string();
         let file = SceneFile::parse(text).with_context(place)?;
         let (data, color, notes) = self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator());
+        let sky_file = file.sky_image().filter(|_| kind == Some(IntegratorKind::Path));
+        let sky_file = sky_file.map(|file| self.beside(file));
+        let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.beside(&data.file));
-        let files = std::iter::once(self.path.clone()).chain(data_file).collect();
+        let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
-            Data::Spheres(spheres) => file.scene(&spheres),
+            Data::Spheres(spheres) | Data::Atoms(xyz::Frame { spheres, .. }) => {
+                file.scene(&spheres)
+            }
             Data::Points(points) => file.scene_with_points(points, color),
         };
         let scene = scene.with_context(place)?;
-        let camera = match &self.camera {
-            Some(parameters) => {
-                parameters.camera(film.aspect(), &scene.bounds_to_frame()).with_context(place)?
-            }
-            None => file.camera(&film, &scene).with_context(place)?,
+        let (camera, eyes) = match &self.camera {
+            Some(parameters) => cameras(parameters, &film, &scene).with_context(place)?,
+            None => (
+                file.camera(&film, &scene).with_context(place)?,
+                file.stereo_pair(&film, &scene).with_context(place)?,
+            ),
         };
+        let lighting = kind.map(|kind| file.lighting(kind, &scene, camera.as_ref(), image));
+        let lighting = lighting.transpose().with_context(place)?;
+        let lighting = lighting.map(|lighting| self.light.over(lighting)).transpose()?;
         let SceneFile { settings, encoding, .. } = file;
-        Ok(Input { scene, camera, film, settings, encoding, size_from, notes, files })
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            lighting,
+            size_from,
+            notes,
+            files,
+        })
+    }
+
+    /// The image of a sky.
+    fn environment(&self, path: &Path) -> Result<Environment> {
+        let in_scene = || format!("{}: `[sky]`", self.path.display());
+        progress::stage(format!("reading {}", path.display()));
+        let bytes = read(path).with_context(in_scene)?;
+        let read = environment::read(&bytes);
+        read.with_context(|| path.display().to_string()).with_context(in_scene)
     }
 
     /// A path that is relative to the scene file's folder.
@@ -229,8 +294,9 @@ impl Source {
         keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
         let options = flags.or(keys);
         let bytes = read(&path).with_context(in_scene)?;
-        let (mut spheres, notes) =
+        let (mut spheres, mut notes) =
             Data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        notes.extend(spheres.dress(data).map_err(|message| anyhow!(message).context(in_scene()))?);
         spheres.scale_radii(data.radius_scale);
         Ok((spheres, options.color.unwrap_or_else(default_color), notes))
     }
@@ -245,6 +311,18 @@ impl Source {
             .with_y_axis(from_file.y_axis());
         Ok((film, "--size".to_owned()))
     }
+}
+
+/// The camera, and its eyes if it has two.
+type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);
+
+fn cameras(
+    parameters: &CameraParameters,
+    film: &Film,
+    scene: &Scene,
+) -> Result<Cameras, CameraError> {
+    let (aspect, bounds) = (film.aspect(), scene.bounds_to_frame());
+    Ok((parameters.camera(aspect, &bounds)?, parameters.stereo_pair(aspect, &bounds)?))
 }
 
 fn default_color() -> LinearRgb {

@@ -98,6 +98,16 @@ pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     if state.is_requested { Err(Failure::Stopped) } else { Ok(result) }
 }
 
+/// As [`on_device`], where a result that is there counts although the program was asked to end; says whether it was.
+#[cfg(feature = "gpu")]
+pub(super) fn on_device_keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
+    state().phase = Phase::Device;
+    let result = work();
+    let mut state = state();
+    state.phase = Phase::Free;
+    (result, std::mem::take(&mut state.is_requested))
+}
+
 /// Whether the work on the device should go on.
 #[cfg(feature = "gpu")]
 pub(super) fn decide() -> ControlFlow<()> {

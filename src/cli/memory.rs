@@ -11,9 +11,14 @@ use crate::image::LayerSet;
 pub(super) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
 /// Refuses a picture of the CPU reference that this machine, or the control group that the program runs in,
-/// cannot hold. What an adapter takes is in its plan.
-pub(super) fn check(film: &Film, size_from: &str, layers: LayerSet) -> Result<(), Failure> {
-    let per_pixel = layers.bytes_per_pixel() + ENCODING_BYTES_PER_PIXEL;
+/// cannot hold, with so many bytes a pixel beside its layers. What an adapter takes is in its plan.
+pub(super) fn check(
+    film: &Film,
+    size_from: &str,
+    layers: LayerSet,
+    beside: u64,
+) -> Result<(), Failure> {
+    let per_pixel = layers.bytes_per_pixel() + beside;
     let needed = film.pixel_count().saturating_mul(per_pixel);
     let (width, height) = (film.width(), film.height());
     let what = format!("{size_from}: a picture of {width}x{height} needs");

@@ -25,14 +25,17 @@ mod generate;
 mod info;
 mod input;
 mod interrupt;
+mod light;
 mod memory;
 mod output;
+mod patience;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
 mod process;
 mod progress;
 mod render;
+mod render_lit;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;
@@ -44,6 +47,7 @@ mod verify_output;
 mod verify_page;
 mod verify_pictures;
 mod verify_report;
+mod views;
 #[cfg(feature = "gpu")]
 mod with_scene;
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use tempfile::NamedTempFile;
 
 use super::failure::Failure;
 use super::input::extension;
@@ -94,9 +95,31 @@ impl Outputs {
         if let Some((path, text)) = text {
             files.push((path, unnamed(path, text.as_bytes())?));
         }
-        let mut for_standard_output = None;
+        files.extend(self.files(image, encoding, adapter)?);
+        let for_standard_output = match &self.picture {
+            None => Some(png::encode(image, encoding)?),
+            Some(_) => None,
+        };
+        name_all(files)?;
+        if let Some(picture) = for_standard_output {
+            interrupt::words(
+                "stopped; what was written to standard output is not the whole picture",
+            );
+            answer(&picture).context("standard output: cannot be written")?;
+        }
+        Ok(())
+    }
+
+    /// Files that have no names yet.
+    fn files(
+        &self,
+        image: &Image,
+        encoding: &Encoding,
+        adapter: Option<&str>,
+    ) -> Result<Vec<(&PathBuf, NamedTempFile)>> {
+        let mut files = Vec::new();
         match (&self.picture, self.format) {
-            (None, _) => for_standard_output = Some(png::encode(image, encoding)?),
+            (None, _) => {}
             (Some(path), PictureFormat::Png) => {
                 files.push((path, unnamed(path, &png::encode(image, encoding)?)?));
             }
@@ -114,15 +137,51 @@ impl Outputs {
         for (layer, path) in &self.layers {
             files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
         }
-        name_all(files)?;
-        if let Some(picture) = for_standard_output {
-            interrupt::words(
-                "stopped; what was written to standard output is not the whole picture",
-            );
-            answer(&picture).context("standard output: cannot be written")?;
-        }
-        Ok(())
+        Ok(files)
     }
+
+    /// Outputs for the left and for the right eye, beside those that were named.
+    pub(super) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
+        let Some(picture) = &self.picture else {
+            return Err(Failure::usage(
+                "--stereo two-files: standard output takes one picture; name a file",
+            ));
+        };
+        let outputs = ["left", "right"].map(|eye| Self {
+            format: self.format,
+            picture: Some(with_eye(picture, eye)),
+            inside: self.inside,
+            layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
+        });
+        let paths = || outputs.iter().flat_map(Self::paths);
+        paths().try_for_each(|path| check_place(path))?;
+        check_distinct(paths())?;
+        Ok(outputs)
+    }
+
+    /// As [`Outputs::write`], for both eyes.
+    pub(super) fn write_both(
+        outputs: &[Self; 2],
+        images: &[Image],
+        encoding: &Encoding,
+        adapter: Option<&str>,
+    ) -> Result<()> {
+        progress::stage("writing");
+        let mut files = Vec::new();
+        for (outputs, image) in outputs.iter().zip(images) {
+            files.extend(outputs.files(image, encoding, adapter)?);
+        }
+        name_all(files)
+    }
+}
+
+/// NAME-left.png of NAME.png.
+fn with_eye(path: &Path, eye: &str) -> PathBuf {
+    let [stem, extension] = [path.file_stem(), path.extension()].map(Option::unwrap_or_default);
+    let mut name = stem.to_os_string();
+    name.push(format!("-{eye}."));
+    name.push(extension);
+    path.with_file_name(name)
 }
 
 /// The format that a picture's extension stands for, if the file can be written.

@@ -8,11 +8,14 @@ use super::args::PlanArgs;
 use super::device::{WantedAdapter, choice, explained};
 use super::failure::Failure;
 use super::input::{Input, Source};
+use super::light::LightFlags;
 use super::memory;
 use super::progress;
+use super::render_lit;
 use super::speak::{answer, tell};
 use super::table::table;
 use super::threads;
+use super::views::Views;
 use crate::accel::PlannedBuffer;
 use crate::gpu::{Headless, RenderPlan};
 use crate::image::{Layer, LayerSet};
@@ -81,7 +84,7 @@ struct LimitsReport {
 }
 
 pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let source = Source::new(&args.input)?;
+    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light)?);
     let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
         let layer = name.parse::<Layer>();
         layer
@@ -99,9 +102,17 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
-    let (choice, encoding) = (choice(args.accel.accel), memory::ENCODING_BYTES_PER_PIXEL);
-    let accel = headless.plan_once(&input.scene, choice, &input.film);
-    let plan = headless.plan_render(&input.scene, accel, &input.film, layers, encoding);
+    let beside = Views::of(&input).bytes_beside(layers);
+    let choice = choice(args.accel.accel);
+    let plan = match &input.lighting {
+        Some(lighting) => {
+            render_lit::plan(&headless, &input, lighting, &Views::of(&input), layers, choice)
+        }
+        None => {
+            let accel = headless.plan_once(&input.scene, choice, &input.film);
+            headless.plan_render(&input.scene, accel, &input.film, layers, beside)
+        }
+    };
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

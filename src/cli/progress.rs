@@ -67,6 +67,24 @@ pub(super) fn tracing(done: u64, total: u64) {
     }
 }
 
+/// Shows how far a lit picture is, from 0 to 1, and what else there is to say.
+#[cfg(feature = "gpu")]
+pub(super) fn rendering(part: f64, message: String) {
+    const STEPS: u64 = 10_000;
+    let mut line = line();
+    if !line.is_seen() {
+        return;
+    }
+    if line.total != Some(STEPS) {
+        let template = "rendering [{bar:30}] {percent}%, {eta} left; {msg}";
+        line.show(ProgressBar::new(STEPS), template, Some(STEPS));
+    }
+    if let Some(bar) = &line.bar {
+        bar.set_message(message);
+        bar.set_position((part * STEPS as f64) as u64);
+    }
+}
+
 /// Writes while the line is out of the way.
 pub(super) fn beside<T>(write: impl FnOnce() -> T) -> T {
     let bar = line().bar.clone();

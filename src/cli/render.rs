@@ -2,22 +2,27 @@
 
 use anyhow::Context;
 
-use super::args::RenderArgs;
+use super::args::{RenderArgs, Stereo};
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
 use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::input::{Input, Source};
+use super::light::{self, LightFlags};
 use super::memory;
+use super::patience::Patience;
 use super::picture::Outputs;
 use super::progress;
+use super::render_lit;
 use super::speak::tell;
 use super::threads;
+use super::views::Views;
 #[cfg(feature = "gpu")]
 use super::with_scene::with_scene;
 #[cfg(feature = "gpu")]
 use crate::accel::AccelChoice;
+use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::cpu;
 #[cfg(feature = "gpu")]
@@ -29,17 +34,24 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
+    patience: Patience,
     device: Device,
+    stereo: Option<Stereo>,
 }
 
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         let outputs = Outputs::new(&args.output, &args.layers)?;
+        let patience = Patience::new(&args.patience)?;
+        let light = LightFlags::new(&args.light)?;
+        let light = if patience.is_open_ended() { light.open_ended() } else { light };
         Ok(Self {
-            source: Source::new(&args.input)?,
+            source: Source::new(&args.input)?.with_light(light),
+            patience,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
+            stereo: args.stereo,
         })
     }
 }
@@ -57,52 +69,113 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if encoding.transparent() {
         input.settings = input.settings.with_background(LinearRgb::BLACK);
     }
-    let image = render(&input, job.outputs.layers(&encoding), &opened)?;
-    job.outputs.write(&image, &encoding, opened.adapter(), None)?;
-    Ok(())
+    match &mut input.lighting {
+        Some(lighting) => {
+            lighting.is_transparent = encoding.transparent();
+            for note in light::notes(lighting, &input.scene) {
+                tell(format_args!("note: {note}"));
+            }
+        }
+        None => job.patience.check_without_light()?,
+    }
+    let layers = job.outputs.layers(&encoding);
+    let views = Views::of(&input);
+    if job.stereo.is_some() && views.count() == 1 {
+        return Err(Failure::usage(
+            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+        ));
+    }
+    let adapter = opened.adapter();
+    if job.stereo == Some(Stereo::TwoFiles) {
+        let outputs = job.outputs.of_eyes()?;
+        outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
+        let images = render_views(&input, &job.patience, &views, layers, &opened)?;
+        return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
+    }
+    let image = match render_views(&input, &job.patience, &views, layers, &opened)? {
+        Views::One(image) => image,
+        Views::Two([left, right]) => {
+            Image::side_by_side([&left, &right]).context("both eyes in one picture")?
+        }
+    };
+    Ok(job.outputs.write(&image, &encoding, adapter, None)?)
+}
+
+/// Renders what the camera, or the one between two eyes, sees.
+pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+    let view = Views::One(input.camera.as_ref());
+    match render_views(input, &Patience::default(), &view, layers, opened)? {
+        Views::One(image) | Views::Two([image, _]) => Ok(image),
+    }
 }
 
 /// Renders on the device, and says so if that is not what the user would expect.
-pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+fn render_views(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<&dyn Camera>,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Views<Image>, Failure> {
     match opened {
-        Opened::Cpu => on_cpu(input, layers),
+        Opened::Cpu => on_cpu(input, patience, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
-            memory::check(&input.film, &input.size_from, layers)?;
+            if input.lighting.is_some() {
+                patience.check_on_cpu()?;
+            }
+            memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))?;
             tell(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
                  rendering on the CPU reference, which is slower",
             );
-            on_cpu(input, layers)
+            on_cpu(input, patience, views, layers)
         }
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, doubt } => {
             doubt.iter().for_each(tell);
-            on_gpu(headless, input, layers, *choice)
+            match &input.lighting {
+                Some(lighting) => {
+                    let light = (lighting, patience);
+                    render_lit::on_gpu(headless, input, light, views, layers, *choice)
+                }
+                None => on_gpu(headless, input, views, layers, *choice),
+            }
         }
     }
 }
 
-fn on_cpu(input: &Input, layers: LayerSet) -> Result<Image, Failure> {
-    let Input { scene, camera, film, settings, size_from, .. } = input;
-    memory::check(film, size_from, layers)?;
+fn on_cpu(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<&dyn Camera>,
+    layers: LayerSet,
+) -> Result<Views<Image>, Failure> {
+    if let Some(lighting) = &input.lighting {
+        return render_lit::on_cpu(input, lighting, patience, views, layers);
+    }
+    let Input { scene, film, settings, size_from, .. } = input;
+    memory::check(film, size_from, layers, views.bytes_beside(layers))?;
     progress::stage("rendering on the CPU reference");
-    let image = cpu::render(scene, camera.as_ref(), film, settings, layers);
-    Ok(image.context("the CPU reference")?)
+    let images = views.try_each(|camera| cpu::render(scene, *camera, film, settings, layers));
+    Ok(images.context("the CPU reference")?)
 }
 
 #[cfg(feature = "gpu")]
 fn on_gpu(
     headless: &Headless,
     input: &Input,
+    views: &Views<&dyn Camera>,
     layers: LayerSet,
     choice: AccelChoice,
-) -> Result<Image, Failure> {
-    let Input { scene, camera, film, settings, .. } = input;
-    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let plan = |accel| headless.plan_render(scene, accel, film, layers, encoding);
+) -> Result<Views<Image>, Failure> {
+    let Input { scene, film, settings, .. } = input;
+    let beside = views.bytes_beside(layers);
+    let plan = |accel| headless.plan_render(scene, accel, film, layers, beside);
     let rendered = with_scene(headless, input, choice, plan, |buffers, watch| {
-        headless.render_uploaded(buffers, camera.as_ref(), film, settings, layers, watch)
+        views.try_each(|camera| {
+            headless.render_uploaded(buffers, *camera, film, settings, layers, watch)
+        })
     })?;
     Ok(rendered.map_err(|error| explained(headless, &error))?.0)
 }

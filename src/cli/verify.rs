@@ -95,6 +95,14 @@ mod recorded {
         for note in &input.notes {
             tell(format_args!("note: {note}"));
         }
+        if input.eyes.is_some() {
+            tell("note: the camera has two eyes; what is checked is the picture from between them");
+        }
+        if input.lighting.is_some() {
+            tell(
+                "note: the scene asks for light; what is checked is its picture without, by one ray a pixel",
+            );
+        }
         let headless = wanted.open_any()?;
         self_test::check(&headless)?;
         let (scene, film, settings) = (&input.scene, &input.film, &input.settings);

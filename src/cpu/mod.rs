@@ -10,11 +10,13 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 
 mod denoise;
+mod light;
 mod shade;
 mod sphere;
 mod trace;
 
 pub use denoise::denoise;
+pub use light::{LitError, LitPicture, Sample, radiance, render_lit};
 pub use shade::shade;
 pub use trace::trace;
 

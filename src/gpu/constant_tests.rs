@@ -44,6 +44,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("NO_HIT", accel::NO_HIT),
         ("NO_ENTRY", NO_ENTRY),
         ("SMALLEST_COMPONENT", accel::SMALLEST_COMPONENT),
+        ("PI", std::f32::consts::PI),
     ];
     words
         .into_iter()
@@ -54,7 +55,8 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
 }
 
 /// What kernels alone know, and the shadings, which a test of `records.rs` compares.
-const OF_KERNELS_ALONE: &[&str] = &["NO_PLACE", "SHADING_FLAT", "SHADING_HEADLIGHT"];
+const OF_KERNELS_ALONE: &[&str] =
+    &["NO_PLACE", "SHADING_FLAT", "SHADING_HEADLIGHT", "SMALLEST_SPOT"];
 
 fn bits(module: &Module, expression: Handle<Expression>) -> Bits {
     match &module.global_expressions[expression] {

@@ -234,7 +234,7 @@ impl HostPeak {
 }
 
 /// The structure's, and what shading reads.
-fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
+pub(super) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
     // A sphere that is copied into several cells has its colour as often as its id.
     let ids = buffers.iter().find(|buffer| buffer.name == "ids");
@@ -246,7 +246,7 @@ fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     buffers
 }
 
-fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
+pub(super) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
     u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
 }
 
@@ -259,12 +259,15 @@ fn in_words(name: &str) -> &'static str {
         "palette" => "the palette",
         "hits" => "the buffer of hits",
         "rays" => "the buffer of rays",
+        "paths" => "the paths of a tile",
+        "tables" => "the tables of lights and materials",
+        "sky" | "sky shares" => "the image of the sky",
         "nodes" | "cells" | "references" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
 }
 
-fn total(buffers: &[PlannedBuffer]) -> u64 {
+pub(super) fn total(buffers: &[PlannedBuffer]) -> u64 {
     buffers.iter().map(|buffer| buffer.bytes).sum()
 }
 

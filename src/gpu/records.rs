@@ -157,18 +157,18 @@ impl Frame {
 }
 
 impl Frame {
-    /// For lit pictures, which search all of a tile and have settings of their own.
+    /// For lit pictures, which have settings of their own.
     pub(super) fn of_tile(
         camera: &dyn crate::camera::Camera,
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
+        traced: Groups,
         iteration_limit: u32,
     ) -> Self {
-        let all = Groups::of_size(tile.size);
         let settings = Settings::default();
         let view = (camera.kind(), &camera.vectors());
-        Self::new(view, scene, film, tile, all, &settings, iteration_limit)
+        Self::new(view, scene, film, tile, traced, &settings, iteration_limit)
     }
 }
 
@@ -307,7 +307,7 @@ mod tests {
             }),
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
-            layout!(Stage { sample, surface, light, is_last }),
+            layout!(Stage { sample, surface, is_last, light, count }),
             layout!(Look {
                 background,
                 flags,

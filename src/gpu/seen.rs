@@ -46,6 +46,13 @@ impl Seen {
         seen
     }
 
+    /// As seen by rays that may be so many pixels beside their pixels' centres.
+    pub(super) fn widened(mut self, pixels: f64) -> Self {
+        self.first.iter_mut().for_each(|first| *first -= pixels);
+        self.end.iter_mut().for_each(|end| *end += pixels);
+        self
+    }
+
     /// The workgroups of a tile in which the rectangle lies; none have the size zero.
     pub(super) fn groups_of(&self, tile: Tile) -> Groups {
         let side = f64::from(WORKGROUP_SIDE);

@@ -208,10 +208,11 @@ impl Kernel {
             "binary_tree",
             "entry_re",
             "entry_path",
-            "aim_",
             "direct",
             "scatter_",
+            "medium_",
             "settle_",
+            "start_",
             "sky_",
         ];
         self.parts

@@ -1,10 +1,12 @@
 //! Linear f32 pixels and data layers.
 
+#[cfg(feature = "cli")]
+mod join;
 mod layer;
 mod rows;
 
 pub use layer::{Layer, LayerSet, UnknownLayer};
-pub(crate) use rows::RowMut;
+pub(crate) use rows::{Averages, RowMut};
 
 /// The id of a pixel whose ray hit nothing.
 pub const NO_ID: u32 = u32::MAX;

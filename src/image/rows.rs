@@ -36,6 +36,27 @@ impl RowMut<'_> {
         put(&mut self.samples, column, 1);
         put(&mut self.variance, column, 0.0);
     }
+
+    /// Sets what several samples say of a pixel.
+    pub(crate) fn set_averages(&mut self, column: usize, averages: &Averages) {
+        self.color[column] = averages.color;
+        put(&mut self.alpha, column, averages.alpha);
+        put(&mut self.albedo, column, averages.albedo);
+        put(&mut self.samples, column, averages.samples);
+        put(&mut self.variance, column, averages.variance);
+    }
+}
+
+/// What the samples of a pixel say of it together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Averages {
+    pub(crate) color: [f32; 3],
+    pub(crate) alpha: f32,
+    pub(crate) albedo: [f32; 3],
+    /// How many there are.
+    pub(crate) samples: u32,
+    /// Of the mean luminance.
+    pub(crate) variance: f32,
 }
 
 fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {

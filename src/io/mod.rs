@@ -1,7 +1,9 @@
-//! Formats: bytes in, spheres out; images and spheres in, bytes out. No file system.
+//! Formats: bytes in, spheres or an environment out; images and spheres in, bytes out. No file system.
 
 #[cfg(feature = "xyz")]
 mod elements;
+#[cfg(any(feature = "exr", feature = "hdr"))]
+pub mod environment;
 #[cfg(feature = "exr")]
 pub mod exr;
 #[cfg(feature = "npy")]

@@ -5,7 +5,7 @@
 //! `Properties=name:type:columns:…`, as ASE and OVITO write it) names the columns; of these `species`
 //! (or `Z`), `pos`, `radius` and `color` are used. Lengths are taken as they are, in Å.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::elements::{Appearance, appearance};
 use crate::color::LinearRgb;
@@ -17,6 +17,10 @@ use crate::text::shortened;
 pub struct Frame {
     /// One sphere per atom, in the order of the file.
     pub spheres: Vec<Sphere>,
+    /// The species, each once, in order of appearance.
+    pub species: Vec<String>,
+    /// Of each sphere, the place of its species among them.
+    pub species_indices: Vec<u32>,
     /// Species that are no chemical element, each once, in order of appearance.
     pub unknown_species: Vec<String>,
 }
@@ -217,23 +221,29 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
     let columns = Columns::from_comment(&comment)
         .map_err(|message| XyzError::Properties { line: lines.line, message })?;
     let mut spheres = Vec::new();
+    let (mut names, mut species_indices) = (Vec::new(), Vec::new());
     let mut unknown_species = Vec::new();
-    let mut seen = HashSet::new();
-    // Neighbours are often of one species, and the table is searched by symbol.
-    let mut last: Option<(&str, Appearance)> = None;
+    let mut known: HashMap<&str, (u32, Appearance)> = HashMap::new();
+    // Neighbours are often of one species.
+    let mut last: Option<(&str, (u32, Appearance))> = None;
     for found in 0..frame.atoms {
         let text = lines.next()?.ok_or(XyzError::TooFewAtoms { frame, found })?;
         let values = text.split_whitespace().collect();
         let atom = Atom { frame, line: lines.line, values };
         let species = atom.text(columns.species, "species")?;
-        let look = match last {
-            Some((name, look)) if name == species => look,
-            _ => appearance(species),
+        let (index, look) = match last {
+            Some((name, found)) if name == species => found,
+            _ => *known.entry(species).or_insert_with(|| {
+                let look = appearance(species);
+                if !look.is_element {
+                    unknown_species.push(shortened(species));
+                }
+                names.push(shortened(species));
+                // No more than spheres, which are fewer than 2³².
+                (names.len() as u32 - 1, look)
+            }),
         };
-        last = Some((species, look));
-        if !look.is_element && seen.insert(species) {
-            unknown_species.push(shortened(species));
-        }
+        last = Some((species, (index, look)));
         let center = [
             atom.number(columns.position, "x coordinate")?,
             atom.number(columns.position + 1, "y coordinate")?,
@@ -251,8 +261,9 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         let out_of_range = |error| XyzError::Sphere { line: atom.line, atom: found, error };
         sphere.check().map_err(out_of_range)?;
         spheres.push(sphere);
+        species_indices.push(index);
     }
-    Ok(Frame { spheres, unknown_species })
+    Ok(Frame { spheres, species: names, species_indices, unknown_species })
 }
 
 /// Where an atom's line has what, counted in columns from 0.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Integrator, LightKind, Lighting, SkyLight};
+use super::{Integrator, LightKind, Lighting, PathTracing, Sampling, SkyLight, Studio};
 use crate::color::LinearRgb;
 use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::range::RangeError;
@@ -56,10 +56,10 @@ impl Lighting {
     /// The first thing that is not.
     pub fn check(&self, scene: &Scene) -> Result<(), LightingError> {
         let within = RangeError::unless_within;
-        within("samples", self.sampling.samples.into(), [1.0, 16_777_216.0], "from 1 to 16777216")?;
+        self.sampling.check()?;
         match &self.integrator {
             Integrator::Path(path) => {
-                within("max_depth", path.max_depth.into(), [1.0, 64.0], "from 1 to 64")?;
+                path.check()?;
                 if self.ground.is_some_and(|ground| ground.is_shadow_catcher) {
                     return Err(LightingError::Catcher);
                 }
@@ -84,8 +84,23 @@ impl Lighting {
     }
 }
 
-impl super::Studio {
-    fn check(&self) -> Result<(), RangeError> {
+impl Sampling {
+    pub(crate) fn check(&self) -> Result<(), RangeError> {
+        let most = f64::from(Self::MAX_SAMPLES);
+        let range = "from 1 to 16777216";
+        RangeError::unless_within("samples", self.samples.into(), [1.0, most], range).map(drop)
+    }
+}
+
+impl PathTracing {
+    pub(crate) fn check(&self) -> Result<(), RangeError> {
+        let within = RangeError::unless_within;
+        within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
+    }
+}
+
+impl Studio {
+    pub(crate) fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;
         if let Some(occlusion) = &self.occlusion {

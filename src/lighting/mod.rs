@@ -97,6 +97,11 @@ pub struct Sampling {
     pub filter: PixelFilter,
 }
 
+impl Sampling {
+    /// The most samples of a pixel, 2²⁴.
+    pub const MAX_SAMPLES: u32 = 1 << 24;
+}
+
 impl Default for Sampling {
     fn default() -> Self {
         Self { samples: 16, seed: 0, filter: PixelFilter::default() }

@@ -43,6 +43,13 @@ pub struct Occlusion {
     pub samples: u32,
 }
 
+impl Default for Occlusion {
+    /// At any distance, four directions.
+    fn default() -> Self {
+        Self { radius: None, samples: 4 }
+    }
+}
+
 /// Colour fades linearly with the distance along the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthCue {

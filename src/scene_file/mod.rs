@@ -1,26 +1,35 @@
-//! Scene files: TOML text in; film, camera, settings and spheres out. No file system.
+//! Scene files: TOML text in; film, camera, settings, lighting and spheres out. No file system.
 //!
-//! `examples/three-spheres.toml` shows every part with comments.
+//! `examples/*.toml` show every part with comments.
 
-use std::fmt;
-
+mod data;
+mod document;
+mod lighting;
+mod materials;
 mod output;
+mod place;
+mod value;
 mod words;
 
-use output::OutputTable;
-use serde::Deserialize;
-use serde::de::{self, SeqAccess, Visitor};
-use toml::Spanned;
+pub use data::{Data, Element};
+pub use lighting::IntegratorKind;
+pub use place::SceneFileError;
+pub use value::DEFAULT_COLOR;
+
+use data::DataKeys;
+use document::{Document, FilmTable, SphereTable};
+use lighting::{LightingTables, SceneLighting};
+use materials::Materials;
+use place::{Lines, Place, Placed};
 use words::explain;
 
 use crate::camera::{Camera, CameraParameters};
 use crate::color::LinearRgb;
 use crate::encoding::Encoding;
-use crate::exact::{self, Table};
-use crate::film::{Film, YAxis};
+use crate::film::Film;
 use crate::points::Points;
 use crate::scene::{Scene, SceneError};
-use crate::settings::{Settings, Shading};
+use crate::settings::Settings;
 use crate::sphere::Sphere;
 
 /// What a scene file says.
@@ -28,62 +37,14 @@ use crate::sphere::Sphere;
 pub struct SceneFile {
     /// The picture's size.
     pub film: Film,
-    /// Shading and background.
+    /// Background, and the shading of a picture without lights.
     pub settings: Settings,
     /// How the picture is written.
     pub encoding: Encoding,
+    lighting: SceneLighting,
     data: Option<Placed<Data>>,
     camera: Placed<CameraParameters>,
     spheres: Vec<Placed<Sphere>>,
-}
-
-/// A reference to a file with spheres.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Data {
-    /// The path, relative to the scene file.
-    pub file: String,
-    /// Which frame of a trajectory, from 0.
-    pub frame: Option<usize>,
-    /// The radius of all, for data that has none.
-    pub radius: Option<f64>,
-    /// What every radius is multiplied by.
-    pub radius_scale: f64,
-    /// The colour of all, for data that has none.
-    pub color: Option<LinearRgb>,
-}
-
-/// What is wrong with a scene file, and where.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}, column {column}: {message}")]
-pub struct SceneFileError {
-    /// From 1.
-    pub line: usize,
-    /// From 1, in characters.
-    pub column: usize,
-    /// What is wrong, and what to do.
-    pub message: String,
-}
-
-/// A value and its place in the text.
-#[derive(Clone, Copy, Debug)]
-struct Placed<T> {
-    value: T,
-    place: Place,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    line: usize,
-    column: usize,
-}
-
-impl Place {
-    /// Where nothing more precise is known.
-    const START: Self = Self { line: 1, column: 1 };
-
-    fn error(self, message: impl fmt::Display) -> SceneFileError {
-        SceneFileError { line: self.line, column: self.column, message: message.to_string() }
-    }
 }
 
 impl SceneFile {
@@ -97,36 +58,48 @@ impl SceneFile {
             let start = error.span().map_or(0, |span| span.start);
             lines.place(start).error(explain(error.message()))
         })?;
-        let film_place = lines.place(document.film.span().start);
-        let FilmTable { width, height, y } = document.film.into_inner().0;
-        let film = Film::new(width, height).map_err(|error| film_place.error(error))?;
+        let materials = Materials::new(document.materials, &lines)?;
+        let has_looks = document.material.is_some() || document.opacity.is_some();
+        let data = DataKeys {
+            file: document.data,
+            frame: document.frame,
+            radius: document.radius,
+            radius_scale: document.radius_scale,
+            color: document.color,
+            material: document.material,
+            opacity: document.opacity,
+            elements: document.elements,
+        }
+        .read(&materials, &lines)?;
+        let spheres = document.spheres.into_iter();
+        let spheres: Vec<_> = spheres
+            .map(|sphere| SphereTable::sphere(sphere, &materials, &lines))
+            .collect::<Result<_, _>>()?;
+        let lighting = LightingTables {
+            shading: document.shading.as_ref().map(|shading| shading.span().start),
+            integrator: document.integrator,
+            studio: document.studio,
+            path: document.path,
+            sampling: document.sampling,
+            lights: document.lights,
+            sky: document.sky,
+            sun: document.sun,
+            ground: document.ground,
+            has_materials: has_looks || has_finish(&spheres, data.as_ref()),
+        }
+        .read(&lines)?;
         let defaults = Settings::default();
+        let shading = document.shading.map_or(defaults.shading(), |shading| shading.into_inner());
         Ok(Self {
-            film: film.with_y_axis(y),
+            film: FilmTable::film(document.film, &lines)?,
             settings: defaults
-                .with_shading(document.shading.unwrap_or(defaults.shading()))
+                .with_shading(shading)
                 .with_background(document.background.map_or(defaults.background(), |c| c.0)),
             encoding: document.output.0.encoding(&lines)?,
-            data: DataKeys {
-                file: document.data,
-                frame: document.frame,
-                radius: document.radius,
-                radius_scale: document.radius_scale,
-                color: document.color,
-            }
-            .read(&lines)?,
-            camera: Placed {
-                place: lines.place(document.camera.span().start),
-                value: document.camera.into_inner(),
-            },
-            spheres: document
-                .spheres
-                .into_iter()
-                .map(|sphere| Placed {
-                    place: lines.place(sphere.span().start),
-                    value: sphere.into_inner().0.sphere(),
-                })
-                .collect(),
+            lighting,
+            data,
+            camera: lines.placed(document.camera),
+            spheres,
         })
     }
 
@@ -141,7 +114,7 @@ impl SceneFile {
     }
 
     /// As [`SceneFile::scene`], with data that has no colours; where the file has no spheres of its own,
-    /// without a copy.
+    /// without a copy. They get the finish that the file says.
     ///
     /// # Errors
     /// As [`SceneFile::scene`].
@@ -150,11 +123,13 @@ impl SceneFile {
         data: Points,
         color: LinearRgb,
     ) -> Result<Scene, SceneFileError> {
+        let finish = self.data().map(|data| data.finish).unwrap_or_default();
         if self.spheres.is_empty() {
-            return data.scene(color).map_err(|error| self.placed(&error));
+            let scene = data.scene(color).map_err(|error| self.placed(&error))?;
+            return Ok(scene.with_finish(finish));
         }
-        let data: Vec<Sphere> = data.spheres(color).collect();
-        self.scene(&data)
+        let dressed = data.spheres(color).map(|sphere| Sphere { finish, ..sphere });
+        self.scene(&dressed.collect::<Vec<_>>())
     }
 
     fn placed(&self, error: &SceneError) -> SceneFileError {
@@ -177,7 +152,8 @@ impl SceneFile {
         self.data.as_ref().map(|data| &data.value)
     }
 
-    /// The camera, for a film of this shape; without a fixed place it frames the scene.
+    /// The camera, or of two eyes that in the middle, for a film of this shape; without a fixed place it frames
+    /// the scene.
     ///
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
@@ -187,170 +163,29 @@ impl SceneFile {
             .camera(film.aspect(), &scene.bounds_to_frame())
             .map_err(|error| self.camera.place.error(error))
     }
-}
 
-/// The keys that name a file with spheres and say how to read it.
-struct DataKeys {
-    file: Option<Spanned<String>>,
-    frame: Option<Spanned<usize>>,
-    radius: Option<Spanned<f64>>,
-    radius_scale: Option<Spanned<f64>>,
-    color: Option<Spanned<ColorValue>>,
-}
-
-impl DataKeys {
-    fn read(self, lines: &Lines<'_>) -> Result<Option<Placed<Data>>, SceneFileError> {
-        let Some(file) = self.file else {
-            let orphans = [
-                ("frame", self.frame.map(|value| value.span())),
-                ("radius", self.radius.map(|value| value.span())),
-                ("radius_scale", self.radius_scale.map(|value| value.span())),
-                ("color", self.color.map(|value| value.span())),
-            ];
-            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
-            return match orphan {
-                Some((key, start)) => Err(lines
-                    .place(start)
-                    .error(format!("`{key}` concerns `data`, which is not given"))),
-                None => Ok(None),
-            };
-        };
-        let positive = |key, value: Option<Spanned<f64>>| match value {
-            Some(value) if !(value.get_ref().is_finite() && *value.get_ref() > 0.0) => {
-                Err(lines.place(value.span().start).error(format!(
-                    "`{key}` is {:?}; it must be finite and greater than 0",
-                    value.get_ref()
-                )))
-            }
-            value => Ok(value.map(Spanned::into_inner)),
-        };
-        Ok(Some(Placed {
-            place: lines.place(file.span().start),
-            value: Data {
-                file: file.into_inner(),
-                frame: self.frame.map(Spanned::into_inner),
-                radius: positive("radius", self.radius)?,
-                radius_scale: positive("radius_scale", self.radius_scale)?.unwrap_or(1.0),
-                color: self.color.map(|color| color.into_inner().0),
-            },
-        }))
+    /// The cameras of the left and of the right eye, if the camera has two.
+    ///
+    /// # Errors
+    /// As [`SceneFile::camera`].
+    pub fn stereo_pair(
+        &self,
+        film: &Film,
+        scene: &Scene,
+    ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
+        self.camera
+            .value
+            .stereo_pair(film.aspect(), &scene.bounds_to_frame())
+            .map_err(|error| self.camera.place.error(error))
     }
 }
 
-/// Where the lines of a text start.
-struct Lines<'a> {
-    text: &'a str,
-    starts: Vec<usize>,
-}
-
-impl<'a> Lines<'a> {
-    fn of(text: &'a str) -> Self {
-        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
-        Self { text, starts: std::iter::once(0).chain(ends).collect() }
-    }
-
-    /// Line and column of a byte.
-    fn place(&self, byte: usize) -> Place {
-        // At least one line starts at or before any byte.
-        let line = self.starts.partition_point(|start| *start <= byte);
-        let before = self.text.get(self.starts[line - 1]..byte).unwrap_or_default();
-        Place { line, column: before.chars().count() + 1 }
-    }
-}
-
-/// The file's tables, as serde reads them.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Document {
-    #[serde(default = "default_film")]
-    film: Spanned<Table<FilmTable>>,
-    #[serde(default = "default_camera")]
-    camera: Spanned<CameraParameters>,
-    #[serde(default)]
-    output: Table<OutputTable>,
-    background: Option<ColorValue>,
-    shading: Option<Shading>,
-    #[serde(default)]
-    spheres: Vec<Spanned<Table<SphereTable>>>,
-    data: Option<Spanned<String>>,
-    frame: Option<Spanned<usize>>,
-    radius: Option<Spanned<f64>>,
-    radius_scale: Option<Spanned<f64>>,
-    color: Option<Spanned<ColorValue>>,
-}
-
-fn default_film() -> Spanned<Table<FilmTable>> {
-    Spanned::new(0..0, Table::default())
-}
-
-fn default_camera() -> Spanned<CameraParameters> {
-    Spanned::new(0..0, CameraParameters::default())
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct FilmTable {
-    width: u32,
-    height: u32,
-    y: YAxis,
-}
-
-impl Default for FilmTable {
-    fn default() -> Self {
-        let film = Film::default();
-        Self { width: film.width(), height: film.height(), y: film.y_axis() }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SphereTable {
-    #[serde(deserialize_with = "exact::array")]
-    center: [f64; 3],
-    radius: f64,
-    #[serde(default)]
-    color: ColorValue,
-}
-
-impl SphereTable {
-    fn sphere(self) -> Sphere {
-        Sphere::new(self.center, self.radius, self.color.0)
-    }
-}
-
-/// A CSS colour, or a linear triple.
-struct ColorValue(LinearRgb);
-
-/// The colour of spheres that are given none, as 8-bit sRGB: a light grey.
-pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
-
-impl Default for ColorValue {
-    fn default() -> Self {
-        Self(LinearRgb::from_srgb8(DEFAULT_COLOR))
-    }
-}
-
-impl<'de> Deserialize<'de> for ColorValue {
-    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ColorVisitor;
-
-        impl<'de> Visitor<'de> for ColorVisitor {
-            type Value = ColorValue;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
-            }
-
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<ColorValue, E> {
-                LinearRgb::from_css(text).map(ColorValue).map_err(E::custom)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ColorValue, A::Error> {
-                let rgb = exact::elements(seq, &self)?;
-                LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
-            }
-        }
-
-        deserializer.deserialize_any(ColorVisitor)
-    }
+/// Whether any sphere is to be more than matt and opaque.
+fn has_finish(spheres: &[Placed<Sphere>], data: Option<&Placed<Data>>) -> bool {
+    let matt = crate::material::Finish::default();
+    let of_data = data.iter().flat_map(|data| {
+        let elements = data.value.elements.iter().map(|element| element.finish);
+        elements.chain([data.value.finish])
+    });
+    spheres.iter().map(|sphere| sphere.value.finish).chain(of_data).any(|finish| finish != matt)
 }

@@ -22,8 +22,14 @@ pub(super) fn explain(message: &str) -> String {
     };
     // unknown field `widht`, expected one of `width`, `height`
     let mut quoted = rest.split('`').step_by(2);
-    let unknown = &shortened(quoted.next().unwrap_or_default());
+    let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
+    unknown(what, name, &known)
+}
+
+/// What to say of a name that is none of those that are known.
+pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+    let unknown = &shortened(name);
     let nearest = known.iter().copied().max_by(|a, b| {
         strsim::jaro_winkler(a, unknown).total_cmp(&strsim::jaro_winkler(b, unknown))
     });

@@ -112,7 +112,7 @@ pub(super) fn check_view(
     }
     let asked = vectors.numbers.map(|number| number as f32);
     // By value: a zero has no sign.
-    if view.numbers != asked {
+    if Vec3::from(view.numbers) != Vec3::from(asked) {
         let (name, found, expected) = ("of numbers", view.numbers, asked);
         return Err(UploadError::Vector { name, found, expected });
     }

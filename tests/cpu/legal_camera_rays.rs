@@ -18,7 +18,7 @@ fn unit(random: &mut fastrand::Rng) -> DVec3 {
     loop {
         let v = DVec3::from([0; 3].map(|_| random.f64() * 2.0 - 1.0));
         if v.length() > 0.1 && v.length() < 1.0 {
-            return v.normalize();
+            return v / v.length();
         }
     }
 }
@@ -152,6 +152,6 @@ fn the_references_ray_is_near_the_middle_of_what_is_legal() {
 /// No ray's vector is shorter, before it is made a unit vector.
 fn shortest(camera: &dyn Camera) -> f64 {
     let vectors = camera.vectors();
-    let across = vectors.right.cross(vectors.up).normalize();
-    vectors.forward.dot(across).abs()
+    let across = vectors.right.cross(vectors.up);
+    vectors.forward.dot(across).abs() / across.length()
 }

@@ -108,7 +108,7 @@ fn what_is_no_lens_is_refused() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 3.1] {
         match ThinLensCamera::new(pinhole(), bad, 3.0).unwrap_err() {
             CameraError::Range { parameter: "`aperture_radius`", high, .. } => {
-                assert_eq!(high, 3.0)
+                assert_eq!(high, 3.0);
             }
             other => panic!("{other}"),
         }

@@ -15,8 +15,10 @@ mod arrays;
 
 mod basis;
 mod camera;
+mod camera_tables;
 mod comparator;
 mod environment;
+mod environment_files;
 mod generate;
 mod grid_check;
 mod hostile_rays;
@@ -25,6 +27,7 @@ mod legal_camera;
 mod legal_camera_rays;
 mod legal_device;
 mod lens;
+mod light;
 mod npy;
 mod perspective;
 mod pictures;

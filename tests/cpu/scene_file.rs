@@ -100,7 +100,14 @@ fn data_comes_behind_the_files_own_spheres() {
 
 #[test]
 fn a_camera_without_an_eye_frames_the_scene() {
-    for camera in ["", "[camera.pinhole]\nvertical_fov = 50\n", "[camera.orthographic]\n"] {
+    for camera in [
+        "",
+        "[camera.pinhole]\nvertical_fov = 50\n",
+        "[camera.orthographic]\n",
+        "[camera.thin-lens]\naperture_radius = 0.1\n",
+        "[camera.fisheye]\nangle = 120\n",
+        "[camera.fisheye]\nangle = 360\n",
+    ] {
         let file = parse(&format!("{camera}[[spheres]]\ncenter=[10,20,30]\nradius=2\n"));
         let scene = file.scene(&[]).unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
@@ -125,7 +132,7 @@ fn errors_name_place_and_remedy() {
         ),
         (
             "[camera.pinhole]\nfocus = 3\n",
-            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov",
+            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov, stereo",
         ),
         ("[camera.pinhol]\n", "line 1, column 9: unknown name `pinhol`; did you mean `pinhole`?"),
         (

@@ -17,6 +17,8 @@ fn a_molecule() {
     assert_eq!(frame.spheres[0].radius, 1.5);
     assert_eq!(frame.spheres[0].color, LinearRgb::from_srgb8([255, 13, 13]));
     assert!(frame.unknown_species.is_empty());
+    assert_eq!(frame.species, ["O", "H"]);
+    assert_eq!(frame.species_indices, [0, 1, 1]);
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod embedding;
 mod faults;
 mod lens;
 mod parts;
+mod paths;
 mod pictures;
 mod plan;
 mod program;
@@ -63,6 +64,7 @@ fn main() {
         lens::trials(),
         pictures::trials(),
         parts::trials(),
+        paths::trials(),
         embedding::trials(),
         device::trials(),
         program::trials(),

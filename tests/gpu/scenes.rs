@@ -53,6 +53,9 @@ pub(crate) fn all() -> Vec<(&'static str, View)> {
         ("fisheye_from_outside_y_down", random_1000(YAxis::Down, Lens::Fisheye)),
         ("fisheye_180", all_around(|pose, aspect| fisheye(pose, 180.0, aspect))),
         ("fisheye_360", all_around(|pose, aspect| fisheye(pose, 360.0, aspect))),
+        ("example_thin_lens", View::from_toml(include_str!("../../examples/thin-lens.toml"))),
+        ("example_panorama", View::from_toml(include_str!("../../examples/panorama.toml"))),
+        ("example_fisheye", View::from_toml(include_str!("../../examples/fisheye.toml"))),
         ("fisheye_higher_than_wide", random_fisheye_upright()),
     ]
 }

@@ -248,6 +248,28 @@ fn cameras_that_are_refused() {
             "--eye 1,1,1 --look-at 1,1,1",
             "the eye and the look-at point are both at [1.0, 1.0, 1.0]; move one of them",
         ),
+        (
+            "--camera fisheye --angle 361",
+            "the `--angle` in degrees is 361.0; it must lie between 0.0 and 360.0",
+        ),
+        ("--camera panorama --fov 30", "--fov does not concern the panorama camera; drop it"),
+        (
+            "--camera thin-lens --f-stop 2",
+            "`--f-stop` and `--focal-length` need each other: together they are a length",
+        ),
+        (
+            "--camera thin-lens",
+            "a lens needs an `--aperture-radius`, or an `--f-stop` with a `--focal-length`",
+        ),
+        (
+            "--camera thin-lens --aperture-radius 1 --separation 1",
+            "--separation does not concern the thin-lens camera; drop it",
+        ),
+        ("--convergence 3", "--convergence needs --separation"),
+        (
+            "--stereo two-files",
+            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+        ),
         ("--fov -5", "the vertical field of view is -5 degrees; it must lie between 0 and 180"),
     ] {
         for input in ["a.npy", "scene.toml"] {
@@ -258,7 +280,7 @@ fn cameras_that_are_refused() {
         ("--eye 1,2", "write 3 numbers with commas between them, such as 0,1,-8"),
         ("--eye a,b,c", "write 3 numbers"),
         ("--half-extent -1", "write 2 numbers"),
-        ("--camera fisheye", "orthographic"),
+        ("--camera periscope", "orthographic"),
         ("--eye nan,0,0 --direction 0,0,1", "every component must be finite"),
     ] {
         let run = folder.run(&format!("render a.npy -o out.png {flags}"));

@@ -13,5 +13,6 @@ mod generate;
 mod good_input;
 mod interrupt;
 mod pictures;
+mod stereo;
 mod support;
 mod verify;

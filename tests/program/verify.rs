@@ -175,7 +175,7 @@ fn runs_that_are_damaged() {
         (
             "other",
             &other,
-            "other: this is a run file of version 7, and this program reads version 1",
+            "other: this is a run file of version 7, and this program reads version 2",
         ),
         (
             "none",

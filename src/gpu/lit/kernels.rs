@@ -33,7 +33,7 @@ pub(in crate::gpu) enum SkyKind {
 }
 
 /// Makes the ray of a sample.
-pub(super) fn start_kernel(camera: CameraKind) -> Kernel {
+pub(super) fn start_kernel(camera: CameraKind, is_studio: bool) -> Kernel {
     let mut parts = base();
     parts.extend([
         part!("origin_none.wgsl"),
@@ -44,6 +44,7 @@ pub(super) fn start_kernel(camera: CameraKind) -> Kernel {
         part!("film_sample.wgsl"),
     ]);
     parts.extend(camera_parts(camera));
+    parts.push(if is_studio { part!("start_studio.wgsl") } else { part!("start_path.wgsl") });
     parts.push(part!("start.wgsl"));
     Kernel { entry_point: "start", parts }
 }
@@ -66,32 +67,60 @@ pub(super) fn extend_kernel(structure: Structure, turn: Turn) -> Kernel {
     Kernel { entry_point: "trace", parts }
 }
 
-/// Finds whether anything is between surfaces and lights.
-pub(super) fn occlude_kernel(mode: Mode, structure: Structure) -> Kernel {
+/// Finds whether anything is between paths' surfaces and lights.
+pub(super) fn occlude_kernel(structure: Structure) -> Kernel {
     let mut parts = base();
-    parts.extend([part!("schedule.wgsl"), part!("spend.wgsl"), part!("brick.wgsl")]);
-    parts.extend(match mode {
-        Mode::Studio => [part!("origin_sphere.wgsl"), part!("aim_at_light.wgsl")],
-        Mode::Path(..) => [part!("origin_and_target.wgsl"), part!("aim_at_sphere.wgsl")],
-    });
+    parts.extend([
+        part!("schedule.wgsl"),
+        part!("spend.wgsl"),
+        part!("brick.wgsl"),
+        part!("origin_and_target.wgsl"),
+    ]);
     parts.extend(structure_parts(structure));
     parts.push(part!("occlude.wgsl"));
     Kernel { entry_point: "occlude", parts }
 }
 
+/// In a studio, finds whether a light is hidden.
+pub(super) fn shadow_kernel(structure: Structure) -> Kernel {
+    let mut parts = hidden_light(structure);
+    parts.extend([part!("lamp.wgsl"), part!("shadow.wgsl")]);
+    Kernel { entry_point: "shadow", parts }
+}
+
+/// In a studio, finds whether something is near in a direction of ambient light.
+pub(super) fn ambient_kernel(structure: Structure) -> Kernel {
+    let mut parts = hidden_light(structure);
+    parts.push(part!("ambient.wgsl"));
+    Kernel { entry_point: "ambient", parts }
+}
+
+fn hidden_light(structure: Structure) -> Vec<Part> {
+    let mut parts = base();
+    parts.extend([
+        part!("origin_sphere.wgsl"),
+        part!("schedule.wgsl"),
+        part!("spend.wgsl"),
+        part!("brick.wgsl"),
+        part!("trigonometry.wgsl"),
+        part!("look.wgsl"),
+        part!("sampling.wgsl"),
+        part!("disk.wgsl"),
+        part!("warp.wgsl"),
+        part!("hidden_light.wgsl"),
+    ]);
+    parts.extend(structure_parts(structure));
+    parts
+}
+
 /// In a studio, turns hits into surfaces.
 pub(super) fn surface_kernel() -> Kernel {
     let mut parts = shading();
-    parts.extend([
-        part!("vertex.wgsl"),
-        part!("material.wgsl"),
-        part!("settle_studio.wgsl"),
-        part!("surface.wgsl"),
-    ]);
+    parts.extend([part!("vertex.wgsl"), part!("material.wgsl"), part!("surface.wgsl")]);
     Kernel { entry_point: "surface", parts }
 }
 
-/// In a studio, looks for a light.
+/// In a studio, adds some lights.
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
@@ -103,11 +132,11 @@ pub(super) fn illuminate_kernel() -> Kernel {
     Kernel { entry_point: "illuminate", parts }
 }
 
-/// In a studio, looks in a direction of ambient light.
-pub(super) fn ambient_kernel() -> Kernel {
+/// In a studio, adds ambient light from some directions.
+pub(super) fn gather_kernel() -> Kernel {
     let mut parts = studio_light();
-    parts.push(part!("ambient.wgsl"));
-    Kernel { entry_point: "ambient", parts }
+    parts.push(part!("gather.wgsl"));
+    Kernel { entry_point: "gather", parts }
 }
 
 /// Scatters paths.
@@ -128,18 +157,21 @@ pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind)
         part!("scatter.wgsl"),
     ]);
     match surfaces {
-        Surfaces::Matt => parts.push(part!("scatter_matt.wgsl")),
+        Surfaces::Matt => {
+            parts.extend([part!("medium_none.wgsl"), part!("scatter_matt.wgsl")]);
+        }
         Surfaces::Any => parts.extend([
             part!("microfacet.wgsl"),
             part!("bsdf.wgsl"),
             part!("dielectric.wgsl"),
+            part!("medium_glass.wgsl"),
             part!("scatter_any.wgsl"),
         ]),
     }
-    parts.push(match sources {
-        Sources::None => part!("direct_none.wgsl"),
-        Sources::Any => part!("direct.wgsl"),
-    });
+    match sources {
+        Sources::None => parts.push(part!("direct_none.wgsl")),
+        Sources::Any => parts.extend([part!("direct_light.wgsl"), part!("direct.wgsl")]),
+    }
     match sky {
         SkyKind::Plain => parts.push(part!("sky_plain.wgsl")),
         SkyKind::Image => parts.extend(sky_image()),
@@ -196,8 +228,7 @@ fn studio_light() -> Vec<Part> {
         part!("disk.wgsl"),
         part!("warp.wgsl"),
         part!("lamp.wgsl"),
-        part!("settle_studio.wgsl"),
-        part!("shadow_ray.wgsl"),
+        part!("catcher.wgsl"),
     ]);
     parts
 }
@@ -205,12 +236,13 @@ fn studio_light() -> Vec<Part> {
 /// Every kernel of lit pictures that can be composed.
 #[cfg(test)]
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
-    let mut kernels: Vec<Kernel> =
-        CameraKind::ALL.iter().map(|camera| start_kernel(*camera)).collect();
+    let mut kernels = Vec::new();
+    for &camera in CameraKind::ALL {
+        kernels.extend([true, false].map(|is_studio| start_kernel(camera, is_studio)));
+    }
     for &structure in Structure::ALL {
         kernels.extend([Turn::First, Turn::Later].map(|turn| extend_kernel(structure, turn)));
-        let path = Mode::Path(Surfaces::Any, Sources::Any, SkyKind::Plain);
-        kernels.extend([Mode::Studio, path].map(|mode| occlude_kernel(mode, structure)));
+        kernels.extend([occlude_kernel, shadow_kernel, ambient_kernel].map(|of| of(structure)));
     }
     for surfaces in [Surfaces::Matt, Surfaces::Any] {
         for sources in [Sources::None, Sources::Any] {
@@ -219,7 +251,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
             }
         }
     }
-    kernels.extend([surface_kernel(), illuminate_kernel(), ambient_kernel()]);
+    kernels.extend([surface_kernel(), illuminate_kernel(), gather_kernel()]);
     kernels.extend([true, false].map(deposit_kernel));
     kernels
 }

@@ -71,6 +71,13 @@ impl Lit {
     }
 }
 
+impl Lit {
+    /// What its tables take on the device.
+    pub(super) fn table_bytes(&self) -> u64 {
+        size_of_val(&self.tables[..]) as u64
+    }
+}
+
 /// What direct light is chosen among.
 #[derive(Debug)]
 struct SourceList {

@@ -10,7 +10,7 @@ use super::records::{Look, PATH_SLOTS};
 use super::renderer::LitKey;
 use super::run::Run;
 use super::tile::TileBuffers;
-use super::{LitDecision, LitProgress, LitScene, LitWatch};
+use super::{LitDecision, LitProgress, LitScene, LitWatch, frames, seen};
 use crate::camera::Camera;
 use crate::film::Film;
 use crate::gpu::error::GpuError;
@@ -18,7 +18,7 @@ use crate::gpu::frame::iteration_limit;
 use crate::gpu::headless::Headless;
 use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::recording::requested_view;
-use crate::gpu::records::{Frame, Hit};
+use crate::gpu::records::Hit;
 use crate::gpu::tiles::Tile;
 use crate::lighting::{Integrator, Lighting, SkyLight};
 use crate::scene::Scene;
@@ -99,8 +99,7 @@ impl Run<'_> {
                 self.submit(&[keeper.paths.buffer()])?;
                 let states = keeper.read_states()?;
                 let open = |states: &[PathState]| {
-                    // The last number of the slot PENDING.
-                    states.iter().map(|state| state.slots[6][3]).collect()
+                    states.iter().map(|state| state.slots[PathState::PENDING][3]).collect()
                 };
                 match (moment, keeper.sample.surfaces.last_mut()) {
                     (Moment::Scattered, Some(surface)) => {
@@ -177,8 +176,9 @@ impl Headless {
             let tile_buffers =
                 TileBuffers::new(device, queue, renderer, tile.size, &lit, lighting)?;
             let limit = iteration_limit(device);
+            let view = (camera, film);
             let frames =
-                searched.map(|scene| Frame::of_tile(camera, scene.space(), film, tile, limit));
+                frames(searched, view, seen(&buffers.all, view, lighting), tile, limit);
             let pixels = tile.size[0] as usize * tile.size[1] as usize;
             let mut keeper = Keeper::new(device, &tile_buffers, pixels);
             let total = samples.end.saturating_sub(samples.start);

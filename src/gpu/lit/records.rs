@@ -9,8 +9,9 @@ use bytemuck::{Pod, Zeroable};
 pub(in crate::gpu) struct Stage {
     pub(in crate::gpu) sample: u32,
     pub(in crate::gpu) surface: u32,
-    pub(in crate::gpu) light: u32,
     pub(in crate::gpu) is_last: u32,
+    pub(in crate::gpu) light: u32,
+    pub(in crate::gpu) count: u32,
 }
 
 #[repr(C)]
@@ -54,7 +55,7 @@ pub(super) const GROUND: u32 = 8;
 pub(super) const CATCHER: u32 = 16;
 
 /// `vec4f`s that a path's state takes for each pixel: the last slot of `shaders/path_state.wgsl` and one.
-pub(super) const PATH_SLOTS: u64 = 11;
+pub(super) const PATH_SLOTS: u64 = 10;
 
 /// `vec4f`s that a pixel's sums take: `shaders/deposit.wgsl`.
 pub(super) const FILM_SLOTS: u64 = 2;

@@ -41,15 +41,23 @@ pub(in crate::gpu) struct LitRenderer {
     pub(super) layouts: LitLayouts,
     pub(super) start: ComputePipeline,
     pub(super) extend: [ComputePipeline; 2],
-    pub(super) occlude: ComputePipeline,
     pub(super) deposit: ComputePipeline,
     pub(super) shade: Shaders,
 }
 
 #[derive(Debug)]
 pub(in crate::gpu) enum Shaders {
-    Studio { surface: ComputePipeline, illuminate: ComputePipeline, ambient: ComputePipeline },
-    Path { scatter: ComputePipeline },
+    Studio {
+        surface: ComputePipeline,
+        shadow: ComputePipeline,
+        illuminate: ComputePipeline,
+        ambient: ComputePipeline,
+        gather: ComputePipeline,
+    },
+    Path {
+        scatter: ComputePipeline,
+        occlude: ComputePipeline,
+    },
 }
 
 impl LitLayouts {
@@ -95,14 +103,17 @@ impl LitRenderer {
         let build = |kernel: Kernel, groups: &[&BindGroupLayout]| {
             pipeline(device, &kernel.edited(edits)?, groups)
         };
+        let is_studio = key.mode == Mode::Studio;
         let brick = |index: usize| &scene.brick[index].1;
         let LitLayouts { search, shade, film, look, sky } = &layouts;
         let extend = |turn| build(kernels::extend_kernel(key.structure, turn), &[search, brick(0)]);
         let shaders = match key.mode {
             Mode::Studio => Shaders::Studio {
                 surface: build(kernels::surface_kernel(), &[shade, &scene.surface, look])?,
+                shadow: build(kernels::shadow_kernel(key.occluders), &[search, brick(1), look])?,
                 illuminate: build(kernels::illuminate_kernel(), &[shade, &scene.surface, look])?,
-                ambient: build(kernels::ambient_kernel(), &[shade, &scene.surface, look])?,
+                ambient: build(kernels::ambient_kernel(key.occluders), &[search, brick(1), look])?,
+                gather: build(kernels::gather_kernel(), &[shade, &scene.surface, look])?,
             },
             Mode::Path(surfaces, sources, kind) => {
                 let kernel = kernels::scatter_kernel(surfaces, sources, kind);
@@ -110,14 +121,19 @@ impl LitRenderer {
                 if kind == SkyKind::Image {
                     groups.push(sky);
                 }
-                Shaders::Path { scatter: build(kernel, &groups)? }
+                Shaders::Path {
+                    scatter: build(kernel, &groups)?,
+                    occlude: build(kernels::occlude_kernel(key.occluders), &[search, brick(1)])?,
+                }
             }
         };
         Ok(Self {
-            start: build(kernels::start_kernel(key.camera), &[shade, &scene.surface, look])?,
+            start: build(
+                kernels::start_kernel(key.camera, is_studio),
+                &[shade, &scene.surface, look],
+            )?,
             extend: [extend(Turn::First)?, extend(Turn::Later)?],
-            occlude: build(kernels::occlude_kernel(key.mode, key.occluders), &[search, brick(1)])?,
-            deposit: build(kernels::deposit_kernel(key.mode == Mode::Studio), &[film])?,
+            deposit: build(kernels::deposit_kernel(is_studio), &[film])?,
             shade: shaders,
             layouts,
         })

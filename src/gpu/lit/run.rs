@@ -7,7 +7,7 @@ use wgpu::{BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline};
 use super::recording::Keeper;
 use super::records::Stage;
 use super::renderer::LitRenderer;
-use super::tile::{MOST_STAGES, TileBuffers};
+use super::tile::{FRAMES, MOST_STAGES, TileBuffers};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::records::Frame;
@@ -21,8 +21,8 @@ pub(super) struct Run<'a> {
     pub(super) tile: &'a TileBuffers,
     pub(super) scene: &'a SceneBuffers,
     pub(super) occluders: &'a SceneBuffers,
-    /// Of the tile; the second is for what casts shadows.
-    pub(super) frames: [Frame; 2],
+    /// Of all of the tile; of where the scene may be seen; the same for what casts shadows.
+    pub(super) frames: [Frame; FRAMES],
     encoder: Option<CommandEncoder>,
     stages: Vec<Stage>,
     /// Workgroups of searches in the encoder.
@@ -39,7 +39,7 @@ impl<'a> Run<'a> {
         renderer: &'a LitRenderer,
         tile: &'a TileBuffers,
         [scene, occluders]: [&'a SceneBuffers; 2],
-        frames: [Frame; 2],
+        frames: [Frame; FRAMES],
         after: &'a mut dyn FnMut() -> Result<(), GpuError>,
     ) -> Self {
         let (encoder, stages, gathered) = (None, Vec::new(), 0);
@@ -58,9 +58,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn groups(&self) -> Groups {
-        let [frame, _] = &self.frames;
-        Groups { first: [0, 0], size: frame.traced_size }
+    /// All workgroups that a record has.
+    fn groups(&self, frame: usize) -> Groups {
+        Groups { first: [0, 0], size: self.frames[frame].traced_size }
     }
 
     pub(super) fn encoder(&mut self) -> &mut CommandEncoder {
@@ -68,15 +68,28 @@ impl<'a> Run<'a> {
         self.encoder.get_or_insert_with(|| headless.encoder())
     }
 
-    /// A dispatch for every pixel, which searches nothing.
+    /// A dispatch for every pixel of the tile, or of where the scene may be seen, which searches nothing.
     pub(super) fn shade(
         &mut self,
         pipeline: &ComputePipeline,
-        group: &BindGroup,
-        brick: Option<&BindGroup>,
+        is_whole: bool,
+        brick: &BindGroup,
         stage: Stage,
     ) -> Result<(), GpuError> {
-        self.dispatch(pipeline, group, brick, stage, self.groups(), true)?;
+        let frame = usize::from(!is_whole);
+        let group = &self.tile.shade[frame];
+        self.dispatch(pipeline, group, Some(brick), stage, self.groups(frame))?;
+        self.submit_if_full()
+    }
+
+    /// Adds the samples of all pixels.
+    pub(super) fn deposit(&mut self, stage: Stage) -> Result<(), GpuError> {
+        let (renderer, tile) = (self.renderer, self.tile);
+        self.dispatch(&renderer.deposit, &tile.deposit, None, stage, self.groups(0))?;
+        self.submit_if_full()
+    }
+
+    fn submit_if_full(&mut self) -> Result<(), GpuError> {
         if self.stages.len() == MOST_STAGES {
             self.submit(&[])?;
         }
@@ -91,10 +104,10 @@ impl<'a> Run<'a> {
         brick: &BindGroup,
         stage: Stage,
     ) -> Result<(), GpuError> {
-        let whole = self.groups();
+        let whole = self.groups(1);
         let pace = self.scene.pace().groups();
         if whole.count() <= pace {
-            self.dispatch(pipeline, group, Some(brick), stage, whole, false)?;
+            self.dispatch(pipeline, group, Some(brick), stage, whole)?;
             self.gathered += whole.count();
             if self.gathered >= pace || self.stages.len() == MOST_STAGES {
                 self.submit(&[])?;
@@ -105,7 +118,7 @@ impl<'a> Run<'a> {
         let mut left = vec![whole];
         while let Some(slice) = Groups::take(&mut left, self.scene.pace().groups()) {
             self.frames.iter_mut().for_each(|frame| frame.first_group = slice.first);
-            self.dispatch(pipeline, group, Some(brick), stage, slice, false)?;
+            self.dispatch(pipeline, group, Some(brick), stage, slice)?;
             self.gathered = slice.count();
             self.submit(&[])?;
         }
@@ -120,8 +133,10 @@ impl<'a> Run<'a> {
         brick: Option<&BindGroup>,
         stage: Stage,
         groups: Groups,
-        has_look: bool,
     ) -> Result<(), GpuError> {
+        if groups.count() == 0 {
+            return Ok(());
+        }
         // No more than MOST_STAGES of them, so it fits.
         let offset = (self.stages.len() * self.tile.stage_stride) as u32;
         self.stages.push(stage);
@@ -135,7 +150,7 @@ impl<'a> Run<'a> {
         if let Some(brick) = brick {
             pass.set_bind_group(1, brick, &[]);
         }
-        if has_look && brick.is_some() {
+        if brick.is_some() {
             pass.set_bind_group(2, &tile.look, &[]);
             if let Some(sky) = &tile.sky {
                 pass.set_bind_group(3, sky, &[]);

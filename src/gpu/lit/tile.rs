@@ -5,6 +5,7 @@ use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 use super::look::Lit;
 use super::records::{FILM_SLOTS, Look, PATH_SLOTS, Stage};
 use super::renderer::LitRenderer;
+use crate::environment::Environment;
 use crate::film::Film;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::readback::ReadableBuffer;
@@ -16,6 +17,9 @@ use crate::lighting::{Lighting, SkyLight};
 /// How many dispatches one submission has at most.
 pub(super) const MOST_STAGES: usize = 1024;
 
+/// Records of a tile.
+pub(super) const FRAMES: usize = 3;
+
 /// The most pixels of a tile: their state then takes 88 MiB.
 const MOST_PIXELS: u64 = 1 << 19;
 
@@ -23,7 +27,7 @@ const MOST_PIXELS: u64 = 1 << 19;
 #[derive(Debug)]
 pub(super) struct TileBuffers {
     pub(super) size: [u32; 2],
-    /// One record for searching the scene, one for searching what casts shadows.
+    /// Records: of all of a tile; for searching the scene, and for searching what casts shadows, where there is any.
     frames: Buffer,
     frame_stride: usize,
     stages: Buffer,
@@ -35,7 +39,8 @@ pub(super) struct TileBuffers {
     pub(super) status_back: ReadableBuffer,
     pub(super) film_back: ReadableBuffer,
     pub(super) search: [BindGroup; 2],
-    pub(super) shade: BindGroup,
+    /// Of all of a tile, and of where the scene may be seen.
+    pub(super) shade: [BindGroup; 2],
     pub(super) deposit: BindGroup,
     pub(super) look: BindGroup,
     pub(super) sky: Option<BindGroup>,
@@ -54,6 +59,14 @@ pub(super) fn lit_tile_size(limits: &wgpu::Limits, film: &Film) -> [u32; 2] {
     [width as u32, rows.min(film.height().into()) as u32]
 }
 
+/// The image that paths are lit by.
+pub(super) fn sky_image(lighting: &Lighting) -> Option<&Environment> {
+    match (&lighting.sky.light, lighting.studio()) {
+        (SkyLight::Image { environment, .. }, None) => Some(environment),
+        _ => None,
+    }
+}
+
 impl TileBuffers {
     pub(super) fn new(
         device: &Device,
@@ -69,13 +82,10 @@ impl TileBuffers {
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let frame_stride = size_of::<Frame>().next_multiple_of(alignment);
         let stage_stride = size_of::<Stage>().next_multiple_of(alignment);
-        let table_bytes = size_of_val(&lit.tables[..]) as u64;
+        let table_bytes = lit.table_bytes();
         check_storage_size(device, "the paths of a tile", bytes_of(PATH_SLOTS))?;
         check_storage_size(device, "the tables of lights and materials", table_bytes)?;
-        let sky_image = match (&lighting.sky.light, lighting.studio()) {
-            (SkyLight::Image { environment, .. }, None) => Some(environment),
-            _ => None,
-        };
+        let sky_image = sky_image(lighting);
         if let Some(environment) = sky_image {
             let bytes = 16 * environment.texels().len() as u64;
             check_storage_size(device, "the image of the sky", bytes)?;
@@ -91,7 +101,7 @@ impl TileBuffers {
             };
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let uniform = BufferUsages::UNIFORM;
-            let frames = buffer("pinhole frames", 2 * frame_stride as u64, uniform);
+            let frames = buffer("pinhole frames", FRAMES as u64 * frame_stride as u64, uniform);
             let stages = buffer("pinhole stages", (MOST_STAGES * stage_stride) as u64, uniform);
             let hits = buffer("pinhole hits", pixels * size_of::<Hit>() as u64, storage);
             let paths = buffer("pinhole paths", bytes_of(PATH_SLOTS), storage);
@@ -118,12 +128,11 @@ impl TileBuffers {
             let frame = |index: usize| (0, part(&frames, index * frame_stride, size_of::<Frame>()));
             let stage = || (4, part(&stages, 0, size_of::<Stage>()));
             let layouts = &renderer.layouts;
-            let search = [0, 1].map(|index| {
+            let search = [1, 2].map(|index| {
                 let entries =
                     [frame(index), whole(1, &hits), whole(2, &status), whole(3, &paths), stage()];
                 group("pinhole search", &layouts.search, &entries)
             });
-            let shaded = [frame(0), whole(1, &hits), whole(3, &paths), stage()];
             let deposited = [frame(0), whole(3, &paths), stage(), whole(5, &film)];
             let known = [whole(0, &look), whole(1, &tables)];
             let sky = sky_image.map(|environment| {
@@ -146,7 +155,10 @@ impl TileBuffers {
                 status_back: ReadableBuffer::new(device, "pinhole status read-back", status.size()),
                 film_back: ReadableBuffer::new(device, "pinhole film read-back", film.size()),
                 search,
-                shade: group("pinhole shade", &layouts.shade, &shaded),
+                shade: [0, 1].map(|index| {
+                    let entries = [frame(index), whole(1, &hits), whole(3, &paths), stage()];
+                    group("pinhole shade", &layouts.shade, &entries)
+                }),
                 deposit: group("pinhole deposit", &layouts.film, &deposited),
                 look: group("pinhole look", &layouts.look, &known),
                 sky,
@@ -162,7 +174,7 @@ impl TileBuffers {
     }
 
     /// Queues what the next submission's dispatches do, and which workgroups they are.
-    pub(super) fn queue_records(&self, queue: &Queue, frames: &[Frame; 2], stages: &[Stage]) {
+    pub(super) fn queue_records(&self, queue: &Queue, frames: &[Frame; FRAMES], stages: &[Stage]) {
         for (index, frame) in frames.iter().enumerate() {
             let offset = (index * self.frame_stride) as u64;
             queue.write_buffer(&self.frames, offset, bytemuck::bytes_of(frame));

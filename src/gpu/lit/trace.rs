@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use wgpu::ComputePipeline;
+
 use super::look::Lit;
 use super::recording::Moment;
 use super::records::Stage;
@@ -10,6 +12,9 @@ use super::run::Run;
 use crate::gpu::error::GpuError;
 use crate::gpu::tiles::Tile;
 use crate::lighting::{Integrator, Lighting, Studio};
+
+/// How many lights are searched before they are added: each has a bit.
+const BITS: usize = 32;
 
 impl Run<'_> {
     /// Traces some samples of a tile, and reads their sums.
@@ -41,71 +46,100 @@ impl Run<'_> {
         lit: &Lit,
         lighting: &Lighting,
     ) -> Result<(), GpuError> {
-        let stage = Stage { sample, surface: 0, light: 0, is_last: 0 };
-        let (renderer, tile) = (self.renderer, self.tile);
+        let stage = Stage { sample, surface: 0, is_last: 0, light: 0, count: 0 };
+        let renderer = self.renderer;
         let surface = &self.scene.bricks()[0].surface_group;
-        self.shade(&renderer.start, &tile.shade, Some(surface), stage)?;
+        self.shade(&renderer.start, true, surface, stage)?;
         self.keep(Moment::Started)?;
         match &lighting.integrator {
             Integrator::Studio(studio) => self.studio(stage, lit, studio)?,
             Integrator::Path(path) => self.path(stage, lit, path.max_depth)?,
         }
-        self.shade(&renderer.deposit, &tile.deposit, None, stage)?;
+        self.deposit(stage)?;
         self.keep(Moment::Deposited)
     }
 
     fn studio(&mut self, stage: Stage, lit: &Lit, studio: &Studio) -> Result<(), GpuError> {
-        let Shaders::Studio { surface, illuminate, ambient } = &self.renderer.shade else {
+        let Shaders::Studio { surface, shadow, illuminate, ambient, gather } = &self.renderer.shade
+        else {
             return Err(GpuError::OtherRenderer);
         };
-        let (tile, scene) = (self.tile, self.scene);
+        let scene = self.scene;
         let surfaces = if lit.is_opaque { 1 } else { studio.max_surfaces };
+        let lights = lit.casts_shadow.len() as u32;
         let directions = studio.occlusion.map_or(0, |occlusion| occlusion.samples);
-        let first = &scene.bricks()[0].surface_group;
         for number in 0..surfaces {
             let is_last = u32::from(number + 1 == surfaces);
             let stage = Stage { surface: number, is_last, ..stage };
             if !self.extend(stage)? {
                 break;
             }
-            for brick in scene.bricks() {
-                self.shade(surface, &tile.shade, Some(&brick.surface_group), stage)?;
-            }
-            for (light, casts) in (0..).zip(&lit.casts_shadow) {
-                let stage = Stage { light, ..stage };
-                self.shade(illuminate, &tile.shade, Some(first), stage)?;
-                if *casts && studio.has_shadows {
-                    self.occlude(stage)?;
+            self.shade_bricks(surface, stage)?;
+            for light in (0..lights).step_by(BITS) {
+                let count = (lights - light).min(BITS as u32);
+                for light in
+                    (light..light + count).filter(|light| lit.casts_shadow[*light as usize])
+                {
+                    if studio.has_shadows {
+                        self.search_occluders(shadow, Stage { light, ..stage })?;
+                    }
                 }
+                let first = &scene.bricks()[0].surface_group;
+                let stage = Stage { light, count, ..stage };
+                self.shade(illuminate, false, first, stage)?;
             }
-            for direction in 0..directions {
-                let stage = Stage { light: lit.casts_shadow.len() as u32 + direction, ..stage };
-                self.shade(ambient, &tile.shade, Some(first), stage)?;
-                self.occlude(stage)?;
+            for light in (0..directions).step_by(BITS) {
+                let count = (directions - light).min(BITS as u32);
+                for light in light..light + count {
+                    self.search_occluders(ambient, Stage { light, ..stage })?;
+                }
+                let first = &scene.bricks()[0].surface_group;
+                let stage = Stage { light, count, ..stage };
+                self.shade(gather, false, first, stage)?;
             }
         }
         Ok(())
     }
 
     fn path(&mut self, stage: Stage, lit: &Lit, max_depth: u32) -> Result<(), GpuError> {
-        let Shaders::Path { scatter } = &self.renderer.shade else {
+        let Shaders::Path { scatter, occlude } = &self.renderer.shade else {
             return Err(GpuError::OtherRenderer);
         };
-        let (tile, scene) = (self.tile, self.scene);
         for surface in 0..=max_depth {
             let stage = Stage { surface, is_last: u32::from(surface == max_depth), ..stage };
             if !self.extend(stage)? {
                 break;
             }
             self.keep(Moment::Traced)?;
-            for brick in scene.bricks() {
-                self.shade(scatter, &tile.shade, Some(&brick.surface_group), stage)?;
-            }
+            self.shade_bricks(scatter, stage)?;
             self.keep(Moment::Scattered)?;
             if lit.look.source_count > 0 && surface < max_depth {
-                self.occlude(stage)?;
+                self.search_occluders(occlude, stage)?;
                 self.keep(Moment::Occluded)?;
             }
+        }
+        Ok(())
+    }
+
+    /// A dispatch for every brick: each shades what it holds.
+    fn shade_bricks(&mut self, pipeline: &ComputePipeline, stage: Stage) -> Result<(), GpuError> {
+        let scene = self.scene;
+        for brick in scene.bricks() {
+            // What the camera sees beside the scene is background.
+            self.shade(pipeline, stage.surface == 0, &brick.surface_group, stage)?;
+        }
+        Ok(())
+    }
+
+    /// A dispatch for every brick of what casts shadows.
+    fn search_occluders(
+        &mut self,
+        pipeline: &ComputePipeline,
+        stage: Stage,
+    ) -> Result<(), GpuError> {
+        let (tile, occluders) = (self.tile, self.occluders);
+        for brick in occluders.bricks() {
+            self.search(pipeline, &tile.search[1], &brick.trace_group, stage)?;
         }
         Ok(())
     }
@@ -123,13 +157,5 @@ impl Run<'_> {
         }
         // The camera's rays are worth tracing without asking.
         Ok(stage.surface == 0 || self.is_alive()?)
-    }
-
-    fn occlude(&mut self, stage: Stage) -> Result<(), GpuError> {
-        let (renderer, tile) = (self.renderer, self.tile);
-        for brick in self.occluders.bricks() {
-            self.search(&renderer.occlude, &tile.search[1], &brick.trace_group, stage)?;
-        }
-        Ok(())
     }
 }

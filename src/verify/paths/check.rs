@@ -163,13 +163,15 @@ impl PathCheck<'_> {
         let mut state = recorded.start[index];
         let PathCertificate { violations, start, extend, scatter, occlude, settle, .. } = part;
         note(start, violations, address, self.start(address, &state));
+        let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
             let mut after = stage.scattered[index];
             if state.has(flag::ALIVE) {
                 let hit = Hit::new(stage.hits[index]);
-                note(extend, violations, address, self.extend(&state, hit, legal));
+                note(extend, violations, address, self.extend(&state, last, hit, legal));
                 note(scatter, violations, address, self.scatter(address, &state, hit, &after));
+                last = Some(hit);
             } else {
                 // An ended path stays as it is.
                 let mut expected = Expected::default();
@@ -184,7 +186,7 @@ impl PathCheck<'_> {
             let open = f32::from_bits(stage.open[index]);
             let is_searched = surface < self.recording.max_depth
                 && self.recording.look.source_count > 0
-                && after.number(slot::PENDING) > 0.0;
+                && after.number(slot::SHADOW) > 0.0;
             if is_searched {
                 note(occlude, violations, address, self.occlude(&after, open));
             } else if stage.open[index] != after.bits(slot::PENDING) {
@@ -192,7 +194,11 @@ impl PathCheck<'_> {
                 let fail = Expected::default().fail(PathStage::Occlude, "the light's way", words);
                 note(occlude, violations, address, Err(fail));
             }
-            after.slots[slot::PENDING][3] = stage.open[index];
+            if stage.open[index] != after.bits(slot::PENDING) {
+                // What is hidden need not be searched again.
+                after.slots[slot::PENDING][3] = stage.open[index];
+                after.slots[slot::SHADOW][3] = 0;
+            }
             state = after;
         }
         if state.has(flag::ALIVE) {
@@ -215,12 +221,14 @@ impl PathCheck<'_> {
     fn extend(
         &self,
         state: &PathState,
+        last: Option<Hit>,
         hit: Hit,
         legal: &mut LegalHits,
     ) -> Result<Verdict, Mismatch> {
         let mut expected = Expected::default();
         let candidates = &self.checker.candidates;
-        search::check_hit(&self.model, candidates, state, hit, &mut expected, legal).map(simple)
+        search::check_hit(&self.model, candidates, state, last, hit, &mut expected, legal)
+            .map(simple)
     }
 
     fn scatter(

@@ -6,7 +6,6 @@ use super::expected::{Expected, Mismatch};
 use super::recording::{PathRecording, PathState, UploadedLook, flag, slot};
 use super::vertex::Vertex;
 use super::warp::Axes;
-use crate::image::NO_ID;
 use crate::sampling::{pair, pixel_seed};
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
@@ -66,8 +65,6 @@ const DIRECTION: Name = (PathStage::Scatter, "where the path goes");
 const DENSITY: Name = (PathStage::Scatter, "the density of going there");
 const FLAGS: Name = (PathStage::Scatter, "the path's flags");
 const LEFT: Name = (PathStage::Vertex, "the sphere that the path leaves");
-const ID: Name = (PathStage::Vertex, "the id of the sphere that the path leaves");
-const PLACE: Name = (PathStage::Vertex, "the place of the sphere that the path leaves");
 const THROUGHPUT: Name = (PathStage::Scatter, "what the path carries");
 const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
 const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
@@ -102,58 +99,51 @@ impl<'a> Kernel<'a> {
     /// Follows the kernel, and compares what it wrote.
     pub(super) fn follow(&mut self) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
-        let radiance = self.settled();
+        let settled = self.settled();
         let alpha = before.number(slot::RADIANCE);
-        let mut through = Vector::had(before.vector(slot::THROUGHPUT));
-        if !self.has_hit() {
-            let light = self.light_from_afar();
-            return self.end(radiance + through.times(light), alpha);
-        }
+        let through = Vector::had(before.vector(slot::THROUGHPUT));
         let Some(vertex) = self.vertex()? else {
             let light = self.light_from_afar();
-            return self.end(radiance + through.times(light), alpha);
+            return self.end(settled + through.times(light), alpha);
         };
         let medium = Vector::had(before.vector(slot::MEDIUM));
-        through = through.times(medium.map(|m| (-m * vertex.distance).exp()));
-        let is_seen = !before.has(flag::SCATTERED);
-        if vertex.is_passed {
-            self.same(&[slot::DIRECTION, slot::MEDIUM, slot::SHADOW, slot::TARGET, slot::FIRST])?;
-            self.compare_light(Vector::ZERO, Number::ZERO)?;
-            self.compare_radiance(radiance, Number::had(alpha))?;
-            let scattered = before.flags() & flag::SCATTERED;
-            self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), through)?;
-            return self.go_on(&vertex, true, flag::FULL | scattered | flag::ALIVE);
-        }
-        let first = if is_seen && alpha == 0.0 {
-            Vector::had(vertex.color).map(|c| c.min(Number::ONE))
+        let arriving = if self.is_matt {
+            through
         } else {
-            Vector::had(before.vector(slot::FIRST))
+            through.times(medium.map(|m| (-m * vertex.distance).exp()))
         };
-        self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
-        let distance = before.bits(slot::FIRST);
-        self.expected.bits(FIRST, after.bits(slot::FIRST), distance)?;
+        let [x, y, z, radius] = vertex.sphere;
+        self.expected.vector(LEFT, after.vector(slot::LEFT), Vector::had([x, y, z]))?;
+        self.expected.number(LEFT, after.number(slot::LEFT), Number::had(radius))?;
+        if vertex.is_passed {
+            return self.pass(&vertex, settled, arriving);
+        }
+        let is_seen = !before.has(flag::SCATTERED);
+        if is_seen && before.number(slot::FIRST) >= 0.0 {
+            let first = Vector::had(vertex.color).map(|c| c.min(Number::ONE));
+            self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
+            self.expected.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
+        } else {
+            self.same(&[slot::FIRST])?;
+        }
         let material = self.material_of(&vertex);
         if material.is_emissive() {
             let density = self.known_density(self.hit.id, before.vector(slot::ORIGIN));
             let weight = self.chance_weight(density);
             let light = Vector::had(vertex.color) * material.parameter * weight;
-            return self.end_but_first(radiance + through.times(light), 1.0);
+            self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
+            return self.stop();
         }
         let axes = self.axes_around(vertex.normal);
-        let back = -Vector::had(before.vector(slot::DIRECTION));
-        let out = axes.to_local(back);
+        let out = axes.to_local(-Vector::had(before.vector(slot::DIRECTION)));
         let at = Surface { vertex, material, axes, out };
-        let radiance = radiance + through.times(self.head_light(&at, is_seen));
+        let light = self.head_light(&at, is_seen);
+        self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
         if self.is_last() {
-            return self.end_but_first(radiance, 1.0);
+            return self.stop();
         }
-        self.compare_radiance(radiance, Number::ONE)?;
-        self.look_for_light(&at, through)?;
-        self.bounce(&at, through)
-    }
-
-    fn has_hit(&self) -> bool {
-        self.hit.id != NO_ID || self.look().flags & flag::GROUND != 0
+        self.look_for_light(&at, arriving)?;
+        self.bounce(&at, arriving)
     }
 
     /// The radiance so far, and the light that was looked for last if nothing is in between.
@@ -180,40 +170,51 @@ impl<'a> Kernel<'a> {
         self.expected.number(LIGHT, after.number(slot::PENDING), open)
     }
 
-    /// The path ends.
-    fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
-        self.same(&[slot::FIRST])?;
-        self.end_but_first(radiance, alpha)
+    /// No light is looked for; in which direction there was none, does not matter.
+    fn compare_no_light(&mut self) -> Result<(), Mismatch> {
+        let after = self.after;
+        self.expected.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
+        self.compare_light(Vector::ZERO, Number::ZERO)
     }
 
-    fn end_but_first(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
+    /// The path ends behind everything.
+    fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
         let after = self.after;
         self.compare_radiance(radiance, Number::had(alpha))?;
         self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
         self.expected.bits(FLAGS, after.flags(), 0)?;
-        self.compare_light(Vector::ZERO, Number::ZERO)?;
-        let kept = [slot::DIRECTION, slot::LEFT, slot::THROUGHPUT, slot::SHADOW];
-        self.same(&kept)?;
-        self.same(&[slot::MEDIUM, slot::SURFACE, slot::TARGET])
+        self.compare_no_light()?;
+        self.same(&[slot::DIRECTION, slot::LEFT, slot::THROUGHPUT, slot::FIRST])?;
+        self.same(&[slot::TARGET, slot::MEDIUM])
     }
 
-    /// The path goes on, on one side of a point; where that is, has been compared.
-    pub(super) fn go_on(
-        &mut self,
-        at: &Vertex,
-        is_behind: bool,
-        flags: u32,
-    ) -> Result<(), Mismatch> {
-        let after = self.after;
+    /// The path ends on a surface. Where it would have gone, does not matter.
+    fn stop(&mut self) -> Result<(), Mismatch> {
+        self.expected.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
+        self.compare_no_light()
+    }
+
+    /// The path goes through a surface as if there were nothing.
+    fn pass(&mut self, at: &Vertex, settled: Vector, arriving: Vector) -> Result<(), Mismatch> {
+        let (before, after) = (self.before, self.after);
+        self.compare_radiance(settled, Number::had(before.number(slot::RADIANCE)))?;
+        self.same(&[slot::FIRST, slot::MEDIUM])?;
+        self.compare_no_light()?;
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
+        self.expected.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
+        self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
+        let alive = if self.is_last() { 0 } else { flag::ALIVE };
+        let scattered = before.flags() & flag::SCATTERED;
+        self.compare_flags(at, true, flag::FULL | scattered | alive)
+    }
+
+    /// Flags, and on which side of a surface the path goes on.
+    fn compare_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
         let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
-        self.expected.bits(FLAGS, after.flags(), side | ground | flags)?;
-        let [x, y, z, radius] = at.sphere;
-        self.expected.vector(LEFT, after.vector(slot::LEFT), Vector::had([x, y, z]))?;
-        self.expected.number(LEFT, after.number(slot::LEFT), Number::had(radius))?;
-        self.expected.bits(PLACE, after.bits(slot::THROUGHPUT), self.hit.place)?;
-        self.expected.bits(ID, after.bits(slot::SURFACE), self.hit.id)
+        self.expected.bits(FLAGS, self.after.flags(), side | ground | flags)
     }
 
     /// Where a surface scatters the path.
@@ -239,7 +240,7 @@ impl<'a> Kernel<'a> {
 
         let is_glass = at.material.is_dielectric();
         let medium = if is_glass && is_behind {
-            if is_behind == at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
+            if at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
         } else {
             Vector::had(self.before.vector(slot::MEDIUM))
         };
@@ -250,7 +251,7 @@ impl<'a> Kernel<'a> {
             || !self.choices.decide(draw.is_less(survival));
         let full = if is_glass { flag::FULL } else { 0 };
         let alive = if is_dead { 0 } else { flag::ALIVE };
-        self.go_on(&at.vertex, is_behind, flag::SCATTERED | full | alive)
+        self.compare_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
     }
 }
 

@@ -59,8 +59,7 @@ impl Kernel<'_> {
     pub(super) fn look_for_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (look, after) = (self.look(), self.after);
         if look.source_count == 0 {
-            self.same(&[slot::SHADOW, slot::TARGET])?;
-            return self.compare_light(Vector::ZERO, Number::ZERO);
+            return self.same(&[slot::SHADOW, slot::PENDING, slot::TARGET]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
         let place = unit(which) * Number::known(look.source_count.into());
@@ -88,14 +87,12 @@ impl Kernel<'_> {
             let all = (found.density + r.density).max(Number::constant(1e-30));
             light = light * (found.density / all);
         }
-        self.expected.vector(
-            (PathStage::Light, "the pending light"),
-            after.vector(slot::PENDING),
-            light,
-        )?;
         let is_open = self.is_open(at, &found, light);
-        let open = if is_open { Number::ONE } else { Number::ZERO };
-        let distance = if is_open { found.distance } else { Number::ZERO };
+        let (light, open, distance) = if is_open {
+            (light, Number::ONE, found.distance)
+        } else {
+            (Vector::ZERO, Number::ZERO, Number::ZERO)
+        };
         self.expected.number(DISTANCE, after.number(slot::SHADOW), distance)?;
         self.compare_light(light, open)
     }

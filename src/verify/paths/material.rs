@@ -12,7 +12,7 @@ const DIELECTRIC: u32 = 2;
 const EMISSIVE: u32 = 3;
 
 /// How many numbers a table of an energy has.
-pub(super) const ENERGIES: u32 = 128;
+pub(super) const ENERGIES: u32 = 256;
 
 /// A material as kernels have it.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ impl Material {
     }
 }
 
-/// A floating number in the place of an entry of a table.
+/// The last place of a table of energies.
 const LAST: f64 = (ENERGIES - 1) as f64;
 
 impl Kernel<'_> {
@@ -64,7 +64,7 @@ impl Kernel<'_> {
     /// What a lobe keeps of the light that it gets at a cosine. From one entry to the next nothing jumps, so that
     /// all entries that may be meant are taken together.
     pub(super) fn energy(&self, first: u32, cosine: Number) -> Number {
-        let along = cosine.clamp(0.0, 1.0).sqrt() * Number::known(LAST);
+        let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
         let Interval { low, high } = along.interval();
         let place = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
         let entry = |at: u32| {

@@ -66,7 +66,10 @@ pub struct PathState {
 
 impl PathState {
     /// How many slots there are.
-    pub const SLOTS: usize = 11;
+    pub const SLOTS: usize = 10;
+
+    /// The slot of the light that is looked for, whose last number says whether nothing is in between.
+    pub const PENDING: usize = 7;
 
     pub(super) fn vector(&self, slot: usize) -> [f32; 3] {
         let [x, y, z, _] = self.slots[slot];
@@ -97,12 +100,11 @@ pub(super) mod slot {
     pub(in crate::verify) const LEFT: usize = 2;
     pub(in crate::verify) const THROUGHPUT: usize = 3;
     pub(in crate::verify) const RADIANCE: usize = 4;
-    pub(in crate::verify) const SHADOW: usize = 5;
-    pub(in crate::verify) const PENDING: usize = 6;
-    pub(in crate::verify) const MEDIUM: usize = 7;
-    pub(in crate::verify) const SURFACE: usize = 8;
-    pub(in crate::verify) const TARGET: usize = 9;
-    pub(in crate::verify) const FIRST: usize = 10;
+    pub(in crate::verify) const FIRST: usize = 5;
+    pub(in crate::verify) const SHADOW: usize = 6;
+    pub(in crate::verify) const PENDING: usize = super::PathState::PENDING;
+    pub(in crate::verify) const TARGET: usize = 8;
+    pub(in crate::verify) const MEDIUM: usize = 9;
 }
 
 /// Flags of a path, and of a look.

@@ -56,7 +56,7 @@ pub(super) fn check(
     slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
     let [x, y, z, _] = found.slots[slot::DIRECTION];
     slots[slot::DIRECTION] = [x, y, z, 0];
-    slots[slot::THROUGHPUT] = [one, one, one, 0];
+    slots[slot::THROUGHPUT] = [one; 4];
     let [r, g, b] = radiance.map(f32::to_bits);
     slots[slot::RADIANCE] = [r, g, b, 0];
     slots[slot::SHADOW] = [0, 0, one, 0];

@@ -7,7 +7,6 @@ use super::expected::Mismatch;
 use super::kernel::Kernel;
 use super::recording::{flag, slot};
 use crate::image::NO_ID;
-use crate::material::Material;
 use crate::math::wide;
 use crate::verify::line::Line;
 use crate::verify::number::{Number, Vector};
@@ -46,8 +45,6 @@ struct Paint {
     color: [f32; 3],
     place: u32,
     is_passed: bool,
-    /// Whether the path's state tells where it is.
-    is_kept: bool,
 }
 
 const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was met");
@@ -105,18 +102,13 @@ impl Kernel<'_> {
         self.choices.decide((-behind).is_less(t)).then_some(t)
     }
 
-    fn paint(&self, color: [f32; 3], place: u32, opacity: f32, is_emissive: bool) -> Paint {
+    fn paint(&self, color: [f32; 3], place: u32, opacity: f32) -> Paint {
         let [_, pass] = self.pair(3).map(crate::sampling::unit);
-        let is_passed = pass >= f64::from(opacity);
-        let is_kept = is_passed || !(is_emissive || self.is_last());
-        Paint { color, place, is_passed, is_kept }
+        Paint { color, place, is_passed: pass >= f64::from(opacity) }
     }
 
-    /// The point, which is compared, and then known exactly, if the path goes on from there.
-    fn compared(&mut self, position: Vector, paint: &Paint, size: f64) -> Result<Vector, Mismatch> {
-        if !paint.is_kept {
-            return Ok(position);
-        }
+    /// The point, which is compared, and then known exactly.
+    fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         let found = self.after.vector(slot::ORIGIN);
         self.expected.vector_of(POSITION, found, position, size)?;
         Ok(Vector::had(found))
@@ -129,14 +121,14 @@ impl Kernel<'_> {
         distance: Number,
     ) -> Result<Vertex, Mismatch> {
         let look = self.look();
-        let paint = self.paint(look.ground_color, 0, 1.0, false);
+        let paint = self.paint(look.ground_color, 0, 1.0);
         let normal = Vector::had(look.ground_normal);
         let on_ray = origin + direction * distance;
         let above = (on_ray - Vector::had(look.ground_point)).dot(normal);
         let position = (on_ray - normal * above).fence();
         let size = distance.interval().high;
-        let position = self.compared(position, &paint, size)?;
-        let Paint { color, place, is_passed, .. } = paint;
+        let position = self.compared(position, size)?;
+        let Paint { color, place, is_passed } = paint;
         let sphere = [0.0; 4];
         Ok(Vertex { position, normal, is_back: false, distance, sphere, color, place, is_passed })
     }
@@ -151,8 +143,7 @@ impl Kernel<'_> {
         let palette = self.scene.color_indices().map_or(0, |indices| indices[hit.id as usize]);
         let finish = self.scene.finishes()[palette as usize];
         let color = self.scene.palette()[palette as usize].to_array();
-        let is_emissive = matches!(finish.material, Material::Emissive { .. });
-        let paint = self.paint(color, palette + 1, finish.opacity, is_emissive);
+        let paint = self.paint(color, palette + 1, finish.opacity);
 
         let entered = Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Entered { line, origin, slack } = &entered;
@@ -163,7 +154,8 @@ impl Kernel<'_> {
         let center = Vector::had([x, y, z]);
         let direction = Vector::had(before.vector(slot::DIRECTION));
         let middle = (center - *origin).dot(direction);
-        let is_far_wall = before.has(flag::INSIDE) && hit.id == before.bits(slot::SURFACE);
+        let is_far_wall =
+            before.has(flag::INSIDE) && sphere == before.slots[slot::LEFT].map(f32::from_bits);
         let (half, exact) = if is_far_wall {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)
@@ -184,8 +176,8 @@ impl Kernel<'_> {
         } else {
             center + outward * r
         };
-        let position = self.compared(position.fence(), &paint, radius.into())?;
-        if paint.is_kept && !is_on_ray {
+        let position = self.compared(position.fence(), radius.into())?;
+        if !is_on_ray {
             // The point is that of the normal.
             let error = |c: Number| {
                 let Interval { low, high } = c.interval();
@@ -201,7 +193,7 @@ impl Kernel<'_> {
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
         let normal = if is_back { -outward } else { outward };
-        let Paint { color, place, is_passed, .. } = paint;
+        let Paint { color, place, is_passed } = paint;
         let sphere = [x, y, z, radius];
         Ok(Vertex { position, normal, is_back, distance, sphere, color, place, is_passed })
     }

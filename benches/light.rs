@@ -1,0 +1,147 @@
+//! What light costs beside finding the first sphere: rays of ambient light, shadows and diffuse bounces, by turns.
+//!
+//! ```sh
+//! cargo bench --bench light              # R1M and C200k
+//! cargo bench --bench light -- R1M
+//! ```
+//! Times of one kind of ray are differences of pictures that differ in nothing else, over the number of such rays.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use pinhole::accel::AccelChoice;
+use pinhole::generate::Standard;
+use pinhole::gpu::{Headless, HeadlessOptions, LitDecision, LitPicture, LitScene, Query};
+use pinhole::lighting::{
+    Integrator, Light, LightSampling, Occlusion, PathTracing, Sampling, Sky, SkyLight, Studio,
+};
+use pinhole::{Film, LayerSet, Lighting, LinearRgb, PixelFilter, Scene, Settings};
+
+/// How often everything is measured; the best counts.
+const TURNS: usize = 5;
+
+fn main() {
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let info = headless.adapter_info();
+    println!("{} ({:?}), {} {}\n", info.name, info.backend, info.driver, info.driver_info);
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    for standard in [Standard::R1M, Standard::C200k, Standard::L1M, Standard::R10M] {
+        let is_named = wanted.iter().any(|name| name == standard.name());
+        let by_default = [Standard::R1M, Standard::C200k].contains(&standard);
+        if is_named || (wanted.is_empty() && by_default) {
+            measure(&headless, standard);
+        }
+    }
+}
+
+struct Subject<'a> {
+    headless: &'a Headless,
+    scene: Scene,
+    lit: LitScene,
+    camera: pinhole::camera::PinholeCamera,
+    film: Film,
+}
+
+impl Subject<'_> {
+    fn picture(&self, lighting: &Lighting) -> (f64, LitPicture) {
+        let started = Instant::now();
+        let view = (&self.camera as &dyn pinhole::camera::Camera, &self.film);
+        let go_on = &mut |_: &_| LitDecision::GoOn;
+        let picture = self
+            .headless
+            .render_lit_uploaded(&self.scene, &self.lit, view, lighting, LayerSet::COLOR, go_on)
+            .unwrap();
+        (started.elapsed().as_secs_f64(), picture)
+    }
+}
+
+fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Lighting {
+    let studio = Studio { occlusion, ..Studio::default() };
+    let mut lighting = Lighting::default();
+    lighting.integrator = Integrator::Studio(studio);
+    lighting.lights = lights;
+    lighting.sampling = Sampling { samples, seed: 0, filter: PixelFilter::Box };
+    lighting
+}
+
+/// Grey spheres under a white sky, without direct light: one ray a bounce.
+fn path(samples: u32, max_depth: u32) -> Lighting {
+    let light_sampling = LightSampling::Chance;
+    let mut lighting = studio(samples, None, Vec::new());
+    lighting.integrator =
+        Integrator::Path(PathTracing { max_depth, roulette_from: 64, light_sampling });
+    lighting.sky = Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true };
+    lighting
+}
+
+fn measure(headless: &Headless, standard: Standard) {
+    let grey = LinearRgb::from_srgb8([128, 128, 128]);
+    let scene = Scene::from_f32(standard.spheres().unwrap(), grey).unwrap();
+    let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
+    let accel = headless.plan(&scene, AccelChoice::Auto).build(scene.spheres());
+    let uploaded = headless.upload(&scene, &accel).unwrap();
+    let lit = headless.upload_lit(&scene, &accel).unwrap();
+    let subject = Subject { headless, scene, lit, camera, film };
+    const RAYS: u32 = 4;
+    let near = Occlusion { radius: Some(0.02), samples: RAYS };
+    let far = Occlusion { radius: None, samples: RAYS };
+    let lights = Light::key_and_fill().to_vec();
+    let pictures = [
+        ("no light", studio(2, None, Vec::new())),
+        ("ambient light, near", studio(2, Some(near), Vec::new())),
+        ("ambient light, far", studio(2, Some(far), Vec::new())),
+        ("two shadows", studio(2, None, lights.clone())),
+        ("path, 1 bounce", path(2, 1)),
+        ("path, 2 bounces", path(2, 2)),
+        ("path, 3 bounces", path(2, 3)),
+        (
+            "studio: two shadows, 16 ambient rays",
+            studio(1, Some(Occlusion { radius: None, samples: 16 }), lights),
+        ),
+    ];
+    let mut best = vec![f64::INFINITY; pictures.len()];
+    let mut hits = vec![0.0; pictures.len()];
+    let (mut bare, mut headlight) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..TURNS {
+        let time = headless.measure(&uploaded, &subject.camera, &film, Query::Nearest).unwrap();
+        bare = bare.min(time.wall.as_secs_f64());
+        let started = Instant::now();
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let settings = Settings::default();
+        headless
+            .render_uploaded(&uploaded, &subject.camera, &film, &settings, LayerSet::COLOR, go_on)
+            .unwrap();
+        headlight = headlight.min(started.elapsed().as_secs_f64());
+        for (index, (_, lighting)) in pictures.iter().enumerate() {
+            let (seconds, picture) = subject.picture(lighting);
+            best[index] = best[index].min(seconds);
+            hits[index] = picture.hits / f64::from(picture.samples);
+        }
+    }
+    let pixels = film.pixel_count() as f64;
+    let primary = bare / pixels;
+    println!(
+        "{}: {:.1} % of the camera's rays meet a sphere",
+        standard.name(),
+        100.0 * hits[0] / pixels
+    );
+    println!("  a primary ray, bare            {:8.1} ns", 1e9 * primary);
+    println!(
+        "  a picture with a headlight     {:8.1} ms against {:.1} ms bare",
+        1e3 * headlight,
+        1e3 * bare
+    );
+    let report = |what: &str, seconds: f64, rays: f64| {
+        let ray = seconds / rays;
+        println!("  {what:30} {:8.1} ns, {:.2} of a primary ray", 1e9 * ray, ray / primary);
+    };
+    report("a lit sample's primary ray", best[0] / 2.0, pixels);
+    report("an ambient ray, near", best[1] - best[0], 2.0 * hits[0] * f64::from(RAYS));
+    report("an ambient ray, far", best[2] - best[0], 2.0 * hits[0] * f64::from(RAYS));
+    report("a shadow ray", best[3] - best[0], 2.0 * hits[0] * 2.0);
+    report("a second bounce's ray", best[5] - best[4], 2.0 * hits[0]);
+    report("a third bounce's ray", best[6] - best[5], 2.0 * hits[0]);
+    let rays = pixels + hits[0] * 18.0;
+    println!("  {}: {:.2} s, {:.1} million rays\n", pictures[7].0, best[7], rays / 1e6);
+}

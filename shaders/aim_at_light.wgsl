@@ -1,3 +1,0 @@
-// In a studio, lights are no spheres.
-
-fn aim(index: u32) {}

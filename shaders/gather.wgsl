@@ -1,0 +1,22 @@
+// In a studio: ambient light from some directions, of which each has a bit that says whether something is near.
+// Twin: src/cpu/lit/studio.rs.
+
+@compute @workgroup_size(64)
+fn gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    zero_bits = frame.zero;
+    let pixel = pixel_in_tile(group.xy, lane);
+    let index = hit_index(pixel);
+    let start = load_start(index);
+    if (any(pixel >= frame.tile_size) || !has(start.flags, PATH_LIT)) {
+        return;
+    }
+    let hidden = f32(countOneBits(paths[slot(index, NORMAL)].w));
+    let share = 1.0 / f32(look.occlusion_samples);
+    let paint = load(index, PAINT);
+    let is_caught = paint.w > 0.0;
+    let total = light_to_catch(is_caught, start.position);
+    let open = vec4f(paint.rgb * look.ambient * (share * (f32(stage.count) - hidden)), 0.0);
+    let shade = caught(share * hidden * luminance(look.ambient) / total, paint.w);
+    store(index, RADIANCE, load(index, RADIANCE) + select(open, shade, is_caught));
+    paths[slot(index, NORMAL)].w = 0u;
+}

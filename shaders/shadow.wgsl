@@ -1,0 +1,19 @@
+// In a studio: whether one light is hidden from the surface that every pixel sees. One dispatch per brick. Twin:
+// src/cpu/lit/studio.rs.
+
+@compute @workgroup_size(64)
+fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    zero_bits = frame.zero;
+    let pixel = pixel_in_tile(group.xy, lane);
+    if (any(pixel >= frame.tile_size)) {
+        return;
+    }
+    let index = hit_index(pixel);
+    let start = load_start(index);
+    let address = pixel_seed(frame.tile_origin + pixel, look.seed);
+    let u = sample_pair(address, stage.sample, 2u + 4096u * stage.surface + stage.light);
+    let lamp = sample_lamp(stage.light, start.position, u);
+    // What is behind the surface needs no search, and is no shadow.
+    let is_before = dot(load(index, NORMAL).xyz, lamp.direction) > 0.0;
+    look_for(index, start, lamp.direction, select(0.0, lamp.distance, is_before), stage.light);
+}

@@ -1,0 +1,125 @@
+//! What surfaces do with light. Directions are in a frame with the normal on the viewer's side as z.
+
+use glam::DVec3;
+
+use super::flight::{Meeting, Surface};
+use super::stage::Stage;
+use crate::lighting::energy::{self, ENTRIES};
+use crate::material::Material;
+use conductor::Conductor;
+use dielectric::Dielectric;
+use ggx::Ggx;
+use lambert::Lambert;
+
+mod conductor;
+mod dielectric;
+mod ggx;
+mod lambert;
+
+/// Flatter views count as if they were no flatter.
+const MIN_COSINE: f64 = 1e-6;
+
+/// A surface that scatters light, at a point, seen from a direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bsdf {
+    out: DVec3,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Lambert(Lambert),
+    Conductor(Conductor),
+    Dielectric(Dielectric),
+}
+
+/// What of the light from a direction goes to the viewer, per cosine, and how densely the direction is sampled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Response {
+    pub(super) value: DVec3,
+    pub(super) density: f64,
+}
+
+/// A direction that was chosen by chance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scattered {
+    /// On the other side if its z is negative.
+    pub(super) direction: DVec3,
+    pub(super) weight: DVec3,
+    /// Per steradian; `None` if light must not be sought in directions of choice.
+    pub(super) density: Option<f64>,
+}
+
+impl Bsdf {
+    /// The surface that was met, seen from the local direction `out`. An emissive sphere scatters nothing and has
+    /// none.
+    pub(super) fn of(stage: &Stage<'_>, meeting: &Meeting, out: DVec3) -> Option<Self> {
+        // Tilted no further than it takes to divide by its cosine.
+        let out = DVec3::new(out.x, out.y, out.z.max(MIN_COSINE));
+        let color = stage.color(meeting.surface);
+        let Surface::Sphere(id) = meeting.surface else {
+            return Some(Self { out, kind: Kind::Lambert(Lambert { color, lobe: None }) });
+        };
+        let energy = |table: usize| energy::lookup(stage.energy(id, table), out.z);
+        let kind = match stage.scene.finish(id).material {
+            Material::Lambert { specular, roughness } => {
+                let lobe = (specular > 0.0)
+                    .then(|| (Ggx::of_roughness(roughness), f64::from(specular), energy(0)));
+                Kind::Lambert(Lambert { color, lobe })
+            }
+            Material::Conductor { roughness } => {
+                let ggx = Ggx::of_roughness(roughness);
+                Kind::Conductor(Conductor { color, ggx, energy: energy(0) })
+            }
+            Material::Dielectric { ior, roughness, .. } => {
+                let ior = f64::from(ior);
+                let eta = if meeting.is_outside { ior } else { 1.0 / ior };
+                let rough = (roughness > 0.0).then(|| {
+                    let table = if meeting.is_outside { 0 } else { ENTRIES };
+                    (Ggx::of_roughness(roughness), energy(table))
+                });
+                Kind::Dielectric(Dielectric { eta, rough })
+            }
+            Material::Emissive { .. } => return None,
+        };
+        Some(Self { out, kind })
+    }
+
+    /// As a studio shades it: matt, with its lobe if it is Lambert's.
+    pub(super) fn in_studio(stage: &Stage<'_>, meeting: &Meeting, out: DVec3) -> Option<Self> {
+        let bsdf = Self::of(stage, meeting, out)?;
+        Some(match bsdf.kind {
+            Kind::Lambert(_) => bsdf,
+            _ => {
+                let color = stage.color(meeting.surface);
+                Self { kind: Kind::Lambert(Lambert { color, lobe: None }), ..bsdf }
+            }
+        })
+    }
+
+    /// The response to light from a direction, if light is sought there: glass waits for what chance brings.
+    pub(super) fn response(&self, into: DVec3) -> Option<Response> {
+        if into.z <= 0.0 {
+            return None;
+        }
+        match &self.kind {
+            Kind::Lambert(lambert) => Some(lambert.response(self.out, into)),
+            Kind::Conductor(conductor) => Some(conductor.response(self.out, into)),
+            Kind::Dielectric(_) => None,
+        }
+    }
+
+    /// Whether light is sought.
+    pub(super) fn seeks_light(&self) -> bool {
+        !matches!(self.kind, Kind::Dielectric(_))
+    }
+
+    /// A direction by chance; `None` if light is lost.
+    pub(super) fn scatter(&self, u: [u32; 2], choice: f64) -> Option<Scattered> {
+        match &self.kind {
+            Kind::Lambert(lambert) => lambert.scatter(self.out, u, choice),
+            Kind::Conductor(conductor) => conductor.scatter(self.out, u),
+            Kind::Dielectric(dielectric) => dielectric.scatter(self.out, u, choice),
+        }
+    }
+}

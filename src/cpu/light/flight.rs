@@ -1,0 +1,173 @@
+//! Rays that know where they start, so that no distance is too short to count and none has to be skipped.
+
+use glam::DVec3;
+
+use super::stage::Stage;
+use crate::cpu::sphere::intersect;
+use crate::ray::Ray;
+
+/// A ray in the scene's frame, and the surface that it leaves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flight {
+    pub(super) ray: Ray,
+    pub(super) start: Start,
+}
+
+/// What a ray leaves, and on which side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// The camera.
+    Free,
+    /// A sphere, away from it: never hits it.
+    Outside(u32),
+    /// A sphere, through its inside: hits its far wall, if nothing is nearer.
+    Inside(u32),
+    /// The ground, away from it: never hits it.
+    Ground,
+}
+
+/// What is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Surface {
+    /// A sphere.
+    Sphere(u32),
+    /// The ground.
+    Ground,
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting {
+    pub(super) surface: Surface,
+    /// From the ray's origin, along the ray.
+    pub(super) distance: f64,
+    /// On the surface, up to rounding.
+    pub(super) point: DVec3,
+    /// Unit normal on the side from which the ray comes.
+    pub(super) normal: DVec3,
+    /// Whether the ray comes from outside of the sphere, or from above the ground.
+    pub(super) is_outside: bool,
+}
+
+impl Meeting {
+    /// Where rays start that stay on the side from which the ray came.
+    pub(super) fn this_side(&self) -> Start {
+        match self.surface {
+            Surface::Ground => Start::Ground,
+            Surface::Sphere(id) if self.is_outside => Start::Outside(id),
+            Surface::Sphere(id) => Start::Inside(id),
+        }
+    }
+
+    /// Where rays start that cross the surface.
+    pub(super) fn other_side(&self) -> Start {
+        match self.surface {
+            Surface::Ground => Start::Ground,
+            Surface::Sphere(id) if self.is_outside => Start::Inside(id),
+            Surface::Sphere(id) => Start::Outside(id),
+        }
+    }
+}
+
+/// Which spheres hide what is behind them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hiding {
+    /// All.
+    All,
+    /// Those whose opacity is 1.
+    Opaque,
+}
+
+/// The nearest surface; of several spheres at the same distance, that with the smallest id, and a sphere before the
+/// ground.
+pub(super) fn nearest(stage: &Stage<'_>, flight: &Flight) -> Option<Meeting> {
+    let ray = &flight.ray;
+    let mut nearest: Option<(u32, Wall)> = None;
+    for id in 0..stage.scene.len() as u32 {
+        let Some(wall) = sphere(stage, flight, id) else { continue };
+        if nearest.is_none_or(|(_, nearest)| wall.distance < nearest.distance) {
+            nearest = Some((id, wall));
+        }
+    }
+    let is_nearest = |t: &f64| nearest.is_none_or(|(_, wall)| *t < wall.distance);
+    if let Some(distance) = ground(stage, flight).filter(is_nearest) {
+        let plane = stage.ground.as_ref()?;
+        let beside = ray.at(distance) - plane.point;
+        return Some(Meeting {
+            surface: Surface::Ground,
+            distance,
+            point: plane.point + beside - beside.dot(plane.normal) * plane.normal,
+            normal: plane.normal,
+            is_outside: true,
+        });
+    }
+    nearest.map(|(id, Wall { distance, outward, is_outside })| {
+        let (center, radius) = stage.sphere(id);
+        Meeting {
+            surface: Surface::Sphere(id),
+            distance,
+            point: center + radius * outward,
+            normal: if is_outside { outward } else { -outward },
+            is_outside,
+        }
+    })
+}
+
+/// Whether anything but the sphere `exempt` is nearer than `t_max`.
+pub(super) fn is_occluded(
+    stage: &Stage<'_>,
+    flight: &Flight,
+    t_max: f64,
+    hiding: Hiding,
+    exempt: Option<u32>,
+) -> bool {
+    let hides = |id: u32| match hiding {
+        Hiding::All => true,
+        Hiding::Opaque => stage.scene.finish(id).opacity >= 1.0,
+    };
+    ground(stage, flight).is_some_and(|t| t < t_max)
+        || (0..stage.scene.len() as u32)
+            .filter(|id| Some(*id) != exempt && hides(*id))
+            .any(|id| sphere(stage, flight, id).is_some_and(|wall| wall.distance < t_max))
+}
+
+/// Where a ray meets a sphere.
+#[derive(Clone, Copy)]
+struct Wall {
+    distance: f64,
+    /// Unit normal, away from the centre.
+    outward: DVec3,
+    /// Whether the ray comes from outside. That is not asked of the normal: rounding turns it where a ray grazes, and
+    /// then light would get through.
+    is_outside: bool,
+}
+
+fn sphere(stage: &Stage<'_>, flight: &Flight, id: u32) -> Option<Wall> {
+    let (center, radius) = stage.sphere(id);
+    let Flight { ray, start } = flight;
+    let from_center = ray.origin - center;
+    match *start {
+        Start::Outside(own) if own == id => None,
+        Start::Inside(own) if own == id => {
+            let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
+            let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
+            Some(Wall { distance, outward, is_outside: false })
+        }
+        _ => {
+            let (distance, outward) = intersect(ray, center, radius)?;
+            let is_outside = from_center.length_squared() - radius * radius > 0.0;
+            Some(Wall { distance, outward: outward.normalize_or(DVec3::Z), is_outside })
+        }
+    }
+}
+
+/// The distance to the ground.
+fn ground(stage: &Stage<'_>, flight: &Flight) -> Option<f64> {
+    let plane = stage.ground.as_ref()?;
+    let descent = flight.ray.direction.dot(plane.normal);
+    if descent >= 0.0 || flight.start == Start::Ground {
+        return None;
+    }
+    let t = (plane.point - flight.ray.origin).dot(plane.normal) / descent;
+    (t > 0.0).then_some(t)
+}

@@ -1,0 +1,236 @@
+//! Paths: light as it is scattered, from the camera back to where it came from.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::bsdf::Bsdf;
+use super::flight::{Flight, Hiding, Meeting, Surface, is_occluded, nearest};
+use super::maps::Frame;
+use super::sample::{Address, Found};
+use super::source::{Sought, SoughtLight};
+use super::stage::{Stage, rgb};
+use crate::lighting::{LightKind, LightSampling, PathTracing};
+use crate::material::Material;
+use crate::ray::Ray;
+use crate::sampling::unit;
+
+/// Which pair of a surface's random numbers is for what.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Direction = 0,
+    Choice = 1,
+    Light = 2,
+    Source = 3,
+    Roulette = 4,
+}
+
+/// How a ray came to be.
+#[derive(Clone, Copy)]
+enum Origin {
+    /// Without choice, or so that nothing else could have found what it meets.
+    Only,
+    /// By chance at a point, with a density per steradian.
+    Scattered { point: DVec3, density: f64 },
+}
+
+/// What a ray from the camera brings.
+pub(super) fn follow(
+    stage: &Stage<'_>,
+    tracing: &PathTracing,
+    flight: Flight,
+    address: Address,
+) -> Found {
+    let mut path = Path {
+        stage,
+        tracing,
+        address,
+        flight,
+        found: Found::default(),
+        throughput: DVec3::ONE,
+        absorption: DVec3::ZERO,
+        origin: Origin::Only,
+        has_scattered: false,
+    };
+    for v in 0..=tracing.max_depth {
+        if path.step(v).is_none() {
+            break;
+        }
+    }
+    path.found
+}
+
+struct Path<'a> {
+    stage: &'a Stage<'a>,
+    tracing: &'a PathTracing,
+    address: Address,
+    flight: Flight,
+    found: Found,
+    throughput: DVec3,
+    /// Of what the ray goes through, per length.
+    absorption: DVec3,
+    origin: Origin,
+    has_scattered: bool,
+}
+
+impl Path<'_> {
+    fn pair(&self, v: u32, purpose: Purpose) -> [u32; 2] {
+        self.address.pair(2 + 8 * v + purpose as u32)
+    }
+
+    /// Goes on to surface number `v` and beyond; `None` at the end.
+    fn step(&mut self, v: u32) -> Option<()> {
+        let stage = self.stage;
+        let Some(meeting) = nearest(stage, &self.flight) else {
+            self.miss();
+            return None;
+        };
+        if v == 0 {
+            self.found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
+        }
+        self.throughput *= (-self.absorption * meeting.distance).exp();
+        let [choice, pass] = self.pair(v, Purpose::Choice).map(unit);
+        if pass >= stage.opacity(meeting.surface) {
+            self.pass(&meeting);
+            return Some(());
+        }
+        self.found.alpha = 1.0;
+        if let Some(emission) = stage.emission(meeting.surface) {
+            let Surface::Sphere(id) = meeting.surface else { return None };
+            let weight = self.weight(|point| self.stage.density_at_emitter(point, id));
+            self.found.color += self.throughput * emission * weight;
+            return None;
+        }
+        if v == self.tracing.max_depth {
+            return None;
+        }
+        let frame = Frame::around(meeting.normal);
+        let out = frame.to_local(-self.flight.ray.direction);
+        let bsdf = Bsdf::of(stage, &meeting, out)?;
+        if bsdf.seeks_light() {
+            if !self.has_scattered {
+                self.light_from_the_eye(&bsdf, out);
+            }
+            self.seek_light(v, &meeting, &frame, &bsdf);
+        }
+        self.scatter(v, &meeting, &frame, &bsdf, choice)?;
+        if v >= self.tracing.roulette_from {
+            let chance = self.throughput.max_element().min(0.95);
+            if unit(self.pair(v, Purpose::Roulette)[0]) >= chance {
+                return None;
+            }
+            self.throughput /= chance;
+        }
+        Some(())
+    }
+
+    /// The share of light that a ray finds by chance, of what could be sought from the point where it was scattered
+    /// with a density; `None` if it could not.
+    fn weight(&self, density_from: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
+        let Origin::Scattered { point, density } = self.origin else { return 1.0 };
+        let Some(sought) = density_from(point) else { return 1.0 };
+        match self.tracing.light_sampling {
+            LightSampling::Chance => 1.0,
+            LightSampling::Direct => 0.0,
+            LightSampling::Multiple => density / (density + sought),
+        }
+    }
+
+    fn miss(&mut self) {
+        let Self { stage, has_scattered, .. } = *self;
+        let is_background = !has_scattered && !stage.lighting.sky.is_visible;
+        let radiance = if !has_scattered && stage.lighting.is_transparent {
+            DVec3::ZERO
+        } else if is_background {
+            stage.background()
+        } else {
+            let direction = self.flight.ray.direction;
+            let (sky, density) = stage.sky(direction);
+            let suns = stage.sources.suns(direction);
+            sky * self.weight(|_| density)
+                + suns.map(|(sun, density)| sun * self.weight(|_| Some(density))).sum::<DVec3>()
+        };
+        self.found.color += self.throughput * radiance;
+    }
+
+    /// Goes through a surface as if it were not there.
+    fn pass(&mut self, meeting: &Meeting) {
+        self.flight.ray.origin = meeting.point;
+        self.flight.start = meeting.other_side();
+        self.origin = Origin::Only;
+        if !meeting.is_outside && self.dielectric(meeting).is_some() {
+            self.absorption = DVec3::ZERO;
+        }
+    }
+
+    /// The absorption within a sphere, if it is glass.
+    fn dielectric(&self, meeting: &Meeting) -> Option<DVec3> {
+        let Surface::Sphere(id) = meeting.surface else { return None };
+        match self.stage.scene.finish(id).material {
+            Material::Dielectric { attenuation_distance, .. } => {
+                let color = self.stage.color(meeting.surface).max(DVec3::splat(1e-4));
+                Some(attenuation_distance.map_or(DVec3::ZERO, |d| -color.ln() / f64::from(d)))
+            }
+            _ => None,
+        }
+    }
+
+    fn light_from_the_eye(&mut self, bsdf: &Bsdf, out: DVec3) {
+        let Some(response) = bsdf.response(out) else { return };
+        for light in &self.stage.lights {
+            if let LightKind::Head { strength } = light {
+                let light = PI * rgb(*strength) * response.value * out.z;
+                self.found.color += self.throughput * light;
+            }
+        }
+    }
+
+    fn seek_light(&mut self, v: u32, meeting: &Meeting, frame: &Frame, bsdf: &Bsdf) {
+        let (choice, u) = (self.pair(v, Purpose::Source), self.pair(v, Purpose::Light));
+        let Some(sought) = self.stage.seek(meeting.point, choice, u) else { return };
+        let Sought { direction, distance, sphere, light } = sought;
+        let into = frame.to_local(direction);
+        let Some(response) = bsdf.response(into) else { return };
+        let light = match light {
+            SoughtLight::Lamp(strength) => PI * strength,
+            SoughtLight::Radiance(radiance, density) => match self.tracing.light_sampling {
+                LightSampling::Multiple => radiance / (density + response.density),
+                _ => radiance / density,
+            },
+        };
+        let light = self.throughput * light * response.value * into.z;
+        let ray = Ray { origin: meeting.point, direction };
+        let flight = Flight { ray, start: meeting.this_side() };
+        if light != DVec3::ZERO && !is_occluded(self.stage, &flight, distance, Hiding::All, sphere)
+        {
+            self.found.color += light;
+        }
+    }
+
+    fn scatter(
+        &mut self,
+        v: u32,
+        meeting: &Meeting,
+        frame: &Frame,
+        bsdf: &Bsdf,
+        choice: f64,
+    ) -> Option<()> {
+        let scattered = bsdf.scatter(self.pair(v, Purpose::Direction), choice)?;
+        self.throughput *= scattered.weight;
+        if self.throughput == DVec3::ZERO {
+            return None;
+        }
+        let crosses = scattered.direction.z < 0.0;
+        if let Some(absorption) = self.dielectric(meeting).filter(|_| crosses) {
+            self.absorption = if meeting.is_outside { absorption } else { DVec3::ZERO };
+        }
+        let point = meeting.point;
+        let ray = Ray { origin: point, direction: frame.to_scene(scattered.direction) };
+        let start = if crosses { meeting.other_side() } else { meeting.this_side() };
+        self.flight = Flight { ray, start };
+        self.origin =
+            scattered.density.map_or(Origin::Only, |density| Origin::Scattered { point, density });
+        self.has_scattered = true;
+        Some(())
+    }
+}

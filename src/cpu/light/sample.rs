@@ -1,0 +1,97 @@
+//! One sample of a pixel: its random numbers, its ray, and what comes of it.
+
+use glam::{DVec2, DVec3};
+
+use super::flight::{Flight, Start};
+use crate::camera::Camera;
+use crate::film::Film;
+use crate::filter;
+use crate::ray::Ray;
+use crate::sampling::{self, pixel_seed};
+
+/// What one sample of a pixel finds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Linear colour: radiance.
+    pub color: [f64; 3],
+    /// How much of what is behind everything is hidden: 0 to 1.
+    pub alpha: f64,
+    /// The colour of the first surface, at most 1; 0 for a miss.
+    pub albedo: [f64; 3],
+}
+
+/// The same, while it is summed up.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Found {
+    pub(super) color: DVec3,
+    pub(super) alpha: f64,
+    pub(super) albedo: DVec3,
+}
+
+impl From<Found> for Sample {
+    fn from(Found { color, alpha, albedo }: Found) -> Self {
+        Self { color: color.to_array(), alpha, albedo: albedo.to_array() }
+    }
+}
+
+/// Whose random numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Address {
+    seed: u32,
+    sample: u32,
+}
+
+impl Address {
+    pub(super) fn new(pixel: [u32; 2], sample: u32, seed: u32) -> Self {
+        Self { seed: pixel_seed(pixel, seed), sample }
+    }
+
+    pub(super) fn pair(self, pair: u32) -> [u32; 2] {
+        sampling::pair(self.seed, self.sample, pair)
+    }
+
+    /// The j-th of `count` parts of the sample. Beyond 2³² samples repeat.
+    pub(super) fn part(self, j: u32, count: u32) -> Self {
+        let sample = self.sample.wrapping_mul(count).wrapping_add(j);
+        Self { sample, ..self }
+    }
+}
+
+/// How a sample becomes a ray.
+#[derive(Debug)]
+pub(super) struct Lens<'a> {
+    camera: &'a dyn Camera,
+    film: &'a Film,
+    offsets: [f32; 257],
+    /// Of the scene's frame.
+    origin: DVec3,
+}
+
+impl<'a> Lens<'a> {
+    pub(super) fn new(
+        camera: &'a dyn Camera,
+        film: &'a Film,
+        offsets: [f32; 257],
+        origin: DVec3,
+    ) -> Self {
+        Self { camera, film, offsets, origin }
+    }
+
+    /// The ray of a sample, in the scene's frame; `None` where the camera sees nothing.
+    pub(super) fn flight(&self, pixel: [u32; 2], address: Address) -> Option<Flight> {
+        let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
+        let [column, row] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
+        let location = self.film.relative_location(column, row);
+        if !self.camera.sees(location) {
+            return None;
+        }
+        let ray = if self.camera.has_lens() {
+            let lens = DVec2::from(address.pair(1).map(sampling::unit));
+            self.camera.ray_through_lens(location, lens)
+        } else {
+            self.camera.ray_in_world(location)
+        };
+        let ray = Ray { origin: ray.origin - self.origin, ..ray };
+        Some(Flight { ray, start: Start::Free })
+    }
+}

@@ -1,0 +1,145 @@
+//! All that is the same for every ray of a picture, in the scene's frame.
+
+use glam::DVec3;
+
+use super::flight::Surface;
+use super::source::Sources;
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::environment::Environment;
+use crate::lighting::emitters::Emitters;
+use crate::lighting::energy::EnergyTables;
+use crate::lighting::{Integrator, LightKind, Lighting, SkyLight};
+use crate::material::Material;
+use crate::math::{unit, wide};
+use crate::scene::Scene;
+
+#[derive(Debug)]
+pub(super) struct Stage<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) lighting: &'a Lighting,
+    pub(super) ground: Option<Plane>,
+    /// In input order.
+    pub(super) lights: Vec<LightKind>,
+    pub(super) emitters: Emitters,
+    pub(super) sky_image: Option<SkyImage<'a>>,
+    pub(super) sources: Sources,
+    energies: EnergyTables,
+}
+
+/// A ground.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    pub(super) point: DVec3,
+    /// Unit.
+    pub(super) normal: DVec3,
+    pub(super) color: DVec3,
+    pub(super) is_shadow_catcher: bool,
+}
+
+/// An image of the sky that is not black.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SkyImage<'a> {
+    pub(super) environment: &'a Environment,
+    pub(super) rotation: [f32; 2],
+}
+
+impl<'a> Stage<'a> {
+    pub(super) fn new(scene: &'a Scene, camera: &dyn Camera, lighting: &'a Lighting) -> Self {
+        let origin = scene.origin();
+        let lights = lighting.lights.iter().filter_map(|light| light.in_world(camera));
+        let lights = lights.map(|light| match light {
+            LightKind::Point { position, intensity } => {
+                LightKind::Point { position: position - origin, intensity }
+            }
+            LightKind::Sphere { center, radius, radiance } => {
+                LightKind::Sphere { center: center - origin, radius, radiance }
+            }
+            anywhere => anywhere,
+        });
+        let ground = lighting.ground.and_then(|ground| {
+            Some(Plane {
+                point: ground.point - origin,
+                normal: unit(ground.normal)?,
+                color: rgb(ground.color),
+                is_shadow_catcher: ground.is_shadow_catcher,
+            })
+        });
+        let sky_image = match &lighting.sky.light {
+            SkyLight::Image { environment, strength, rotation }
+                if *strength > 0.0 && environment.has_light() =>
+            {
+                let rotation = Environment::rotation(*rotation);
+                Some(SkyImage { environment, rotation })
+            }
+            _ => None,
+        };
+        let (lights, emitters): (Vec<_>, _) = (lights.collect(), Emitters::of(scene));
+        let sources = match &lighting.integrator {
+            Integrator::Studio(_) => Sources::default(),
+            Integrator::Path(tracing) => {
+                let (has_emitters, has_sky) = (!emitters.is_empty(), sky_image.is_some());
+                Sources::new(&lights, has_emitters, has_sky, tracing.light_sampling)
+            }
+        };
+        Self {
+            scene,
+            lighting,
+            ground,
+            lights,
+            emitters,
+            sky_image,
+            sources,
+            energies: EnergyTables::of(scene.finishes()),
+        }
+    }
+
+    /// Centre and radius.
+    pub(super) fn sphere(&self, id: u32) -> (DVec3, f64) {
+        let [x, y, z, radius] = self.scene.spheres()[id as usize].map(f64::from);
+        (DVec3::new(x, y, z), radius)
+    }
+
+    pub(super) fn color(&self, surface: Surface) -> DVec3 {
+        match surface {
+            Surface::Sphere(id) => rgb(self.scene.color(id)),
+            Surface::Ground => self.ground.map_or(DVec3::ZERO, |ground| ground.color),
+        }
+    }
+
+    pub(super) fn opacity(&self, surface: Surface) -> f64 {
+        match surface {
+            Surface::Sphere(id) => self.scene.finish(id).opacity.into(),
+            Surface::Ground => 1.0,
+        }
+    }
+
+    /// The radiance that an emissive sphere sends out.
+    pub(super) fn emission(&self, surface: Surface) -> Option<DVec3> {
+        let Surface::Sphere(id) = surface else { return None };
+        match self.scene.finish(id).material {
+            Material::Emissive { strength } => Some(self.color(surface) * f64::from(strength)),
+            _ => None,
+        }
+    }
+
+    /// A sphere's table of energies, from `skip` entries after its first on.
+    pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
+        let place = self.scene.color_indices().map_or(0, |places| places[id as usize] as usize);
+        let start = self.energies.starts()[place].map_or(0, |start| start as usize);
+        self.energies.entries().get(start + skip..).unwrap_or_default()
+    }
+
+    pub(super) fn background(&self) -> DVec3 {
+        rgb(self.lighting.background)
+    }
+}
+
+pub(super) fn rgb(color: LinearRgb) -> DVec3 {
+    wide(color.to_array())
+}
+
+/// Of a linear colour with the Rec. 709 primaries.
+pub(super) fn luminance(color: DVec3) -> f64 {
+    color.dot(DVec3::new(0.2126, 0.7152, 0.0722))
+}

@@ -1,0 +1,146 @@
+//! A studio: light from lamps to surfaces, and no further.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::bsdf::Bsdf;
+use super::flight::{Flight, Hiding, Meeting, Surface, is_occluded, nearest};
+use super::lamp;
+use super::maps::{self, Frame};
+use super::sample::{Address, Found};
+use super::stage::{Plane, Stage, luminance, rgb};
+use crate::lighting::{LightKind, Studio};
+use crate::ray::Ray;
+
+/// What a ray from the camera brings.
+pub(super) fn follow(
+    stage: &Stage<'_>,
+    studio: &Studio,
+    mut flight: Flight,
+    address: Address,
+) -> Found {
+    let mut found = Found::default();
+    let mut clear = 1.0;
+    let mut way = 0.0;
+    for m in 0..studio.max_surfaces {
+        let Some(meeting) = nearest(stage, &flight) else { break };
+        way += meeting.distance;
+        if m == 0 {
+            found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
+        }
+        let view = View { stage, studio, meeting, direction: flight.ray.direction, address, m };
+        if let Some(plane) = stage.ground.filter(|g| g.is_shadow_catcher)
+            && meeting.surface == Surface::Ground
+        {
+            let shadow = view.shadow(&plane);
+            found.alpha += clear * shadow;
+            clear *= 1.0 - shadow;
+            break;
+        }
+        let opacity = stage.opacity(meeting.surface);
+        let weight = clear * opacity;
+        clear *= 1.0 - opacity;
+        found.alpha += weight;
+        let (fade, fade_color) = studio.depth_cue.map_or((0.0, DVec3::ZERO), |cue| {
+            (((way - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
+        });
+        found.color += weight * (fade * fade_color + (1.0 - fade) * view.color());
+        if clear == 0.0 {
+            break;
+        }
+        let ray = Ray { origin: meeting.point, ..flight.ray };
+        flight = Flight { ray, start: meeting.other_side() };
+    }
+    if !stage.lighting.is_transparent {
+        found.color += clear * stage.background();
+    }
+    found
+}
+
+/// A surface that is seen.
+struct View<'a> {
+    stage: &'a Stage<'a>,
+    studio: &'a Studio,
+    meeting: Meeting,
+    /// Of the ray that sees it.
+    direction: DVec3,
+    address: Address,
+    /// How many surfaces are before it.
+    m: u32,
+}
+
+impl View<'_> {
+    fn color(&self) -> DVec3 {
+        let Self { stage, studio, meeting, .. } = self;
+        if let Some(emission) = stage.emission(meeting.surface) {
+            return emission;
+        }
+        let ambient = rgb(studio.ambient) * (1.0 - self.ambient_occlusion());
+        let frame = Frame::around(meeting.normal);
+        let out = frame.to_local(-self.direction);
+        let mut color = stage.color(meeting.surface) * ambient;
+        let Some(bsdf) = Bsdf::in_studio(stage, meeting, out) else { return color };
+        for (l, light) in stage.lights.iter().enumerate() {
+            if let LightKind::Head { strength } = light {
+                if let Some(response) = bsdf.response(out) {
+                    color += PI * rgb(*strength) * response.value * out.z;
+                }
+                continue;
+            }
+            let u = self.address.pair(2 + 4096 * self.m + l as u32);
+            let Some(arrival) = lamp::arrival(light, meeting.point, u) else { continue };
+            let into = frame.to_local(arrival.direction);
+            let Some(response) = bsdf.response(into) else { continue };
+            let light = PI * arrival.strength * response.value * into.z;
+            if light != DVec3::ZERO && !self.has_shadow(&arrival) {
+                color += light;
+            }
+        }
+        color
+    }
+
+    /// The share of ambient light that does not arrive.
+    fn ambient_occlusion(&self) -> f64 {
+        let Some(occlusion) = &self.studio.occlusion else { return 0.0 };
+        let frame = Frame::around(self.meeting.normal);
+        let count = occlusion.samples;
+        let t_max = occlusion.radius.unwrap_or(f64::INFINITY);
+        let is_hidden = |j: &u32| {
+            let dimension = 2 + 4096 * self.m + 4095;
+            let u = self.address.part(*j, count).pair(dimension);
+            self.is_hidden(frame.to_scene(maps::cosine(u)), t_max)
+        };
+        (0..count).filter(is_hidden).count() as f64 / f64::from(count)
+    }
+
+    fn has_shadow(&self, arrival: &lamp::Arrival) -> bool {
+        self.studio.has_shadows && self.is_hidden(arrival.direction, arrival.distance)
+    }
+
+    fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {
+        let ray = Ray { origin: self.meeting.point, direction };
+        let flight = Flight { ray, start: self.meeting.this_side() };
+        is_occluded(self.stage, &flight, t_max, Hiding::Opaque, None)
+    }
+
+    /// The share of light that is missing on the ground: of each light as much as its middle could send.
+    fn shadow(&self, plane: &Plane) -> f64 {
+        let mut whole = luminance(rgb(self.studio.ambient));
+        let mut missing = whole * self.ambient_occlusion();
+        for (l, light) in self.stage.lights.iter().enumerate() {
+            let point = self.meeting.point;
+            let Some(middle) = lamp::arrival_of_middle(light, point) else { continue };
+            let cosine = middle.direction.dot(plane.normal).max(0.0);
+            let weight = luminance(middle.strength) * cosine;
+            whole += weight;
+            let u = self.address.pair(2 + 4096 * self.m + l as u32);
+            let Some(arrival) = lamp::arrival(light, point, u) else { continue };
+            let is_above = arrival.direction.dot(plane.normal) > 0.0;
+            if weight > 0.0 && is_above && self.has_shadow(&arrival) {
+                missing += weight;
+            }
+        }
+        if whole > 0.0 { missing / whole } else { 0.0 }
+    }
+}

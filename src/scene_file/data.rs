@@ -1,0 +1,146 @@
+//! The keys that name a file with spheres, and say how to read it and what its spheres look like.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::materials::Materials;
+use super::place::{Keys, Lines, Number, Placed, SceneFileError, span};
+use super::value::ColorValue;
+use crate::color::LinearRgb;
+use crate::exact::Table;
+use crate::material::Finish;
+use crate::sphere::Sphere;
+
+/// A reference to a file with spheres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Data {
+    /// The path, relative to the scene file.
+    pub file: String,
+    /// Which frame of a trajectory, from 0.
+    pub frame: Option<usize>,
+    /// The radius of all, for data that has none.
+    pub radius: Option<f64>,
+    /// What every radius is multiplied by.
+    pub radius_scale: f64,
+    /// The colour of all, for data that has none.
+    pub color: Option<LinearRgb>,
+    /// What all surfaces do with light.
+    pub finish: Finish,
+    /// What atoms of one species look like.
+    pub elements: Vec<Element>,
+}
+
+/// What atoms of one species look like, whatever the data or the tables of elements say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// The species, as it is written in the data.
+    pub name: String,
+    /// The radius, before `radius_scale`.
+    pub radius: Option<f64>,
+    /// The colour.
+    pub color: Option<LinearRgb>,
+    /// What the surface does with light.
+    pub finish: Finish,
+}
+
+impl Data {
+    /// Gives spheres of this data the finish of all, or of their species: the names of species, and for each
+    /// sphere the place of its own among them. Answers which elements do not occur.
+    pub fn dress(&self, spheres: &mut [Sphere], names: &[String], species: &[u32]) -> Vec<&str> {
+        let element_of = |name: &String| self.elements.iter().find(|e| e.name == *name);
+        let elements: Vec<Option<&Element>> = names.iter().map(element_of).collect();
+        for (index, sphere) in spheres.iter_mut().enumerate() {
+            let place = species.get(index).map(|place| *place as usize);
+            let element = place.and_then(|place| elements.get(place).copied().flatten());
+            sphere.finish = element.map_or(self.finish, |element| element.finish);
+            if let Some(Element { radius, color, .. }) = element {
+                sphere.radius = radius.unwrap_or(sphere.radius);
+                sphere.color = color.unwrap_or(sphere.color);
+            }
+        }
+        let absent = self.elements.iter().filter(|element| !names.contains(&element.name));
+        absent.map(|element| element.name.as_str()).collect()
+    }
+}
+
+/// A table `[elements.NAME]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ElementTable {
+    material: Option<Spanned<String>>,
+    opacity: Option<Number>,
+    color: Option<ColorValue>,
+    radius: Option<Number>,
+}
+
+/// The keys, as they stand at the top of the file.
+pub(super) struct DataKeys {
+    pub(super) file: Option<Spanned<String>>,
+    pub(super) frame: Option<Spanned<usize>>,
+    pub(super) radius: Option<Number>,
+    pub(super) radius_scale: Option<Number>,
+    pub(super) color: Option<Spanned<ColorValue>>,
+    pub(super) material: Option<Spanned<String>>,
+    pub(super) opacity: Option<Number>,
+    pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
+}
+
+impl DataKeys {
+    pub(super) fn read(
+        self,
+        materials: &Materials,
+        lines: &Lines<'_>,
+    ) -> Result<Option<Placed<Data>>, SceneFileError> {
+        let Some(file) = self.file else {
+            let orphans = [
+                ("frame", span(&self.frame)),
+                ("radius", span(&self.radius)),
+                ("radius_scale", span(&self.radius_scale)),
+                ("color", span(&self.color)),
+                ("material", span(&self.material)),
+                ("opacity", span(&self.opacity)),
+                ("elements", self.elements.values().next().map(Spanned::span)),
+            ];
+            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            return match orphan {
+                Some((key, start)) => Err(lines
+                    .place(start)
+                    .error(format!("`{key}` concerns `data`, which is not given"))),
+                None => Ok(None),
+            };
+        };
+        let finish = materials.over(Finish::default(), self.material, self.opacity, lines)?;
+        let elements = self.elements.into_iter().map(|(name, table)| {
+            let ElementTable { material, opacity, color, radius } = table.into_inner().0;
+            Ok(Element {
+                name,
+                radius: positive("radius", radius, lines)?,
+                color: color.map(|color| color.0),
+                finish: materials.over(finish, material, opacity, lines)?,
+            })
+        });
+        Ok(Some(Placed {
+            place: lines.place(file.span().start),
+            value: Data {
+                file: file.into_inner(),
+                frame: self.frame.map(Spanned::into_inner),
+                radius: positive("radius", self.radius, lines)?,
+                radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
+                color: self.color.map(|color| color.into_inner().0),
+                finish,
+                elements: elements.collect::<Result<_, _>>()?,
+            },
+        }))
+    }
+}
+
+fn positive(
+    key: &'static str,
+    value: Option<Number>,
+    lines: &Lines<'_>,
+) -> Result<Option<f64>, SceneFileError> {
+    let keys = Keys { lines, numbers: vec![(key, value)], table: super::place::Place::START };
+    keys.within(key, [f64::from_bits(1), f64::MAX], "finite and greater than 0")
+}

@@ -1,0 +1,118 @@
+//! The file's tables, as serde reads them.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::data::ElementTable;
+use super::lighting::{
+    GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
+    SunTable,
+};
+use super::materials::{MaterialTable, Materials};
+use super::output::OutputTable;
+use super::place::{Lines, Number, Placed, SceneFileError};
+use super::value::ColorValue;
+use crate::camera::CameraParameters;
+use crate::exact::{self, Table};
+use crate::film::{Film, YAxis};
+use crate::material::Finish;
+use crate::settings::Shading;
+use crate::sphere::Sphere;
+
+/// All tables and keys at the top.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Document {
+    #[serde(default = "default_film")]
+    pub(super) film: Spanned<Table<FilmTable>>,
+    #[serde(default = "default_camera")]
+    pub(super) camera: Spanned<CameraParameters>,
+    #[serde(default)]
+    pub(super) output: Table<OutputTable>,
+    pub(super) background: Option<ColorValue>,
+    pub(super) shading: Option<Spanned<Shading>>,
+    pub(super) integrator: Option<IntegratorKind>,
+    pub(super) studio: Option<Spanned<Table<StudioTable>>>,
+    pub(super) path: Option<Spanned<Table<PathTable>>>,
+    pub(super) sampling: Option<Spanned<Table<SamplingTable>>>,
+    pub(super) lights: Option<Vec<Spanned<Table<LightTable>>>>,
+    pub(super) sky: Option<Spanned<Table<SkyTable>>>,
+    pub(super) sun: Option<Spanned<Table<SunTable>>>,
+    pub(super) ground: Option<Spanned<Table<GroundTable>>>,
+    #[serde(default)]
+    pub(super) materials: BTreeMap<String, Spanned<Table<MaterialTable>>>,
+    #[serde(default)]
+    pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
+    pub(super) data: Option<Spanned<String>>,
+    pub(super) frame: Option<Spanned<usize>>,
+    pub(super) radius: Option<Number>,
+    pub(super) radius_scale: Option<Number>,
+    pub(super) color: Option<Spanned<ColorValue>>,
+    pub(super) material: Option<Spanned<String>>,
+    pub(super) opacity: Option<Number>,
+    #[serde(default)]
+    pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
+}
+
+fn default_film() -> Spanned<Table<FilmTable>> {
+    Spanned::new(0..0, Table::default())
+}
+
+fn default_camera() -> Spanned<CameraParameters> {
+    Spanned::new(0..0, CameraParameters::default())
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct FilmTable {
+    width: u32,
+    height: u32,
+    y: YAxis,
+}
+
+impl Default for FilmTable {
+    fn default() -> Self {
+        let film = Film::default();
+        Self { width: film.width(), height: film.height(), y: film.y_axis() }
+    }
+}
+
+impl FilmTable {
+    pub(super) fn film(
+        table: Spanned<Table<Self>>,
+        lines: &Lines<'_>,
+    ) -> Result<Film, SceneFileError> {
+        let place = lines.place(table.span().start);
+        let Self { width, height, y } = table.into_inner().0;
+        let film = Film::new(width, height).map_err(|error| place.error(error))?;
+        Ok(film.with_y_axis(y))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SphereTable {
+    #[serde(deserialize_with = "exact::array")]
+    center: [f64; 3],
+    radius: f64,
+    #[serde(default)]
+    color: ColorValue,
+    material: Option<Spanned<String>>,
+    opacity: Option<Number>,
+}
+
+impl SphereTable {
+    pub(super) fn sphere(
+        table: Spanned<Table<Self>>,
+        materials: &Materials,
+        lines: &Lines<'_>,
+    ) -> Result<Placed<Sphere>, SceneFileError> {
+        let place = lines.place(table.span().start);
+        let Self { center, radius, color, material, opacity } = table.into_inner().0;
+        let mut sphere = Sphere::new(center, radius, color.0);
+        sphere.finish = materials.over(Finish::default(), material, opacity, lines)?;
+        Ok(Placed { value: sphere, place })
+    }
+}

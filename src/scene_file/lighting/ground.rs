@@ -1,0 +1,92 @@
+//! The table `[ground]`.
+
+use glam::DVec3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::color::LinearRgb;
+use crate::exact::Table;
+use crate::lighting::Ground;
+use crate::math::{MAX_LENGTH, unit};
+use crate::scene::Scene;
+use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError};
+use crate::scene_file::value::{ColorValue, Vector};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct GroundTable {
+    height: Option<Number>,
+    point: Option<Spanned<Vector>>,
+    normal: Option<Spanned<Vector>>,
+    #[serde(default)]
+    color: ColorValue,
+    #[serde(default)]
+    shadow_catcher: bool,
+}
+
+/// A ground; without a point, it touches the lowest sphere.
+#[derive(Debug)]
+pub(super) struct GroundPlan {
+    point: Option<DVec3>,
+    normal: DVec3,
+    color: LinearRgb,
+    is_shadow_catcher: bool,
+}
+
+impl GroundPlan {
+    pub(super) fn read(
+        table: Spanned<Table<GroundTable>>,
+        lines: &Lines<'_>,
+    ) -> Result<Placed<Self>, SceneFileError> {
+        let place = lines.place(table.span().start);
+        let GroundTable { height, point, normal, color, shadow_catcher } = table.into_inner().0;
+        if let (Some(height), Some(_)) = (&height, point.as_ref().or(normal.as_ref())) {
+            return Err(lines
+                .place(height.span().start)
+                .error("`height` and `point` with `normal` say the same in two ways; drop one"));
+        }
+        if let (Some(normal), None) = (&normal, &point) {
+            let place = lines.place(normal.span().start);
+            return Err(place.error("`normal` needs a `point` of the ground"));
+        }
+        let is_near = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= MAX_LENGTH);
+        for (key, vector) in [("point", &point), ("normal", &normal)] {
+            let Some(vector) = vector else {
+                continue;
+            };
+            let [x, y, z] = vector.get_ref().0;
+            let is_direction = key == "point" || unit(DVec3::new(x, y, z)).is_some();
+            if !(is_near(&[x, y, z]) && is_direction) {
+                return Err(lines.place(vector.span().start).error(format!(
+                    "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, \
+                     and a normal must have a length"
+                )));
+            }
+        }
+        let keys = Keys { lines, numbers: vec![("height", height)], table: place };
+        let range = "between -2^56 and 2^56";
+        let height = keys.within("height", [-MAX_LENGTH, MAX_LENGTH], range)?;
+        let point = point.map(|point| DVec3::from(point.get_ref().0));
+        let value = Self {
+            point: point.or(height.map(|height| DVec3::new(0.0, height, 0.0))),
+            normal: normal.map_or(DVec3::Y, |normal| DVec3::from(normal.get_ref().0)),
+            color: color.0,
+            is_shadow_catcher: shadow_catcher,
+        };
+        Ok(Placed { value, place })
+    }
+
+    pub(super) fn ground(&self, scene: &Scene) -> Ground {
+        let lowest = || {
+            let bounds = scene.bounds_to_frame();
+            let center = bounds.center();
+            DVec3::new(center.x, bounds.min().y, center.z)
+        };
+        Ground {
+            point: self.point.unwrap_or_else(lowest),
+            normal: self.normal,
+            color: self.color,
+            is_shadow_catcher: self.is_shadow_catcher,
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Tables `[[lights]]`, and `[sun]`, which is a light as well.
+
+use glam::DVec3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::color::LinearRgb;
+use crate::exact::Table;
+use crate::lighting::{Light, LightFrame, LightKind};
+use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::scene_file::place::{Keys, Lines, Number, Place, SceneFileError, refuse_foreign, span};
+use crate::scene_file::value::{ColorValue, Vector, scaled};
+
+/// What a light is, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Head,
+    Directional,
+    Point,
+    Sphere,
+}
+
+impl Kind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Head => "head",
+            Self::Directional => "directional",
+            Self::Point => "point",
+            Self::Sphere => "sphere",
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct LightTable {
+    kind: Kind,
+    at: Option<Spanned<LightFrame>>,
+    toward: Option<Spanned<Vector>>,
+    direction: Option<Spanned<Vector>>,
+    angular_radius: Option<Number>,
+    angular_diameter: Option<Number>,
+    position: Option<Spanned<Vector>>,
+    radius: Option<Number>,
+    color: Option<ColorValue>,
+    strength: Option<Number>,
+    intensity: Option<Number>,
+    radiance: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct SunTable {
+    toward: Option<Spanned<Vector>>,
+    direction: Option<Spanned<Vector>>,
+    angular_radius: Option<Number>,
+    angular_diameter: Option<Number>,
+    color: Option<ColorValue>,
+    strength: Option<Number>,
+}
+
+/// The sun's, seen from the earth, in degrees.
+const SUN_RADIUS: f64 = 0.27;
+
+/// The largest number that a colour of light is multiplied by; what falls off with the square of a distance may be
+/// more.
+const STRONGEST: f64 = 1e6;
+const MOST_INTENSE: f64 = 1e18;
+
+/// Where a light is, as far as directions say it.
+struct Aim {
+    toward: Option<Spanned<Vector>>,
+    direction: Option<Spanned<Vector>>,
+}
+
+impl Aim {
+    /// The direction towards the light.
+    fn toward(self, lines: &Lines<'_>, table: Place) -> Result<DVec3, SceneFileError> {
+        let (key, vector, sign) = match (self.toward, self.direction) {
+            (Some(toward), None) => ("toward", toward, 1.0),
+            (None, Some(direction)) => ("direction", direction, -1.0),
+            (Some(_), Some(direction)) => {
+                return Err(lines.place(direction.span().start).error(
+                    "`toward` and `direction` are opposite ways to say the same; drop one",
+                ));
+            }
+            (None, None) => {
+                return Err(table.error(
+                    "the light has no direction; write `toward = [x, y, z]`, where it is, or \
+                     `direction`, where it shines",
+                ));
+            }
+        };
+        let toward = sign * DVec3::from(vector.get_ref().0);
+        unit(toward).map(|_| toward).ok_or_else(|| {
+            let [x, y, z] = vector.get_ref().0;
+            let place = lines.place(vector.span().start);
+            place.error(format!("`{key}` is [{x:?}, {y:?}, {z:?}], which is no direction"))
+        })
+    }
+}
+
+/// The angular radius in radians.
+fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> {
+    // The least that a light may have, in radians, is 0.001.
+    const LEAST: f64 = 0.06;
+    let within = |key, most, range| {
+        let given = keys.within(key, [0.0, most], range)?;
+        match given {
+            Some(degrees) if degrees != 0.0 => keys.within(key, [most / 90.0 * LEAST, most], range),
+            given => Ok(given),
+        }
+    };
+    let radius = within("angular_radius", 90.0, "0, or from 0.06 to 90 degrees")?;
+    let diameter = within("angular_diameter", 180.0, "0, or from 0.12 to 180 degrees")?;
+    match (radius, diameter) {
+        (Some(_), Some(_)) => Err(keys
+            .table
+            .error("`angular_radius` and `angular_diameter` exclude each other; drop one")),
+        (radius, diameter) => {
+            Ok(radius.or(diameter.map(|d| d / 2.0)).unwrap_or(default).to_radians())
+        }
+    }
+}
+
+/// The light's colour times the number of a key.
+fn times(
+    color: Option<ColorValue>,
+    keys: &Keys<'_>,
+    key: &'static str,
+) -> Result<LinearRgb, SceneFileError> {
+    let (most, range) = match key {
+        "intensity" => (MOST_INTENSE, "from 0 to 1e18"),
+        _ => (STRONGEST, "from 0 to 1e6"),
+    };
+    let by = keys.within(key, [0.0, most], range)?.unwrap_or(1.0);
+    scaled(color.map_or(LinearRgb::WHITE, |color| color.0), by)
+        .map_err(|error| keys.table.error(error))
+}
+
+fn position(
+    vector: Option<Spanned<Vector>>,
+    kind: Kind,
+    keys: &Keys<'_>,
+) -> Result<DVec3, SceneFileError> {
+    let Some(vector) = vector else {
+        let kind = kind.name();
+        return Err(keys.table.error(format!("a {kind} light needs a `position = [x, y, z]`")));
+    };
+    let position = vector.get_ref().0;
+    if position.iter().all(|x| x.abs() <= MAX_LENGTH) {
+        return Ok(DVec3::from(position));
+    }
+    let [x, y, z] = position;
+    Err(keys.lines.place(vector.span().start).error(format!(
+        "`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56"
+    )))
+}
+
+pub(super) fn read(
+    table: Spanned<Table<LightTable>>,
+    lines: &Lines<'_>,
+) -> Result<Light, SceneFileError> {
+    let place = lines.place(table.span().start);
+    let table = table.into_inner().0;
+    let kind = table.kind;
+    let is_one = |kinds: &[Kind]| kinds.contains(&kind);
+    let (far, near) = (is_one(&[Kind::Directional]), is_one(&[Kind::Point, Kind::Sphere]));
+    refuse_foreign(
+        lines,
+        kind.name(),
+        &[
+            ("at", span(&table.at), kind != Kind::Head),
+            ("toward", span(&table.toward), far),
+            ("direction", span(&table.direction), far),
+            ("angular_radius", span(&table.angular_radius), far),
+            ("angular_diameter", span(&table.angular_diameter), far),
+            ("position", span(&table.position), near),
+            ("radius", span(&table.radius), is_one(&[Kind::Sphere])),
+            ("strength", span(&table.strength), !near),
+            ("intensity", span(&table.intensity), is_one(&[Kind::Point])),
+            ("radiance", span(&table.radiance), is_one(&[Kind::Sphere])),
+        ],
+    )?;
+    let numbers = vec![
+        ("angular_radius", table.angular_radius),
+        ("angular_diameter", table.angular_diameter),
+        ("radius", table.radius),
+        ("strength", table.strength),
+        ("intensity", table.intensity),
+        ("radiance", table.radiance),
+    ];
+    let keys = Keys { lines, numbers, table: place };
+    let light = match kind {
+        Kind::Head => LightKind::Head { strength: times(table.color, &keys, "strength")? },
+        Kind::Directional => LightKind::Directional {
+            toward: Aim { toward: table.toward, direction: table.direction }
+                .toward(lines, place)?,
+            strength: times(table.color, &keys, "strength")?,
+            angular_radius: angular_radius(&keys, 0.0)?,
+        },
+        Kind::Point => LightKind::Point {
+            position: position(table.position, kind, &keys)?,
+            intensity: times(table.color, &keys, "intensity")?,
+        },
+        Kind::Sphere => {
+            let range = "a length greater than 0, from 2^-56 to 2^56";
+            let radius = keys.within("radius", [MIN_LENGTH, MAX_LENGTH], range)?;
+            LightKind::Sphere {
+                center: position(table.position, kind, &keys)?,
+                radius: radius.ok_or_else(|| place.error("a sphere light needs a `radius`"))?,
+                radiance: times(table.color, &keys, "radiance")?,
+            }
+        }
+    };
+    Ok(Light { kind: light, frame: table.at.map(Spanned::into_inner).unwrap_or_default() })
+}
+
+pub(super) fn read_sun(
+    table: Spanned<Table<SunTable>>,
+    lines: &Lines<'_>,
+) -> Result<Light, SceneFileError> {
+    let place = lines.place(table.span().start);
+    let table = table.into_inner().0;
+    let numbers = vec![
+        ("angular_radius", table.angular_radius),
+        ("angular_diameter", table.angular_diameter),
+        ("strength", table.strength),
+    ];
+    let keys = Keys { lines, numbers, table: place };
+    let kind = LightKind::Directional {
+        toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, place)?,
+        strength: times(table.color, &keys, "strength")?,
+        angular_radius: angular_radius(&keys, SUN_RADIUS)?,
+    };
+    Ok(Light { kind, frame: LightFrame::World })
+}

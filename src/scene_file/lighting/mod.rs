@@ -1,0 +1,205 @@
+//! What a scene file says of light: tables in, a checked lighting out.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+mod ground;
+mod lights;
+mod samples;
+mod sky;
+mod studio;
+
+pub(super) use ground::GroundTable;
+pub(super) use lights::{LightTable, SunTable};
+pub(super) use samples::{PathTable, SamplingTable};
+pub(super) use sky::SkyTable;
+pub(super) use studio::StudioTable;
+
+use ground::GroundPlan;
+use sky::SkyPlan;
+use studio::StudioPlan;
+
+use super::SceneFile;
+use super::place::{Lines, Place, Placed, SceneFileError, span};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::environment::Environment;
+use crate::exact::Table;
+use crate::lighting::{
+    Integrator, Light, Lighting, LightingError, PathTracing, Sampling, Sky, SkyLight,
+};
+use crate::scene::Scene;
+
+/// How light is followed, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegratorKind {
+    /// Directly from lights to surfaces.
+    Studio,
+    /// As it is scattered.
+    Path,
+}
+
+/// The tables, as they stand at the top of the file.
+pub(super) struct LightingTables {
+    /// Where the key for pictures without light is.
+    pub(super) shading: Option<usize>,
+    pub(super) integrator: Option<IntegratorKind>,
+    pub(super) studio: Option<Spanned<Table<StudioTable>>>,
+    pub(super) path: Option<Spanned<Table<PathTable>>>,
+    pub(super) sampling: Option<Spanned<Table<SamplingTable>>>,
+    pub(super) lights: Option<Vec<Spanned<Table<LightTable>>>>,
+    pub(super) sky: Option<Spanned<Table<SkyTable>>>,
+    pub(super) sun: Option<Spanned<Table<SunTable>>>,
+    pub(super) ground: Option<Spanned<Table<GroundTable>>>,
+    /// Whether surfaces are to be more than matt and opaque.
+    pub(super) has_materials: bool,
+}
+
+/// What the tables say, checked as far as it can be without a scene.
+#[derive(Debug)]
+pub(super) struct SceneLighting {
+    integrator: Option<IntegratorKind>,
+    studio: StudioPlan,
+    path: PathTracing,
+    sampling: Sampling,
+    /// `None` if the file says nothing of light that comes from elsewhere than spheres.
+    lights: Option<Vec<Light>>,
+    sky: Option<SkyPlan>,
+    ground: Option<Placed<GroundPlan>>,
+}
+
+impl LightingTables {
+    pub(super) fn read(self, lines: &Lines<'_>) -> Result<SceneLighting, SceneFileError> {
+        let integrator = self.integrator(lines)?;
+        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        let sun = self.sun.map(|sun| lights::read_sun(sun, lines)).transpose()?;
+        let lights = self.lights.into_iter().flatten().map(|light| lights::read(light, lines));
+        let lights = lights.chain(sun.map(Ok)).collect::<Result<Vec<_>, _>>()?;
+        Ok(SceneLighting {
+            integrator,
+            studio: StudioPlan::read(self.studio, lines)?,
+            path: samples::read_path(self.path, lines)?,
+            sampling: samples::read_sampling(self.sampling, lines)?,
+            lights: names_light.then_some(lights),
+            sky: self.sky.map(|sky| SkyPlan::read(sky, lines)).transpose()?,
+            ground: self.ground.map(|ground| GroundPlan::read(ground, lines)).transpose()?,
+        })
+    }
+
+    /// What the file says, or what it says that only a lit picture has.
+    fn integrator(&self, lines: &Lines<'_>) -> Result<Option<IntegratorKind>, SceneFileError> {
+        let of_paths = [("[path]", span(&self.path)), ("[sky]", span(&self.sky))];
+        let of_studio = [("[studio]", span(&self.studio))];
+        let of_both = [
+            self.sampling.is_some(),
+            self.lights.is_some(),
+            self.sun.is_some(),
+            self.ground.is_some(),
+            self.has_materials,
+        ];
+        let first = |tables: &[(&'static str, Option<Range<usize>>)]| {
+            tables.iter().find_map(|(name, span)| Some((*name, span.as_ref()?.start)))
+        };
+        let kind = match (self.integrator, first(&of_paths), first(&of_studio)) {
+            (Some(kind), ..) => Some(kind),
+            (None, Some((table, start)), Some(_)) => {
+                return Err(lines.place(start).error(format!(
+                    "`{table}` is for paths and `[studio]` for a studio; say which with \
+                     `integrator = \"path\"` or `integrator = \"studio\"`"
+                )));
+            }
+            (None, Some(_), None) => Some(IntegratorKind::Path),
+            (None, None, Some(_)) => Some(IntegratorKind::Studio),
+            (None, None, None) => of_both.contains(&true).then_some(IntegratorKind::Studio),
+        };
+        match (kind, self.shading) {
+            (Some(_), Some(start)) => Err(lines.place(start).error(
+                "`shading` is for pictures without light, and this file asks for light; drop one",
+            )),
+            _ => Ok(kind),
+        }
+    }
+}
+
+impl SceneFile {
+    /// How light is followed, if the file asks for light at all: by the key `integrator`, or by a table, material
+    /// or opacity that only a lit picture shows.
+    #[must_use]
+    pub fn integrator(&self) -> Option<IntegratorKind> {
+        self.lighting.integrator
+    }
+
+    /// The image of the sky that paths need, relative to the scene file.
+    #[must_use]
+    pub fn sky_image(&self) -> Option<&str> {
+        self.lighting.sky.as_ref()?.image()
+    }
+
+    /// The lighting, for an integrator that need not be the file's own. Who names lights, a sun or a sky gets no
+    /// others; what is left open follows the scene and, for the depth cue, the camera. Transparency is for the
+    /// caller to decide.
+    ///
+    /// # Errors
+    /// If a colour would create light, if the integrator has no shadow catcher, or if the image of the sky is
+    /// needed and not given.
+    pub fn lighting(
+        &self,
+        kind: IntegratorKind,
+        scene: &Scene,
+        camera: &dyn Camera,
+        image: Option<Environment>,
+    ) -> Result<Lighting, SceneFileError> {
+        let (says, defaults) = (&self.lighting, Lighting::default());
+        let background = self.settings.background();
+        let sky = match &says.sky {
+            // Only paths are lit by it, and only they need its image.
+            Some(sky) if kind == IntegratorKind::Path => sky.sky(image)?,
+            None if says.lights.is_none() => defaults.sky,
+            _ => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
+        };
+        let lighting = Lighting {
+            integrator: match kind {
+                IntegratorKind::Studio => {
+                    Integrator::Studio(says.studio.studio(scene, camera, background)?)
+                }
+                IntegratorKind::Path => Integrator::Path(says.path),
+            },
+            sampling: says.sampling,
+            lights: says.lights.clone().unwrap_or(defaults.lights),
+            sky,
+            ground: says.ground.as_ref().map(|ground| ground.value.ground(scene)),
+            background,
+            is_transparent: false,
+        };
+        self.check_colors()?;
+        lighting.check(scene).map(|()| lighting).map_err(|error| self.place_of(&error).error(error))
+    }
+
+    /// Refuses spheres of this file that would create light.
+    fn check_colors(&self) -> Result<(), SceneFileError> {
+        for (index, sphere) in self.spheres.iter().enumerate() {
+            let rgb = sphere.value.color.to_array();
+            if sphere.value.finish.scatters() && rgb.iter().any(|c| *c > 1.0) {
+                let what = format!("sphere {index}");
+                return Err(sphere.place.error(LightingError::Albedo { what, rgb }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Of what is left when all tables, and the spheres of this file, have been checked.
+    fn place_of(&self, error: &LightingError) -> Place {
+        let ground = || self.lighting.ground.as_ref().map(|ground| ground.place);
+        let data = || self.data.as_ref().map(|data| data.place);
+        match error {
+            LightingError::Ground | LightingError::Catcher => ground(),
+            LightingError::Albedo { what, .. } if what == "the ground" => ground(),
+            LightingError::Albedo { .. } => data(),
+            _ => None,
+        }
+        .unwrap_or(Place::START)
+    }
+}

@@ -1,0 +1,65 @@
+//! The tables `[sampling]` and `[path]`.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::exact::Table;
+use crate::filter::PixelFilter;
+use crate::lighting::{LightSampling, PathTracing, Sampling};
+use crate::scene_file::place::{Keys, Lines, SceneFileError, whole};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct SamplingTable {
+    samples: Option<Spanned<u32>>,
+    seed: Option<u32>,
+    filter: Option<PixelFilter>,
+}
+
+pub(super) fn read_sampling(
+    table: Option<Spanned<Table<SamplingTable>>>,
+    lines: &Lines<'_>,
+) -> Result<Sampling, SceneFileError> {
+    let defaults = Sampling::default();
+    let Some(table) = table else {
+        return Ok(defaults);
+    };
+    let start = table.span().start;
+    let SamplingTable { samples, seed, filter } = table.into_inner().0;
+    let sampling = Sampling {
+        samples: samples.as_ref().map_or(defaults.samples, |samples| *samples.get_ref()),
+        seed: seed.unwrap_or(defaults.seed),
+        filter: filter.unwrap_or(defaults.filter),
+    };
+    let numbers = vec![("samples", whole(&samples))];
+    let keys = Keys { lines, numbers, table: lines.place(start) };
+    sampling.check().map(|()| sampling).map_err(|error| keys.refused(&error))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct PathTable {
+    max_depth: Option<Spanned<u32>>,
+    roulette_from: Option<u32>,
+    light_sampling: Option<LightSampling>,
+}
+
+pub(super) fn read_path(
+    table: Option<Spanned<Table<PathTable>>>,
+    lines: &Lines<'_>,
+) -> Result<PathTracing, SceneFileError> {
+    let defaults = PathTracing::default();
+    let Some(table) = table else {
+        return Ok(defaults);
+    };
+    let start = table.span().start;
+    let PathTable { max_depth, roulette_from, light_sampling } = table.into_inner().0;
+    let path = PathTracing {
+        max_depth: max_depth.as_ref().map_or(defaults.max_depth, |depth| *depth.get_ref()),
+        roulette_from: roulette_from.unwrap_or(defaults.roulette_from),
+        light_sampling: light_sampling.unwrap_or(defaults.light_sampling),
+    };
+    let numbers = vec![("max_depth", whole(&max_depth))];
+    let keys = Keys { lines, numbers, table: lines.place(start) };
+    path.check().map(|()| path).map_err(|error| keys.refused(&error))
+}

@@ -1,0 +1,132 @@
+//! The table `[sky]`.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::color::LinearRgb;
+use crate::environment::Environment;
+use crate::exact::Table;
+use crate::lighting::{Sky, SkyLight};
+use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError, refuse_foreign, span};
+use crate::scene_file::value::{ColorValue, scaled};
+
+/// What a sky is, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Constant,
+    Gradient,
+    Image,
+}
+
+impl Kind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Gradient => "gradient",
+            Self::Image => "image",
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct SkyTable {
+    kind: Kind,
+    color: Option<Spanned<ColorValue>>,
+    zenith: Option<Spanned<ColorValue>>,
+    horizon: Option<Spanned<ColorValue>>,
+    nadir: Option<Spanned<ColorValue>>,
+    image: Option<Spanned<String>>,
+    rotation: Option<Number>,
+    strength: Option<Number>,
+    visible: Option<bool>,
+}
+
+/// A sky but for its image.
+#[derive(Debug)]
+pub(super) struct SkyPlan {
+    light: SkyPlanLight,
+    is_visible: bool,
+}
+
+#[derive(Debug)]
+enum SkyPlanLight {
+    Known(SkyLight),
+    Image { file: Placed<String>, strength: f32, rotation: f64 },
+}
+
+impl SkyPlan {
+    pub(super) fn read(
+        table: Spanned<Table<SkyTable>>,
+        lines: &Lines<'_>,
+    ) -> Result<Self, SceneFileError> {
+        let place = lines.place(table.span().start);
+        let table = table.into_inner().0;
+        let kind = table.kind;
+        refuse_foreign(
+            lines,
+            kind.name(),
+            &[
+                ("color", span(&table.color), kind == Kind::Constant),
+                ("zenith", span(&table.zenith), kind == Kind::Gradient),
+                ("horizon", span(&table.horizon), kind == Kind::Gradient),
+                ("nadir", span(&table.nadir), kind == Kind::Gradient),
+                ("image", span(&table.image), kind == Kind::Image),
+                ("rotation", span(&table.rotation), kind == Kind::Image),
+            ],
+        )?;
+        let numbers = vec![("rotation", table.rotation), ("strength", table.strength)];
+        let keys = Keys { lines, numbers, table: place };
+        let strength = keys.within("strength", [0.0, 1e6], "from 0 to 1e6")?.unwrap_or(1.0);
+        let color = |value: Option<Spanned<ColorValue>>, default: f32| {
+            let color = value.map_or(LinearRgb::gray(default), |color| color.into_inner().0);
+            scaled(color, strength).map_err(|error| place.error(error))
+        };
+        // Without numbers of its own, the gradient of a sky that no file describes.
+        let light = match kind {
+            Kind::Constant => SkyPlanLight::Known(SkyLight::Constant(color(table.color, 1.0)?)),
+            Kind::Gradient => SkyPlanLight::Known(SkyLight::Gradient {
+                zenith: color(table.zenith, 1.0)?,
+                horizon: color(table.horizon, 0.8)?,
+                nadir: color(table.nadir, 0.4)?,
+            }),
+            Kind::Image => {
+                let range = "from -36000 to 36000 degrees";
+                let degrees = keys.within("rotation", [-36e3, 36e3], range)?.unwrap_or(0.0);
+                let file = table.image.ok_or_else(|| {
+                    place.error("an image needs a file; write `image = \"FILE.hdr\"`, or .exr")
+                })?;
+                SkyPlanLight::Image {
+                    file: lines.placed(file),
+                    strength: strength as f32,
+                    rotation: degrees.to_radians(),
+                }
+            }
+        };
+        Ok(Self { light, is_visible: table.visible.unwrap_or(true) })
+    }
+
+    pub(super) fn image(&self) -> Option<&str> {
+        match &self.light {
+            SkyPlanLight::Image { file, .. } => Some(&file.value),
+            SkyPlanLight::Known(_) => None,
+        }
+    }
+
+    pub(super) fn sky(&self, image: Option<Environment>) -> Result<Sky, SceneFileError> {
+        let light = match &self.light {
+            SkyPlanLight::Known(light) => light.clone(),
+            SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {
+                environment: Arc::new(
+                    image.ok_or_else(|| file.place.error("this image was not given"))?,
+                ),
+                strength: *strength,
+                rotation: *rotation,
+            },
+        };
+        Ok(Sky { light, is_visible: self.is_visible })
+    }
+}

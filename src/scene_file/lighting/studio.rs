@@ -1,0 +1,182 @@
+//! The table `[studio]` and those in it.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::exact::Table;
+use crate::lighting::{DepthCue, Occlusion, Outline, Studio};
+use crate::math::MAX_LENGTH;
+use crate::range::RangeError;
+use crate::scene::Scene;
+use crate::scene_file::place::{Keys, Lines, Number, Place, Placed, SceneFileError, whole};
+use crate::scene_file::value::ColorValue;
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene_file) struct StudioTable {
+    ambient: Option<ColorValue>,
+    shadows: Option<bool>,
+    max_surfaces: Option<Spanned<u32>>,
+    occlusion: Option<Spanned<Table<OcclusionTable>>>,
+    depth_cue: Option<Spanned<Table<DepthCueTable>>>,
+    outline: Option<Spanned<Table<OutlineTable>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OcclusionTable {
+    radius: Option<Number>,
+    samples: Option<Spanned<u32>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DepthCueTable {
+    near: Option<Number>,
+    far: Option<Number>,
+    color: Option<ColorValue>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OutlineTable {
+    width: Option<Number>,
+    color: Option<ColorValue>,
+    depth: Option<Number>,
+    angle: Option<Number>,
+}
+
+/// A studio but for what follows the scene.
+#[derive(Debug)]
+pub(super) struct StudioPlan {
+    studio: Studio,
+    depth_cue: Option<Placed<DepthCuePlan>>,
+}
+
+#[derive(Debug)]
+struct DepthCuePlan {
+    near: Option<f64>,
+    far: Option<f64>,
+    color: Option<LinearRgb>,
+}
+
+impl StudioPlan {
+    pub(super) fn read(
+        table: Option<Spanned<Table<StudioTable>>>,
+        lines: &Lines<'_>,
+    ) -> Result<Self, SceneFileError> {
+        let place = table.as_ref().map_or(Place::START, |table| lines.place(table.span().start));
+        let table = table.map(|table| table.into_inner().0).unwrap_or_default();
+        let defaults = Studio::default();
+        let max_surfaces = table.max_surfaces.as_ref().map(|most| *most.get_ref());
+        let bare = Studio {
+            ambient: table.ambient.map_or(defaults.ambient, |color| color.0),
+            has_shadows: table.shadows.unwrap_or(defaults.has_shadows),
+            max_surfaces: max_surfaces.unwrap_or(defaults.max_surfaces),
+            ..defaults
+        };
+        let numbers = vec![("max_surfaces", whole(&table.max_surfaces))];
+        check(&bare, &Keys { lines, numbers, table: place })?;
+        let occlusion = table.occlusion.map(|table| read_occlusion(table, lines)).transpose()?;
+        let outline = table.outline.map(|table| read_outline(table, lines)).transpose()?;
+        let depth_cue = table.depth_cue.map(|table| read_depth_cue(table, lines)).transpose()?;
+        Ok(Self { studio: Studio { occlusion, outline, ..bare }, depth_cue })
+    }
+
+    /// The studio for a scene that a camera sees.
+    pub(super) fn studio(
+        &self,
+        scene: &Scene,
+        camera: &dyn Camera,
+        background: LinearRgb,
+    ) -> Result<Studio, SceneFileError> {
+        let mut studio = self.studio.clone();
+        if let Some(Placed { value: plan, place }) = &self.depth_cue {
+            let [near, far] = reach(scene, camera);
+            let near = plan.near.unwrap_or(plan.far.map_or(near, |far| near.min(far / 2.0)));
+            let far = plan.far.unwrap_or(if far > near { far } else { near + 1.0 });
+            let color = plan.color.unwrap_or(background);
+            studio.depth_cue = Some(DepthCue { near, far, color });
+            studio.check().map_err(|error| place.error(error))?;
+        }
+        Ok(studio)
+    }
+}
+
+/// From where to where, seen from the camera, there are spheres at most.
+fn reach(scene: &Scene, camera: &dyn Camera) -> [f64; 2] {
+    let bounds = scene.bounds_to_frame();
+    let distance = (bounds.center() - camera.vectors().origin).length();
+    let radius = bounds.size().length() / 2.0;
+    [(distance - radius).max(0.0), distance + radius].map(|length| length.min(MAX_LENGTH))
+}
+
+/// Checks what of the studio is not yet known to be right.
+fn check(studio: &Studio, keys: &Keys<'_>) -> Result<(), SceneFileError> {
+    studio.check().map_err(|error| keys.refused(&error))
+}
+
+fn read_occlusion(
+    table: Spanned<Table<OcclusionTable>>,
+    lines: &Lines<'_>,
+) -> Result<Occlusion, SceneFileError> {
+    let place = lines.place(table.span().start);
+    let OcclusionTable { radius, samples } = table.into_inner().0;
+    let defaults = Occlusion::default();
+    let occlusion = Occlusion {
+        radius: radius.as_ref().map(|radius| *radius.get_ref()),
+        samples: samples.as_ref().map_or(defaults.samples, |samples| *samples.get_ref()),
+    };
+    let numbers = vec![("radius", radius), ("samples", whole(&samples))];
+    let studio = Studio { occlusion: Some(occlusion), ..Studio::default() };
+    check(&studio, &Keys { lines, numbers, table: place })?;
+    Ok(occlusion)
+}
+
+fn read_outline(
+    table: Spanned<Table<OutlineTable>>,
+    lines: &Lines<'_>,
+) -> Result<Outline, SceneFileError> {
+    let place = lines.place(table.span().start);
+    let OutlineTable { width, color, depth, angle } = table.into_inner().0;
+    let keys = Keys {
+        lines,
+        numbers: vec![("width", width), ("depth", depth), ("angle", angle)],
+        table: place,
+    };
+    let defaults = Outline::default();
+    let any = [f64::NEG_INFINITY, f64::INFINITY];
+    let number = |key, default: f32| {
+        let given = keys.within(key, any, "a number")?;
+        Ok(given.map_or(default, |number| number as f32))
+    };
+    let degrees = keys.within("angle", [0.0, 180.0], "from 0 to 180 degrees")?;
+    let outline = Outline {
+        width: number("width", defaults.width)?,
+        color: color.map_or(defaults.color, |color| color.0),
+        depth: number("depth", defaults.depth)?,
+        angle: degrees.map_or(defaults.angle, |degrees| degrees.to_radians() as f32),
+    };
+    check(&Studio { outline: Some(outline), ..Studio::default() }, &keys)?;
+    Ok(outline)
+}
+
+fn read_depth_cue(
+    table: Spanned<Table<DepthCueTable>>,
+    lines: &Lines<'_>,
+) -> Result<Placed<DepthCuePlan>, SceneFileError> {
+    let place = lines.place(table.span().start);
+    let DepthCueTable { near, far, color } = table.into_inner().0;
+    let keys = Keys { lines, numbers: vec![("near", near), ("far", far)], table: place };
+    let lengths = [0.0, MAX_LENGTH];
+    let near = keys.within("near", lengths, "0 or more, and less than 2^56")?;
+    let far = keys.within("far", lengths, "more than `near`, and less than 2^56")?;
+    if let Some(far) = far.filter(|far| *far <= near.unwrap_or(0.0)) {
+        let range = "more than `near`";
+        return Err(keys.refused(&RangeError { parameter: "far", value: far, range }));
+    }
+    let value = DepthCuePlan { near, far, color: color.map(|color| color.0) };
+    Ok(Placed { value, place })
+}

@@ -1,0 +1,146 @@
+//! Tables `[materials.NAME]`, and the keys that refer to them.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::place::{Keys, Lines, Number, SceneFileError, refuse_foreign, span};
+use super::words::unknown;
+use crate::exact::Table;
+use crate::material::{Finish, Material};
+use crate::text::{one_line, shortened};
+
+/// What a material does with light, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Lambert,
+    Conductor,
+    Dielectric,
+    Emissive,
+}
+
+impl Kind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Lambert => "lambert",
+            Self::Conductor => "conductor",
+            Self::Dielectric => "dielectric",
+            Self::Emissive => "emissive",
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    kind: Kind,
+    specular: Option<Number>,
+    roughness: Option<Number>,
+    ior: Option<Number>,
+    attenuation_distance: Option<Number>,
+    strength: Option<Number>,
+    opacity: Option<Number>,
+}
+
+impl MaterialTable {
+    fn finish(&self, lines: &Lines<'_>, start: usize) -> Result<Finish, SceneFileError> {
+        let kind = self.kind;
+        let is_one = |kinds: &[Kind]| kinds.contains(&kind);
+        refuse_foreign(
+            lines,
+            kind.name(),
+            &[
+                ("specular", span(&self.specular), is_one(&[Kind::Lambert])),
+                ("roughness", span(&self.roughness), !is_one(&[Kind::Emissive])),
+                ("ior", span(&self.ior), is_one(&[Kind::Dielectric])),
+                (
+                    "attenuation_distance",
+                    span(&self.attenuation_distance),
+                    is_one(&[Kind::Dielectric]),
+                ),
+                ("strength", span(&self.strength), is_one(&[Kind::Emissive])),
+            ],
+        )?;
+        let or = |number: &Option<Number>, default: f32| {
+            number.as_ref().map_or(default, |number| *number.get_ref() as f32)
+        };
+        let material = match kind {
+            Kind::Lambert => Material::Lambert {
+                specular: or(&self.specular, 0.0),
+                roughness: or(&self.roughness, 0.3),
+            },
+            Kind::Conductor => Material::Conductor { roughness: or(&self.roughness, 0.2) },
+            Kind::Dielectric => Material::Dielectric {
+                ior: or(&self.ior, 1.5),
+                roughness: or(&self.roughness, 0.0),
+                attenuation_distance: self
+                    .attenuation_distance
+                    .as_ref()
+                    .map(|distance| *distance.get_ref() as f32),
+            },
+            Kind::Emissive => Material::Emissive { strength: or(&self.strength, 1.0) },
+        };
+        let finish = Finish { material, opacity: or(&self.opacity, 1.0) };
+        let numbers = vec![
+            ("specular", self.specular.clone()),
+            ("roughness", self.roughness.clone()),
+            ("ior", self.ior.clone()),
+            ("attenuation_distance", self.attenuation_distance.clone()),
+            ("strength", self.strength.clone()),
+            ("opacity", self.opacity.clone()),
+        ];
+        let keys = Keys { lines, numbers, table: lines.place(start) };
+        finish.check().map(|()| finish).map_err(|error| keys.refused(&error))
+    }
+}
+
+/// The materials of a file, by name.
+pub(super) struct Materials(BTreeMap<String, Finish>);
+
+impl Materials {
+    pub(super) fn new(
+        tables: BTreeMap<String, Spanned<Table<MaterialTable>>>,
+        lines: &Lines<'_>,
+    ) -> Result<Self, SceneFileError> {
+        let finishes = tables.into_iter().map(|(name, table)| {
+            let start = table.span().start;
+            Ok((name, table.into_inner().0.finish(lines, start)?))
+        });
+        Ok(Self(finishes.collect::<Result<_, _>>()?))
+    }
+
+    /// What the two keys make of a finish.
+    pub(super) fn over(
+        &self,
+        base: Finish,
+        material: Option<Spanned<String>>,
+        opacity: Option<Number>,
+        lines: &Lines<'_>,
+    ) -> Result<Finish, SceneFileError> {
+        let mut finish = base;
+        if let Some(name) = material {
+            let known = self.0.get(name.get_ref());
+            finish = *known.ok_or_else(|| {
+                let names: Vec<&str> = self.0.keys().map(String::as_str).collect();
+                let message = if names.is_empty() {
+                    format!(
+                        "there is no material `{}`; add a table `[materials.{0}]`",
+                        shortened(name.get_ref())
+                    )
+                } else {
+                    one_line(&unknown("material", name.get_ref(), &names))
+                };
+                lines.place(name.span().start).error(message)
+            })?;
+        }
+        if let Some(opacity) = opacity {
+            finish.opacity = *opacity.get_ref() as f32;
+            let place = lines.place(opacity.span().start);
+            let keys = Keys { lines, numbers: vec![("opacity", Some(opacity))], table: place };
+            finish.check().map_err(|error| keys.refused(&error))?;
+        }
+        Ok(finish)
+    }
+}

@@ -1,0 +1,63 @@
+//! Values that several tables have: colours and vectors.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{self, SeqAccess, Visitor};
+
+use crate::color::LinearRgb;
+use crate::exact;
+
+/// A CSS colour, or a linear triple.
+#[derive(Clone, Copy)]
+pub(super) struct ColorValue(pub(super) LinearRgb);
+
+/// The colour of spheres that are given none, as 8-bit sRGB: a light grey.
+pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
+
+impl Default for ColorValue {
+    fn default() -> Self {
+        Self(LinearRgb::from_srgb8(DEFAULT_COLOR))
+    }
+}
+
+impl<'de> Deserialize<'de> for ColorValue {
+    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ColorVisitor;
+
+        impl<'de> Visitor<'de> for ColorVisitor {
+            type Value = ColorValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a CSS color in quotes or a linear triple [r, g, b]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<ColorValue, E> {
+                LinearRgb::from_css(text).map(ColorValue).map_err(E::custom)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ColorValue, A::Error> {
+                let rgb = exact::elements(seq, &self)?;
+                LinearRgb::new(rgb).map(ColorValue).map_err(de::Error::custom)
+            }
+        }
+
+        deserializer.deserialize_any(ColorVisitor)
+    }
+}
+
+/// Three numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Vector(pub(super) [f64; 3]);
+
+impl<'de> Deserialize<'de> for Vector {
+    fn deserialize<D: de::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        exact::array(deserializer).map(Self)
+    }
+}
+
+/// A colour times a number that was checked.
+pub(super) fn scaled(color: LinearRgb, by: f64) -> Result<LinearRgb, String> {
+    let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
+    LinearRgb::new(rgb).map_err(|error| error.to_string())
+}

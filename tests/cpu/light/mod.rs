@@ -1,0 +1,101 @@
+//! Lit pictures of the CPU reference against answers known on paper.
+
+mod furnace;
+
+use pinhole::camera::{Camera, PinholeCamera, Pose};
+use pinhole::cpu::LitPicture;
+use pinhole::filter::PixelFilter;
+use pinhole::lighting::{Integrator, LightSampling, PathTracing, Sampling, Sky, SkyLight};
+use pinhole::ray::Ray;
+use pinhole::{Film, Image, LayerSet, Lighting, LinearRgb, Scene, Sphere, cpu};
+
+/// A colour from three numbers.
+pub(crate) fn rgb(rgb: [f32; 3]) -> LinearRgb {
+    LinearRgb::new(rgb).unwrap()
+}
+
+pub(crate) fn gray(value: f32) -> LinearRgb {
+    rgb([value; 3])
+}
+
+/// A white sphere.
+pub(crate) fn white(center: [f64; 3], radius: f64) -> Sphere {
+    Sphere::new(center, radius, LinearRgb::WHITE)
+}
+
+/// Paths that are followed to the end, over black, without a light.
+pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> Lighting {
+    let tracing = PathTracing { max_depth: 64, roulette_from: u32::MAX, light_sampling };
+    Lighting {
+        integrator: Integrator::Path(tracing),
+        sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box },
+        lights: Vec::new(),
+        sky: Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: true },
+        ground: None,
+        background: LinearRgb::BLACK,
+        is_transparent: false,
+    }
+}
+
+/// The same in a furnace: light of radiance 1 from everywhere, so that whatever loses none has radiance 1.
+pub(crate) fn furnace(samples: u32) -> Lighting {
+    let sky = Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true };
+    Lighting { sky, ..paths(samples, LightSampling::Multiple) }
+}
+
+/// A scene with a view of it.
+pub(crate) struct Shot {
+    pub(crate) scene: Scene,
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) film: Film,
+}
+
+impl Shot {
+    /// Seen along −z from a distance, as far to each side of the target as `reach`.
+    pub(crate) fn new(spheres: &[Sphere], target: [f64; 3], reach: f64, side: u32) -> Self {
+        let [x, y, z] = target;
+        let distance = 8.0 * reach;
+        let pose = Pose::looking_at([x, y, z + distance], target, [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::new(pose, distance, [reach, reach]).unwrap();
+        Self {
+            scene: Scene::new(spheres).unwrap(),
+            camera: Box::new(camera),
+            film: Film::new(side, side).unwrap(),
+        }
+    }
+
+    /// To be rendered sample by sample.
+    pub(crate) fn picture<'a>(&'a self, lighting: &'a Lighting) -> LitPicture<'a> {
+        LitPicture::new(&self.scene, self.camera.as_ref(), &self.film, lighting).unwrap()
+    }
+
+    /// Through the centre of a pixel.
+    pub(crate) fn ray(&self, [i, j]: [u32; 2]) -> Ray {
+        let location = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
+        self.camera.ray_in_world(location)
+    }
+
+    pub(crate) fn render(&self, lighting: &Lighting) -> Image {
+        let Self { scene, camera, film } = self;
+        cpu::render_lit(scene, camera.as_ref(), film, lighting, LayerSet::ALL).unwrap()
+    }
+}
+
+/// Means of the colour's components over each of `count`² blocks of a square picture.
+pub(crate) fn blocks(image: &Image, count: usize) -> Vec<[f64; 3]> {
+    let side = image.width() as usize / count;
+    let mean = |block: usize| {
+        let (left, top) = (block % count * side, block / count * side);
+        let mut sum = [0.0; 3];
+        for j in top..top + side {
+            for i in left..left + side {
+                let color = image.color()[j * image.width() as usize + i];
+                for (sum, c) in sum.iter_mut().zip(color) {
+                    *sum += f64::from(c);
+                }
+            }
+        }
+        sum.map(|sum| sum / (side * side) as f64)
+    };
+    (0..count * count).map(mean).collect()
+}
