@@ -142,7 +142,9 @@ mod tests {
         let mut legal = LegalHits::default();
         legal.clear();
         for (sphere, id) in spheres.iter().zip(0..) {
-            if let Some((hit, may_miss)) = legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default()) {
+            if let Some((hit, may_miss)) =
+                legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default())
+            {
                 legal.spheres.push(hit);
                 if !may_miss {
                     legal.miss = false;

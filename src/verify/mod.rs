@@ -51,8 +51,8 @@ pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use paths::{
-    PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation, RecordedSample,
-    RecordedSurface, StageCounts, UploadedLook, UploadedSky,
+    PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation,
+    RecordedSample, RecordedSurface, StageCounts, UploadedLook, UploadedSky,
 };
 pub use recording::{NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 pub use rounding::Interval;

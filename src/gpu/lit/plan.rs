@@ -176,7 +176,7 @@ mod tests {
             (32 * pixels, 32 * pixels)
         );
         let all = plan.scene_buffers.iter().chain(&plan.tile_buffers).chain(&plan.tile_textures);
-        assert_eq!(plan.device_bytes, all.map(|buffer| buffer.bytes).sum());
+        assert_eq!(plan.device_bytes, all.map(|buffer| buffer.bytes).sum::<u64>());
         assert_eq!(plan.host_bytes, (12 + 56 + 32 + 4) * pixels);
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
 

@@ -177,8 +177,7 @@ impl Headless {
                 TileBuffers::new(device, queue, renderer, tile.size, &lit, lighting)?;
             let limit = iteration_limit(device);
             let view = (camera, film);
-            let frames =
-                frames(searched, view, seen(&buffers.all, view, lighting), tile, limit);
+            let frames = frames(searched, view, seen(&buffers.all, view, lighting), tile, limit);
             let pixels = tile.size[0] as usize * tile.size[1] as usize;
             let mut keeper = Keeper::new(device, &tile_buffers, pixels);
             let total = samples.end.saturating_sub(samples.start);
@@ -190,8 +189,7 @@ impl Headless {
                     LitDecision::Finish | LitDecision::Stop => Err(GpuError::Stopped),
                 };
                 keeper.sample = RecordedSample { sample, ..RecordedSample::default() };
-                let mut run =
-                    Run::new(self, renderer, &tile_buffers, searched, frames, &mut after);
+                let mut run = Run::new(self, renderer, &tile_buffers, searched, frames, &mut after);
                 run.keeper = Some(&mut keeper);
                 tile_buffers.record_clear(run.encoder());
                 run.sample(sample, &lit, lighting)?;

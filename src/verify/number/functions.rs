@@ -49,13 +49,15 @@ pub(in crate::verify) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
 /// Sine and cosine of an angle in turns.
 pub(in crate::verify) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> [Number; 2] {
     let quarter = choices.pick((Number::known(4.0) * turns + Number::HALF).floor());
-    let rest = (turns - Number::known(0.25 * quarter)).fence();
+    // Numbers that are nearly equal: their difference is exact, unless a compiler takes it apart.
+    let Interval { low, high } = turns.interval();
+    let rest =
+        Number { products: 1, ..Number::between(low - 0.25 * quarter, high - 0.25 * quarter) };
+    let rest = rest.fence();
     let square = rest.squared().fence();
     let sine =
         (rest * square.polynomial(&[6.283_185_5, -41.341_663, 81.592_35, -75.393_56])).fence();
-    let cosine = square
-        .polynomial(&[1.0, -19.739_208, 64.939_31, -85.442_3, 59.202_797])
-        .fence();
+    let cosine = square.polynomial(&[1.0, -19.739_208, 64.939_31, -85.442_3, 59.202_797]).fence();
     match quarter.rem_euclid(4.0) as u32 {
         0 => [sine, cosine],
         1 => [cosine, -sine],
@@ -80,7 +82,8 @@ pub(in crate::verify) fn atan2_turns(y: Number, x: Number, choices: &mut Choices
     let (y, x) = (y.fence(), x.fence());
     let (across, up) = (x.abs(), y.abs());
     let smallest = Number::known(2.0_f64.powi(-100));
-    let ratio = (across.min(up) / across.max(up).max(smallest)).fence().min(Number::around(1.0, 4.0 * U));
+    let ratio =
+        (across.min(up) / across.max(up).max(smallest)).fence().min(Number::around(1.0, 4.0 * U));
     let square = ratio.squared().fence();
     let octant = (ratio * square.polynomial(&SERIES)).fence();
     let is_steep = choices.decide(up.is_more(across));

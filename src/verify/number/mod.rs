@@ -110,8 +110,9 @@ impl Number {
         Interval { low, high }
     }
 
+    /// Whether it is zero whatever a device does; what only cancels is not.
     pub(super) fn is_zero(&self) -> bool {
-        self.low == 0.0 && self.high == 0.0
+        self.size == 0.0
     }
 
     /// Whether it is less than another; `None` if that is open.
@@ -279,7 +280,11 @@ impl Div for Number {
             most + relative * most.abs() + FLUSH,
         );
         // The quotient of positive numbers is positive.
-        let quotient = if least >= 0.0 { Self::between(quotient.low.max(0.0), quotient.high) } else { quotient };
+        let quotient = if least >= 0.0 {
+            Self::between(quotient.low.max(0.0), quotient.high)
+        } else {
+            quotient
+        };
         quotient.bounded()
     }
 }

@@ -108,8 +108,7 @@ impl Kernel<'_> {
             let kept = self.energy(material.energies, out.0[2]);
             let seen = Number::ONE + ggx_lambda(material.alpha, out.0[2]);
             let ratio = seen / (seen + ggx_lambda(material.alpha, direction.0[2]));
-            let weight =
-                schlick(color, half.dot(*out)).times(given_back(color, kept)) * ratio;
+            let weight = schlick(color, half.dot(*out)).times(given_back(color, kept)) * ratio;
             return self.above(direction, weight, r.density);
         }
         let divisor = at_least_little(r.density);

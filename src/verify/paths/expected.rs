@@ -110,7 +110,8 @@ impl Expected {
         size: f64,
     ) -> Result<(), Mismatch> {
         let legal = legal.intervals();
-        let scale = legal.iter().map(|axis| axis.high.abs().max(axis.low.abs())).fold(size, f64::max);
+        let scale =
+            legal.iter().map(|axis| axis.high.abs().max(axis.low.abs())).fold(size, f64::max);
         found
             .into_iter()
             .zip(legal)

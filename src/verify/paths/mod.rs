@@ -18,6 +18,7 @@ mod recording;
 mod search;
 mod sky;
 mod start;
+mod tables;
 mod upload;
 mod vertex;
 mod warp;

@@ -28,7 +28,12 @@ struct Entry {
 
 impl Entry {
     /// `distance` is how far it goes before it enters the box, if that is known.
-    fn new(model: &CameraModel, origin: [f32; 3], direction: [f32; 3], distance: Option<f32>) -> Self {
+    fn new(
+        model: &CameraModel,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        distance: Option<f32>,
+    ) -> Self {
         let line = Line::new(origin, direction);
         let ray = CameraRay {
             line,
@@ -49,7 +54,8 @@ impl Entry {
         }
         let middle = 0.5 * (enter.low + enter.high);
         let along = middle * line.direction;
-        let rounded = PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
+        let rounded =
+            PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
         let across = rounded.length();
         let slack = Slack { across, along: across + enter.high - middle, direction: 0.0 };
         Self { entered, line: Line::exact(line.origin + along, line.direction), slack }
@@ -165,7 +171,8 @@ pub(super) fn check_open(
     must_be_hidden &= !entry.entered.may_miss_box && rest.low > 0.0;
     let is_hidden = open == 0.0;
     if (is_hidden && !may_be_hidden) || (!is_hidden && must_be_hidden) {
-        let words = if is_hidden { "hidden, but nothing is there" } else { "open, but it is hidden" };
+        let words =
+            if is_hidden { "hidden, but nothing is there" } else { "open, but it is hidden" };
         return Err(expected.fail(PathStage::Occlude, OPEN.1, words.to_owned()));
     }
     if !is_hidden {

@@ -11,7 +11,7 @@ use crate::math::wide;
 use crate::verify::line::Line;
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
-use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma};
+use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use crate::verify::shading::{Chord, normal_at};
 use crate::verify::sphere::{Slack, SphereTest};
 
@@ -145,7 +145,8 @@ impl Kernel<'_> {
         let color = self.scene.palette()[palette as usize].to_array();
         let paint = self.paint(color, palette + 1, finish.opacity);
 
-        let entered = Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let entered =
+            Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Entered { line, origin, slack } = &entered;
         let Some(test) = SphereTest::new(line, sphere, *slack) else {
             let words = format!("sphere {} is not met", hit.id);
@@ -162,8 +163,7 @@ impl Kernel<'_> {
         } else {
             (test.half, test.exact_half())
         };
-        let is_behind =
-            is_far_wall || self.choices.decide(middle.is_less(Number::had(hit.t)));
+        let is_behind = is_far_wall || self.choices.decide(middle.is_less(Number::had(hit.t)));
         let chord = Chord { half, exact, is_behind };
         let (normal, error) = normal_at(&test, line, chord, radius, *slack);
         let mut outward = Vector::around(normal, error);
@@ -171,31 +171,43 @@ impl Kernel<'_> {
         let r = Number::had(radius);
         let far = Number::known(64.0) * (Number::had(hit.t) + Number::had(hit.distance));
         let is_on_ray = self.choices.decide(r.is_more(far));
-        let position = if is_on_ray {
-            *origin + direction * Number::had(hit.t)
-        } else {
-            center + outward * r
-        };
+        let position =
+            if is_on_ray { *origin + direction * Number::had(hit.t) } else { center + outward * r };
         let position = self.compared(position.fence(), radius.into())?;
         if !is_on_ray {
-            // The point is that of the normal.
-            let error = |c: Number| {
-                let Interval { low, high } = c.interval();
-                let size = high.abs().max(low.abs()) + f64::from(radius);
-                PAD * gamma(2) * size + 2.0 * FLUSH
-            };
-            outward = outward.zip(position.zip(center, |p, c| {
-                let (p, center) = (p.interval().low, c.interval().low);
-                let (away, error) = (p - center, error(c));
-                let r = f64::from(radius);
-                Number::between((away - error) / r, (away + error) / r)
-            }), Number::narrowed);
+            outward = self.normal_by_point(outward, position, sphere)?;
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
         let normal = if is_back { -outward } else { outward };
         let Paint { color, place, is_passed } = paint;
         let sphere = [x, y, z, radius];
         Ok(Vertex { position, normal, is_back, distance, sphere, color, place, is_passed })
+    }
+}
+
+impl Kernel<'_> {
+    /// The normal, as far as the point on the sphere that was made of it tells.
+    fn normal_by_point(
+        &mut self,
+        outward: Vector,
+        position: Vector,
+        [x, y, z, radius]: [f32; 4],
+    ) -> Result<Vector, Mismatch> {
+        let (center, r) = (wide([x, y, z]), f64::from(radius));
+        let away = DVec3::from(position.intervals().map(|axis| axis.low)) - center;
+        // A product and a sum.
+        let size = center.abs() + r * (1.0 + unit_error(r));
+        let error = PAD * gamma(2) * size + DVec3::splat(2.0 * FLUSH);
+        let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
+        if !legal.contains(away.length()) {
+            let words = format!("{:e} from the sphere's centre; legal is {legal}", away.length());
+            return Err(self.expected.fail(POSITION.0, POSITION.1, words));
+        }
+        let by_point = [0, 1, 2].map(|axis| {
+            let (away, error) = (away[axis], error[axis]);
+            Number::between((away - error) / r, (away + error) / r)
+        });
+        Ok(outward.zip(Vector(by_point), Number::narrowed))
     }
 }
 
@@ -215,8 +227,8 @@ impl Entered {
             let line = Line::new(origin, direction);
             return Self { line, origin: Vector::had(origin), slack: Slack::default() };
         }
-        let error = PAD * (gamma(2) * (start.abs() + (distance * along).abs()))
-            + DVec3::splat(2.0 * FLUSH);
+        let error =
+            PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
         let [x, y, z] = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
         let length = error.length() + U * FLUSH;
         Self {

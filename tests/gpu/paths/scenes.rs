@@ -243,6 +243,11 @@ pub(crate) fn image() -> LitView {
     view(&grid(|i| if i % 2 == 0 { metal(0.4) } else { Material::default() }), lit)
 }
 
+pub(crate) fn image_over_ground() -> LitView {
+    let view = image();
+    LitView { lighting: Lighting { ground: Some(ground(-2.4)), ..view.lighting }, ..view }
+}
+
 pub(crate) fn opacity() -> LitView {
     let lit = lighting(vec![light(directional(0.0))], sky(), LightSampling::Multiple);
     let spheres: Vec<_> = grid(|i| if i == 4 { glass_of(1.5, 0.0, None) } else { lobe(0.2, 0.4) })
@@ -254,7 +259,9 @@ pub(crate) fn opacity() -> LitView {
 }
 
 pub(crate) fn from_inside() -> LitView {
-    let lit = lighting(Vec::new(), no_sky(), LightSampling::Multiple);
+    // Of which nothing gets inside.
+    let sun = vec![light(directional(0.0))];
+    let lit = lighting(sun, no_sky(), LightSampling::Multiple);
     let mut spheres = lamps();
     spheres.push(ball([0.0, 0.0, 0.0], 9.0, gray(0.8)));
     let pose = Pose::looking_at([0.5, 1.5, 5.0], [0.0; 3], [0.1, 1.0, 0.0]).unwrap();
