@@ -1,5 +1,5 @@
 // In a studio: whether something is near in one direction of ambient light. One dispatch per brick. Twin:
-// src/cpu/lit/studio.rs.
+// src/cpu/light/studio.rs.
 
 @compute @workgroup_size(64)
 fn ambient(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -1,4 +1,4 @@
-// Where a surface scatters a path. Twin: src/cpu/lit/path.rs.
+// Where a surface scatters a path. Twin: src/cpu/light/path.rs.
 
 // On which side of a surface a ray starts.
 fn side_of(at: Surface, is_behind: bool) -> u32 {

@@ -1,4 +1,4 @@
-// Surfaces that reflect: Lambert's, with or without a lobe, and metals. Twin: src/cpu/lit/bsdf.rs.
+// Surfaces that reflect: Lambert's, with or without a lobe, and metals. Twin: src/cpu/light/bsdf/mod.rs.
 
 fn schlick(color: vec3f, cosine: f32) -> vec3f {
     let m = clamp(1.0 - cosine, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// Light that a path meets by chance. Twin: src/cpu/lit/path.rs.
+// Light that a path meets by chance. Twin: src/cpu/light/path.rs.
 
 // What it counts, if it was scattered there with a density and might have been looked for with another: the balance
 // heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).

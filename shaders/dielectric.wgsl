@@ -1,4 +1,4 @@
-// Glass, smooth and rough. Twin: src/cpu/lit/dielectric.rs.
+// Glass, smooth and rough. Twin: src/cpu/light/bsdf/dielectric.rs.
 
 // The share of unpolarised light that is reflected; `relative` is the index behind over that before.
 fn fresnel(relative: f32, cosine: f32) -> f32 {

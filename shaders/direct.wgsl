@@ -1,4 +1,4 @@
-// One light that a surface looks for. Twin: src/cpu/lit/path.rs.
+// One light that a surface looks for. Twin: src/cpu/light/path.rs.
 
 struct Found {
     direction: vec3f,

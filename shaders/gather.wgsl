@@ -1,5 +1,5 @@
 // In a studio: ambient light from some directions, of which each has a bit that says whether something is near.
-// Twin: src/cpu/lit/studio.rs.
+// Twin: src/cpu/light/studio.rs.
 
 @compute @workgroup_size(64)
 fn gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -1,4 +1,4 @@
-// In a studio: some lights on the surface that every pixel sees. Twin: src/cpu/lit/studio.rs.
+// In a studio: some lights on the surface that every pixel sees. Twin: src/cpu/light/studio.rs.
 
 // The light of a lobe, on a surface that counts 1.
 fn lobe_light(lobe: vec3f, normal: vec3f, out: vec3f, toward: vec3f) -> f32 {

@@ -1,4 +1,4 @@
-// Lights that are no spheres of the scene, as a surface sees them. Twin: src/cpu/lit/lamp.rs.
+// Lights that are no spheres of the scene, as a surface sees them. Twin: src/cpu/light/lamp.rs.
 
 const LAMP_HEAD: u32 = 0u;
 const LAMP_DIRECTIONAL: u32 = 1u;

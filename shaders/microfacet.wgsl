@@ -1,4 +1,4 @@
-// The GGX distribution of small mirrors, in the frame of a normal. Twin: src/cpu/lit/microfacet.rs.
+// The GGX distribution of small mirrors, in the frame of a normal. Twin: src/cpu/light/bsdf/ggx.rs.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007); Heitz, "Sampling the GGX
 // Distribution of Visible Normals", JCGT 7(4), 2018.

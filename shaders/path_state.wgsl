@@ -39,7 +39,7 @@ const PATH_INSIDE: u32 = 2u;
 const PATH_ON_GROUND: u32 = 4u;
 // In a studio: there is a surface to be lit.
 const PATH_LIT: u32 = 8u;
-// The surface is seen from inside of its sphere.
+// The surface is seen from inside of its sphere, which is opaque.
 const PATH_BACK: u32 = 16u;
 // No light that the ray meets has been looked for directly.
 const PATH_FULL: u32 = 32u;

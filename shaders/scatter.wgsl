@@ -1,4 +1,4 @@
-// What a path meets, what light it finds there, and where it goes on. Twin: src/cpu/lit/path.rs.
+// What a path meets, what light it finds there, and where it goes on. Twin: src/cpu/light/path.rs.
 
 // A path as it goes on. Everything is stored once, at the end: a software device pays for stores in branches that are
 // not taken.

@@ -1,5 +1,5 @@
 // In a studio: whether one light is hidden from the surface that every pixel sees. One dispatch per brick. Twin:
-// src/cpu/lit/studio.rs.
+// src/cpu/light/studio.rs.
 
 @compute @workgroup_size(64)
 fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -1,4 +1,4 @@
-// The ray of a sample of every pixel. Twin: src/cpu/lit/mod.rs.
+// The ray of a sample of every pixel. Twin: src/cpu/light/sample.rs.
 
 @compute @workgroup_size(64)
 fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -1,4 +1,4 @@
-// In a studio: what a ray meets, and what of it needs no further ray. Twin: src/cpu/lit/studio.rs.
+// In a studio: what a ray meets, and what of it needs no further ray. Twin: src/cpu/light/studio.rs.
 
 // How much of the colour is lost in the distance.
 fn faded(distance: f32) -> f32 {
@@ -60,7 +60,9 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let share = select(0.0, material.parameter, material.kind == LAMBERT);
     paths[slot(index, LOBE)] = vec4u(bitcast<vec2u>(vec2f(share, material.alpha)), material.energies, 0u);
     let goes_on = select(PATH_ALIVE, 0u, is_last) | select(PATH_INSIDE, 0u, vertex.is_back || met == GROUND_MET);
-    let is_lit = select(PATH_LIT, 0u, is_emitter) | select(0u, PATH_BACK, vertex.is_back);
+    // What lets light through hides none.
+    let is_closed = vertex.is_back && vertex.opacity >= 1.0;
+    let is_lit = select(PATH_LIT, 0u, is_emitter) | select(0u, PATH_BACK, is_closed);
     let on_ground = select(0u, PATH_ON_GROUND, met == GROUND_MET);
     store_start(index, vertex.position, goes_on | is_lit | on_ground);
 }

@@ -1,4 +1,4 @@
-// From the unit square to directions. Twin: src/cpu/lit/warp.rs.
+// From the unit square to directions. Twin: src/cpu/light/maps.rs.
 
 // Two unit vectors at right angles to a third and to each other.
 //

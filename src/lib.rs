@@ -77,6 +77,7 @@ pub mod verify;
 
 pub use color::LinearRgb;
 pub use encoding::Encoding;
+pub use environment::Environment;
 pub use film::Film;
 pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};

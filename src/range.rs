@@ -2,7 +2,7 @@
 
 /// A parameter is out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{parameter}` is {value:?}; it must be {range}")]
+#[error("`{parameter}` is {}; it must be {range}", self.value())]
 pub struct RangeError {
     /// The key of a scene file.
     pub parameter: &'static str,
@@ -13,6 +13,11 @@ pub struct RangeError {
 }
 
 impl RangeError {
+    /// The number as people write it: a whole number has no point.
+    pub(crate) fn value(&self) -> String {
+        format!("{:?}", self.value).trim_end_matches(".0").to_owned()
+    }
+
     /// The number, if it is at least `low` and at most `high`; NaN is not.
     pub(crate) fn unless_within(
         parameter: &'static str,

@@ -22,10 +22,10 @@ pub(super) struct LightArgs {
     #[arg(long, help_heading = HEADING, value_enum)]
     integrator: Option<IntegratorArg>,
     /// Samples of each pixel, up to 16777216 [default: the scene's, or 16]
-    #[arg(long, help_heading = HEADING, value_name = "N")]
+    #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     samples: Option<u32>,
     /// Another seed gives other noise [default: the scene's, or 0]
-    #[arg(long, help_heading = HEADING, value_name = "N")]
+    #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     seed: Option<u32>,
     /// How samples around the centre of a pixel are weighted [default: the scene's, or blackman-harris]
     #[arg(long, help_heading = HEADING, value_enum)]
@@ -87,8 +87,7 @@ impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
         let LightArgs { samples, seed, ao, outline, .. } = *args;
         let refused = |flag: &str, error: &RangeError| {
-            let RangeError { value, range, .. } = error;
-            Failure::usage(format!("--{flag} {value:?}: it must be {range}").replace(".0:", ":"))
+            Failure::usage(format!("--{flag} {}: it must be {}", error.value(), error.range))
         };
         if let Some(samples) = samples {
             let sampling = Sampling { samples, ..Sampling::default() };

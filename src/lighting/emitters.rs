@@ -140,7 +140,7 @@ mod tests {
             for u in [first, last] {
                 assert_eq!(emitters.pick(u as u32), Some((place, probability)));
             }
-            assert_eq!(emitters.probability(*id), probability);
+            assert_eq!(Some((place, emitters.probability(*id))), emitters.pick(first as u32));
             first = last + 1;
         }
         assert_eq!(first, 1 << 32);

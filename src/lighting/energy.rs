@@ -108,7 +108,7 @@ impl EnergyTables {
 /// E at the cosines of [`ENTRIES`], by a quadrature of some ten milliseconds.
 #[must_use]
 pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
-    let points = disk_points();
+    let points = disk_points(POINTS);
     parallel::map(ENTRIES, |k| {
         let x = k as f64 / (ENTRIES - 1) as f64;
         mean_weight(lobe, x * x * x * x, &points) as f32
@@ -127,17 +127,20 @@ pub fn lookup(table: &[f32], cosine: f64) -> f64 {
 
 /// Points of the half of the unit disk with x > 0, evenly: a Fibonacci lattice in r² and angle. Of the quadratures
 /// tried (midpoints, Gauss's, other maps), it is the best for weights with kinks along curves, where light grazes.
-fn disk_points() -> Vec<[f64; 2]> {
-    const COUNT: usize = 2584;
-    const STEP: usize = 1597;
+///
+/// The numbers are Fibonacci's, one after the other.
+fn disk_points([step, count]: [usize; 2]) -> Vec<[f64; 2]> {
     let point = |i: usize| {
-        let along = (i as f64 + 0.5) / COUNT as f64;
-        let around = ((i * STEP % COUNT) as f64 + 0.5) / COUNT as f64;
+        let along = (i as f64 + 0.5) / count as f64;
+        let around = ((i * step % count) as f64 + 0.5) / count as f64;
         let (sine, cosine) = (PI * (around - 0.5)).sin_cos();
         [cosine * along.sqrt(), sine * along.sqrt()]
     };
-    (0..COUNT).map(point).collect()
+    (0..count).map(point).collect()
 }
+
+/// As many as tables are made with.
+const POINTS: [usize; 2] = [1597, 2584];
 
 /// The flattest view that is told from one along the surface.
 const MIN_COSINE: f64 = 1e-6;
@@ -200,4 +203,111 @@ fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let parallel = (eta * cosine - inside) / (eta * cosine + inside);
     let across = (cosine - eta * inside) / (cosine + eta * inside);
     (0.5 * (parallel * parallel + across * across), inside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lobes(roughness: f32) -> Vec<Lobe> {
+        let mut lobes = vec![Lobe::Reflection { roughness }];
+        for ior in [1.1, 1.5, 4.0] {
+            lobes.extend([false, true].map(|is_leaving| Lobe::Refraction {
+                ior,
+                roughness,
+                is_leaving,
+            }));
+        }
+        lobes
+    }
+
+    /// Half-way between entries, where interpolation is worst.
+    #[test]
+    fn tables_are_fine_enough() {
+        let points = disk_points([6765, 10946]);
+        for roughness in [0.02, 0.1, 0.4, 1.0] {
+            for lobe in lobes(roughness) {
+                let exact = |k: f64| mean_weight(lobe, (k / 255.0).powi(4), &points);
+                let bound = match lobe {
+                    Lobe::Reflection { .. } => 2e-4,
+                    Lobe::Refraction { .. } => 5e-4,
+                };
+                for k in (0..255).step_by(12).chain(252..255).map(f64::from) {
+                    let error = 0.5 * (exact(k) + exact(k + 1.0)) - exact(k + 0.5);
+                    assert!(error.abs() < bound, "{lobe:?}, {k}: {error}");
+                }
+            }
+        }
+    }
+
+    /// Against a finer quadrature over directions, by the lobe itself: ∫ D G2/(4 cos) over the hemisphere.
+    #[test]
+    fn entries_are_what_the_lobe_reflects() {
+        const STEPS: u32 = 500;
+        for roughness in [0.3_f32, 0.6, 1.0] {
+            let alpha = f64::from(roughness) * f64::from(roughness);
+            let table = albedo_table(Lobe::Reflection { roughness });
+            for cosine in [0.1_f64, 0.35, 0.7, 0.95] {
+                let view = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+                let mut sum = 0.0;
+                for i in 0..STEPS {
+                    let (sine, z) = (0.5 * PI * (f64::from(i) + 0.5) / f64::from(STEPS)).sin_cos();
+                    for j in 0..STEPS {
+                        let (y, x) = (PI * (f64::from(j) + 0.5) / f64::from(STEPS)).sin_cos();
+                        let h = (view + DVec3::new(sine * x, sine * y, z)).normalize_or(DVec3::Z);
+                        let t = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
+                        let shadowing = 1.0 / (1.0 + smith(cosine, alpha) + smith(z, alpha));
+                        sum += sine * shadowing / (PI * alpha * alpha * t * t * 4.0 * cosine);
+                    }
+                }
+                // Both halves.
+                let wanted = sum * PI * PI / f64::from(STEPS).powi(2);
+                let found = lookup(&table, cosine);
+                assert!((found - wanted).abs() < 5e-4, "{roughness}, {cosine}: {found}, {wanted}");
+            }
+        }
+    }
+
+    /// Against 76 times as many points.
+    #[test]
+    fn entries_do_not_depend_on_the_quadrature() {
+        let finer = disk_points([121_393, 196_418]);
+        let points = disk_points(POINTS);
+        for roughness in [0.05, 0.3, 1.0] {
+            for lobe in lobes(roughness) {
+                for cosine in [0.02, 0.3, 0.8] {
+                    let found = mean_weight(lobe, cosine, &points);
+                    let wanted = mean_weight(lobe, cosine, &finer);
+                    let bound = if matches!(lobe, Lobe::Reflection { .. }) { 5e-4 } else { 1e-3 };
+                    assert!((found - wanted).abs() < bound, "{lobe:?}: {found}, {wanted}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lookups_interpolate() {
+        let table: Vec<f32> = (0..ENTRIES).map(|k| k as f32).collect();
+        assert!((lookup(&table, 0.0)).abs() < 1e-12);
+        assert!((lookup(&table, 1.0) - 255.0).abs() < 1e-12);
+        assert!((lookup(&table, (100.25_f64 / 255.0).powi(4)) - 100.25).abs() < 1e-9);
+    }
+
+    #[test]
+    fn materials_share_tables() {
+        let finish = |material| Finish { material, opacity: 1.0 };
+        let glass = Material::Dielectric { ior: 1.5, roughness: 0.3, attenuation_distance: None };
+        let tables = EnergyTables::of(&[
+            finish(Material::default()),
+            finish(Material::Conductor { roughness: 0.3 }),
+            finish(glass),
+            finish(Material::Lambert { specular: 0.1, roughness: 0.3 }),
+            finish(Material::Emissive { strength: 1.0 }),
+            finish(glass),
+        ]);
+        assert_eq!(tables.starts(), [None, Some(0), Some(256), Some(0), None, Some(256)]);
+        assert_eq!(tables.entries().len(), 3 * 256);
+        let leaving = Lobe::Refraction { ior: 1.5, roughness: 0.3, is_leaving: true };
+        assert_eq!(tables.entries()[512..], albedo_table(leaving));
+    }
 }

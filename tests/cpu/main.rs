@@ -38,6 +38,7 @@ mod run_file;
 mod sampling;
 mod scene;
 mod scene_file;
+mod scene_file_light;
 mod soundness;
 mod stereo;
 mod structures;

@@ -156,7 +156,7 @@ fn errors_name_place_and_remedy() {
         ),
         (
             "data = 'a.xyz'\nradius_scale = -1.0\n",
-            "line 2, column 16: `radius_scale` is -1.0; it must be finite and greater than 0",
+            "line 2, column 16: `radius_scale` is -1; it must be finite and greater than 0",
         ),
         (
             "[camera.pinhole]\neye = [1, 1, 1]\nlook_at = [1, 1, 1]\n",

@@ -13,6 +13,8 @@ mod device;
 mod embedding;
 mod faults;
 mod lens;
+mod light;
+mod light_program;
 mod parts;
 mod paths;
 mod pictures;
@@ -62,6 +64,8 @@ fn main() {
     let groups = [
         agreement::trials(),
         lens::trials(),
+        light::trials(),
+        light_program::trials(),
         pictures::trials(),
         parts::trials(),
         paths::trials(),

@@ -12,6 +12,7 @@ mod bad_input;
 mod generate;
 mod good_input;
 mod interrupt;
+mod light;
 mod pictures;
 mod stereo;
 mod support;

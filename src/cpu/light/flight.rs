@@ -171,3 +171,112 @@ fn ground(stage: &Stage<'_>, flight: &Flight) -> Option<f64> {
     let t = (plane.point - flight.ray.origin).dot(plane.normal) / descent;
     (t > 0.0).then_some(t)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{PinholeCamera, Pose};
+    use crate::color::LinearRgb;
+    use crate::lighting::Lighting;
+    use crate::scene::Scene;
+    use crate::sphere::Sphere;
+
+    fn with_spheres(spheres: &[Sphere], test: impl FnOnce(&Stage<'_>)) {
+        let scene = Scene::new(spheres).unwrap();
+        let pose = Pose::looking_at([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
+        test(&Stage::new(&scene, &camera, &Lighting::default()));
+    }
+
+    fn direction(random: &mut fastrand::Rng) -> DVec3 {
+        DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X)
+    }
+
+    /// However flat, and whatever rounding says of the side to which it goes, a ray through the inside of a sphere
+    /// stays there until it is let out, and one that leaves it does not come back.
+    #[test]
+    fn no_wall_leaks() {
+        let mut random = fastrand::Rng::with_seed(21);
+        for radius in [1e-4, 1.0, 1e6] {
+            with_spheres(&[Sphere::new([0.0; 3], radius, LinearRgb::WHITE)], |stage| {
+                let (_, radius) = stage.sphere(0);
+                for _ in 0..20_000 {
+                    let outward = direction(&mut random);
+                    let along = outward.any_orthonormal_vector();
+                    let tilt = (random.f64() - 0.5) * 10_f64.powf(-16.0 * random.f64());
+                    let direction = (along + tilt * outward).normalize_or(along);
+                    let ray = Ray { origin: radius * outward, direction };
+                    let outside = Flight { ray, start: Start::Outside(0) };
+                    assert!(nearest(stage, &outside).is_none());
+                    let inside = Flight { ray, start: Start::Inside(0) };
+                    let met = nearest(stage, &inside).unwrap();
+                    assert!(!met.is_outside, "{outward}, {tilt}");
+                    assert_eq!(met.this_side(), Start::Inside(0));
+                    assert!((met.point.length() / radius - 1.0).abs() < 1e-14);
+                    let wanted = -2.0 * radius * tilt.min(0.0) / (1.0 + tilt * tilt).sqrt();
+                    assert!((met.distance - wanted).abs() < 1e-14 * radius);
+                }
+            });
+        }
+    }
+
+    /// What is met from outside is met on its outer side, also where the ray is all but a tangent.
+    #[test]
+    fn from_outside_the_outer_side_is_met() {
+        let mut random = fastrand::Rng::with_seed(22);
+        let mut hits = 0;
+        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)], |stage| {
+            for _ in 0..20_000 {
+                let outward = direction(&mut random);
+                let along = outward.any_orthonormal_vector();
+                let miss = 1.0 + (random.f64() - 0.6) * 10_f64.powf(-16.0 * random.f64());
+                let origin = miss * outward - (1.0 + 9.0 * random.f64()) * along;
+                let ray = Ray { origin, direction: along };
+                if let Some(met) = nearest(stage, &Flight { ray, start: Start::Free }) {
+                    assert!(met.is_outside, "{outward}, {miss}");
+                    hits += 1;
+                }
+            }
+        });
+        assert!(hits > 5000, "{hits}");
+    }
+
+    #[test]
+    fn of_equal_distances_the_smaller_id_is_met() {
+        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE); 3], |stage| {
+            let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: -DVec3::Z };
+            let met = nearest(stage, &Flight { ray, start: Start::Free }).unwrap();
+            assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
+            let ray = Ray { origin: met.point, ..ray };
+            let met = nearest(stage, &Flight { ray, start: met.other_side() }).unwrap();
+            assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
+        });
+    }
+
+    /// Shadow rays end at the light, and see all but what they start on and where they end.
+    #[test]
+    fn what_is_between_hides() {
+        let at = |z: f64, opacity: f32| {
+            Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::WHITE).with_opacity(opacity)
+        };
+        with_spheres(&[at(0.0, 1.0), at(2.0, 0.9), at(4.0, 1.0)], |stage| {
+            let up = Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Z };
+            let from = |start| Flight { ray: up, start };
+            let hidden = |start, t_max, hiding, exempt| {
+                is_occluded(stage, &from(start), t_max, hiding, exempt)
+            };
+            let outside = Start::Outside(0);
+            assert!(hidden(outside, 9.0, Hiding::All, None));
+            assert!(!hidden(outside, 1.0, Hiding::All, None), "the near wall of the next");
+            assert!(hidden(outside, 1.1, Hiding::All, None));
+            assert!(!hidden(outside, 1.1, Hiding::Opaque, None));
+            assert!(!hidden(outside, 3.0, Hiding::Opaque, None));
+            assert!(hidden(outside, 3.1, Hiding::Opaque, None));
+            assert!(!hidden(outside, 9.0, Hiding::Opaque, Some(2)));
+            let down = Ray { direction: -DVec3::Z, ..up };
+            let inside = Flight { ray: down, start: Start::Inside(0) };
+            assert!(is_occluded(stage, &inside, 1.1, Hiding::Opaque, None), "its own far wall");
+            assert!(!is_occluded(stage, &inside, 1.0, Hiding::Opaque, None));
+        });
+    }
+}

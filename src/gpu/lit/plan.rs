@@ -169,7 +169,7 @@ mod tests {
         let plan = planned(1.0, 512, &lighting, LayerSet::COLOR, GPU);
         assert_eq!((plan.tile_size, plan.tile_count), ([512, 512], 1));
         let pixels = 1 << 18;
-        assert_eq!(bytes(&plan, "paths"), 176 * pixels);
+        assert_eq!(bytes(&plan, "paths"), 16 * PATH_SLOTS * pixels);
         assert_eq!(bytes(&plan, "hits"), 16 * pixels);
         assert_eq!(
             (bytes(&plan, "film"), bytes(&plan, "film read-back")),
@@ -187,11 +187,11 @@ mod tests {
     #[test]
     fn what_is_larger_than_a_tile_is_cut() {
         let plan = planned(1.0, 4096, &Lighting::default(), LayerSet::COLOR, GPU);
-        assert!(bytes(&plan, "paths") <= 176 << 19);
+        assert!(bytes(&plan, "paths") <= (16 * PATH_SLOTS) << 19);
         assert!(plan.tile_count >= 32);
         let low = Limits { max_storage_buffer_binding_size: 1 << 20, ..Limits::default() };
         let size = lit_tile_size(&low, &Film::new(4096, 4096).unwrap());
-        assert!(u64::from(size[0] * size[1]) * 176 <= 1 << 20, "{size:?}");
+        assert!(u64::from(size[0] * size[1]) * 16 * PATH_SLOTS <= 1 << 20, "{size:?}");
     }
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn only_paths_need_the_image_of_a_sky() {
-        let environment = Environment::new(64, 32, vec![[1.0; 3]; 64 * 32]).unwrap();
+        let environment = Environment::new(1024, 512, vec![[1.0; 3]; 1024 * 512]).unwrap();
         let light =
             SkyLight::Image { environment: environment.into(), strength: 1.0, rotation: 0.0 };
         let sky = Sky { light, is_visible: true };
@@ -224,10 +224,10 @@ mod tests {
         let studio = planned(1.0, 64, &lighting, LayerSet::COLOR, GPU);
         lighting.integrator = Integrator::Path(PathTracing::default());
         let path = planned(1.0, 64, &lighting, LayerSet::COLOR, GPU);
-        assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 * 64 * 32));
-        assert_eq!(bytes(&path, "sky shares"), 4 * (33 + 65 * 32));
-        let low = Limits { max_storage_buffer_binding_size: 1 << 14, ..Limits::default() };
+        assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 << 19));
+        assert_eq!(bytes(&path, "sky shares"), 4 * (513 + 1025 * 512));
+        let low = Limits { max_storage_buffer_binding_size: 1 << 22, ..Limits::default() };
         let refused = path.check(&low, None).unwrap_err().to_string();
-        assert!(refused.starts_with("the paths of a tile"), "{refused}");
+        assert!(refused.starts_with("the image of the sky"), "{refused}");
     }
 }

@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::exact::Table;
 use crate::lighting::{DepthCue, Occlusion, Outline, Studio};
-use crate::math::MAX_LENGTH;
+use crate::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::range::RangeError;
 use crate::scene::Scene;
 use crate::scene_file::place::{Keys, Lines, Number, Place, Placed, SceneFileError, whole};
@@ -170,9 +170,9 @@ fn read_depth_cue(
     let place = lines.place(table.span().start);
     let DepthCueTable { near, far, color } = table.into_inner().0;
     let keys = Keys { lines, numbers: vec![("near", near), ("far", far)], table: place };
-    let lengths = [0.0, MAX_LENGTH];
-    let near = keys.within("near", lengths, "0 or more, and less than 2^56")?;
-    let far = keys.within("far", lengths, "more than `near`, and less than 2^56")?;
+    let near = keys.within("near", [0.0, MAX_LENGTH], "0 or more, and at most 2^56")?;
+    let range = "more than `near`, and from 2^-56 to 2^56";
+    let far = keys.within("far", [MIN_LENGTH, MAX_LENGTH], range)?;
     if let Some(far) = far.filter(|far| *far <= near.unwrap_or(0.0)) {
         let range = "more than `near`";
         return Err(keys.refused(&RangeError { parameter: "far", value: far, range }));

@@ -1,6 +1,12 @@
 //! Lit pictures of the CPU reference against answers known on paper.
 
 mod furnace;
+mod glass;
+mod lamps;
+mod leaks;
+mod occlusion;
+mod pixels;
+mod unbiased;
 
 use pinhole::camera::{Camera, PinholeCamera, Pose};
 use pinhole::cpu::LitPicture;
@@ -53,8 +59,18 @@ pub(crate) struct Shot {
 impl Shot {
     /// Seen along −z from a distance, as far to each side of the target as `reach`.
     pub(crate) fn new(spheres: &[Sphere], target: [f64; 3], reach: f64, side: u32) -> Self {
+        Self::from(8.0 * reach, spheres, target, reach, side)
+    }
+
+    /// The same, seen from a distance.
+    pub(crate) fn from(
+        distance: f64,
+        spheres: &[Sphere],
+        target: [f64; 3],
+        reach: f64,
+        side: u32,
+    ) -> Self {
         let [x, y, z] = target;
-        let distance = 8.0 * reach;
         let pose = Pose::looking_at([x, y, z + distance], target, [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::new(pose, distance, [reach, reach]).unwrap();
         Self {
@@ -98,4 +114,19 @@ pub(crate) fn blocks(image: &Image, count: usize) -> Vec<[f64; 3]> {
         sum.map(|sum| sum / (side * side) as f64)
     };
     (0..count * count).map(mean).collect()
+}
+
+/// The standard error of each block's luminance, from the variances of its pixels.
+pub(crate) fn standard_errors(image: &Image, count: usize) -> Vec<f64> {
+    let side = image.width() as usize / count;
+    let error = |block: usize| {
+        let (left, top) = (block % count * side, block / count * side);
+        let rows = top..top + side;
+        let variance = |j: usize| {
+            let row = &image.variance().unwrap()[j * image.width() as usize..];
+            row[left..left + side].iter().map(|v| f64::from(*v)).sum::<f64>()
+        };
+        rows.map(variance).sum::<f64>().sqrt() / (side * side) as f64
+    };
+    (0..count * count).map(error).collect()
 }

@@ -123,3 +123,6 @@ impl Bsdf {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

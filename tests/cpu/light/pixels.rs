@@ -1,0 +1,196 @@
+//! How samples become pixels: means, variances, filters, lenses, and what is seen where there is nothing.
+
+use pinhole::camera::{FisheyeCamera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::filter::PixelFilter;
+use pinhole::lighting::{Integrator, LightSampling, LightingError, Sky, SkyLight, Studio};
+use pinhole::{Film, LayerSet, Lighting, Material, Scene, Settings, Sphere, cpu, image::NO_ID};
+
+use super::{Shot, furnace, gray, paths, rgb, white};
+
+/// Layers are the means of samples and what one ray says, to the last bit of f32.
+#[test]
+fn layers_are_means_of_samples() {
+    let lamp = Sphere::new([0.5, 0.0, 0.0], 0.5, rgb([4.0, 0.5, 0.25]))
+        .with_material(Material::Emissive { strength: 2.0 });
+    let matt = Sphere::new([-0.5, 0.0, 0.0], 0.5, rgb([0.5, 0.25, 1.0])).with_opacity(0.5);
+    let shot = Shot::new(&[matt, lamp], [0.0; 3], 1.1, 12);
+    let mut lighting = furnace(7);
+    lighting.sampling.filter = PixelFilter::BlackmanHarris;
+    for integrator in [lighting.integrator.clone(), Integrator::Studio(Studio::default())] {
+        let lighting = Lighting { integrator, ..lighting.clone() };
+        let image = shot.render(&lighting);
+        let picture = shot.picture(&lighting);
+        for index in 0..144 {
+            let pixel = [index as u32 % 12, index as u32 / 12];
+            let samples: Vec<_> = (0..7).map(|s| picture.sample(pixel, s)).collect();
+            let mean = |of: &dyn Fn(&cpu::Sample) -> f64| samples.iter().map(of).sum::<f64>() / 7.0;
+            let luminance =
+                |s: &cpu::Sample| 0.2126 * s.color[0] + 0.7152 * s.color[1] + 0.0722 * s.color[2];
+            for c in 0..3 {
+                assert_eq!(image.color()[index][c], mean(&|s| s.color[c]) as f32);
+                assert_eq!(image.albedo().unwrap()[index][c], mean(&|s| s.albedo[c]) as f32);
+            }
+            assert_eq!(image.alpha().unwrap()[index], mean(&|s| s.alpha) as f32);
+            assert_eq!(image.samples().unwrap()[index], 7);
+            // The unbiased variance of one, over 7.
+            let average = mean(&luminance);
+            let wanted = mean(&|s| (luminance(s) - average).powi(2)) / 6.0;
+            let found = f64::from(image.variance().unwrap()[index]);
+            assert!((found - wanted).abs() < 1e-6 * (wanted + 1e-6), "{found}, not {wanted}");
+        }
+        let data = cpu::render(
+            &shot.scene,
+            shot.camera.as_ref(),
+            &shot.film,
+            &Settings::default(),
+            LayerSet::ALL,
+        )
+        .unwrap();
+        assert_eq!(image.depth(), data.depth());
+        assert_eq!(image.normal(), data.normal());
+        assert_eq!(image.position(), data.position());
+        assert_eq!(image.id(), data.id());
+        let first = picture.sample([9, 6], 0);
+        assert_eq!(first.albedo, [1.0, 0.5, 0.25], "no albedo exceeds 1");
+    }
+    lighting.sampling.samples = 1;
+    assert_eq!(shot.render(&lighting).variance().unwrap(), [0.0; 144]);
+}
+
+#[test]
+fn one_sample_is_that_of_the_picture() {
+    let shot = Shot::new(&[white([0.0; 3], 1.0)], [0.0; 3], 1.2, 4);
+    let lighting = furnace(3);
+    let Shot { scene, camera, film } = &shot;
+    let alone = cpu::radiance(scene, camera.as_ref(), film, &lighting, [1, 2], 2).unwrap();
+    assert_eq!(alone, shot.picture(&lighting).sample([1, 2], 2));
+    let mut other = lighting.clone();
+    other.sampling.seed += 1;
+    assert_ne!(
+        (0..16).map(|s| shot.picture(&lighting).sample([0, 0], s).alpha).collect::<Vec<_>>(),
+        (0..16).map(|s| shot.picture(&other).sample([0, 0], s).alpha).collect::<Vec<_>>(),
+    );
+}
+
+#[test]
+fn what_is_refused_is_refused() {
+    let bright = Sphere::new([0.0; 3], 1.0, gray(1.5));
+    let shot = Shot::new(&[bright], [0.0; 3], 1.2, 4);
+    let Shot { scene, camera, film } = &shot;
+    let error = cpu::render_lit(scene, camera.as_ref(), film, &furnace(1), LayerSet::COLOR);
+    let Err(cpu::LitError::Lighting(LightingError::Albedo { .. })) = error else {
+        panic!("{error:?}")
+    };
+}
+
+/// The part of a pixel beside an edge that a sphere as large as a plane covers.
+#[test]
+fn filters_blur_edges_as_wide_as_they_are() {
+    let radius = 1e4;
+    let spheres = [white([-radius, 0.0, 0.0], radius)];
+    let shot = Shot::from(1e3, &spheres, [0.0; 3], 8.0, 16);
+    for filter in [PixelFilter::Box, PixelFilter::BlackmanHarris] {
+        let mut lighting = furnace(256);
+        lighting.sampling.filter = filter;
+        let image = shot.render(&lighting);
+        let row = &image.alpha().unwrap()[8 * 16..9 * 16];
+        // The camera is in the plane that touches the sphere in the middle of the picture.
+        let edge = 8.0;
+        for (column, alpha) in row.iter().enumerate() {
+            let distance = edge - (column as f64 + 0.5);
+            if distance.abs() > filter.radius() {
+                assert_eq!(*alpha, if distance > 0.0 { 1.0 } else { 0.0 }, "{filter:?}, {column}");
+            }
+        }
+        let sum: f64 = row.iter().map(|a| f64::from(*a)).sum();
+        assert!((sum - edge).abs() < 0.02, "{filter:?}: {sum}, not {edge}");
+    }
+}
+
+/// A small sphere behind the plane of focus becomes a disk with the diameter 2·aperture·|s − f|/s in that plane; one
+/// in the plane stays as it is.
+#[test]
+fn a_lens_blurs_what_is_out_of_focus() {
+    let (aperture, focus, far) = (0.5, 4.0, 8.0);
+    let pose = Pose::looking_along([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    // A pixel is 1/32 in the plane of focus.
+    let pinhole = PinholeCamera::new(pose, focus, [0.5, 0.5]).unwrap();
+    let lens = ThinLensCamera::new(pinhole, aperture, focus).unwrap();
+    let render = |sphere: Sphere, through_lens: bool| {
+        let shot = Shot {
+            scene: Scene::new(&[sphere]).unwrap(),
+            camera: if through_lens { Box::new(lens) } else { Box::new(pinhole) },
+            film: Film::new(32, 32).unwrap(),
+        };
+        let image = shot.render(&furnace(256));
+        let (mut cover, mut moment, mut reach) = (0.0, 0.0, 0.0_f64);
+        for (index, alpha) in image.alpha().unwrap().iter().enumerate() {
+            let [x, y] = [index % 32, index / 32].map(|i| (i as f64 + 0.5) / 32.0 - 0.5);
+            let square = x * x + y * y;
+            cover += f64::from(*alpha);
+            moment += f64::from(*alpha) * square;
+            if *alpha > 0.0 {
+                reach = reach.max(square.sqrt());
+            }
+        }
+        (cover / 1024.0, moment / cover, reach)
+    };
+    let radius = 0.05;
+    let (cover, moment, reach) = render(white([0.0, 0.0, -far], radius), true);
+    let disk = aperture * (far - focus) / far;
+    // Its own image, in the plane of focus.
+    let image = radius * focus / far;
+    assert!((cover - std::f64::consts::PI * image * image).abs() < 0.03 * cover, "{cover}");
+    // The mean squares of two uniform disks and a pixel's square add up.
+    let wanted = 0.5 * disk * disk + 0.5 * image * image + 1.0 / (6.0 * 32.0 * 32.0);
+    assert!((moment - wanted).abs() < 0.03 * wanted, "{moment}, not {wanted}");
+    assert!((reach - disk - image).abs() < 0.04, "{reach}");
+    let near = white([0.0, 0.0, -focus], 0.2);
+    let (sharp, through_lens) = (render(near, false), render(near, true));
+    assert!((sharp.0 - through_lens.0).abs() < 0.02 * sharp.0, "{sharp:?}, {through_lens:?}");
+    assert!(through_lens.2 < 0.24, "{through_lens:?}");
+}
+
+/// What is seen where nothing is: the sky, if it is to be seen, or the background, or nothing; and where the camera
+/// sees nothing, never the sky.
+#[test]
+fn where_there_is_nothing() {
+    let background = rgb([0.1, 0.2, 0.3]);
+    let sky = |is_visible| Sky { light: SkyLight::Constant(gray(0.5)), is_visible };
+    let base = Lighting { background, ..paths(2, LightSampling::Multiple) };
+    let pose = Pose::looking_along([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let fisheye = FisheyeCamera::new(pose, std::f64::consts::PI, 1.0).unwrap();
+    let mirror =
+        white([0.0, 0.0, -3.0], 1.0).with_material(Material::Conductor { roughness: 0.02 });
+    let shot = Shot {
+        scene: Scene::new(&[mirror]).unwrap(),
+        camera: Box::new(fisheye),
+        film: Film::new(16, 16).unwrap(),
+    };
+    let studio = Integrator::Studio(Studio { ambient: gray(0.5), ..Studio::default() });
+    for (integrator, is_visible, miss) in [
+        (base.integrator.clone(), true, [0.5; 3]),
+        (base.integrator.clone(), false, [0.1, 0.2, 0.3]),
+        (studio, true, [0.1, 0.2, 0.3]),
+    ] {
+        for is_transparent in [false, true] {
+            let lighting = Lighting {
+                integrator: integrator.clone(),
+                sky: sky(is_visible),
+                is_transparent,
+                ..base.clone()
+            };
+            let image = shot.render(&lighting);
+            let at = |i: usize, j: usize| {
+                (image.color()[j * 16 + i], image.alpha().unwrap()[j * 16 + i])
+            };
+            let hidden = |color: [f32; 3]| if is_transparent { [0.0; 3] } else { color };
+            assert_eq!(at(0, 0), (hidden([0.1, 0.2, 0.3]), 0.0), "a corner of the film");
+            assert_eq!(at(3, 8), (hidden(miss), 0.0), "beside the sphere");
+            let (color, alpha) = at(8, 8);
+            assert_eq!(alpha, 1.0);
+            assert!((color[0] - 0.5).abs() < 1e-3, "lit by what is not seen: {color:?}");
+        }
+    }
+    assert_eq!(shot.render(&base).id().unwrap()[0], NO_ID);
+}
