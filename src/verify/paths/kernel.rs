@@ -124,7 +124,7 @@ impl<'a> Kernel<'a> {
             self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
             self.expected.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
         } else {
-            self.same(&[slot::FIRST])?;
+            self.expected.same(FIRST, [before, after], slot::FIRST)?;
         }
         let material = self.material_of(&vertex);
         if material.is_emissive() {

@@ -289,11 +289,16 @@ pub(crate) fn many() -> LitView {
     view(&spheres, Lighting { ground: Some(ground(-2.4)), ..lit })
 }
 
-fn mixed() -> Vec<Sphere> {
+pub(crate) fn mixed() -> Vec<Sphere> {
     let mut spheres = lamps();
     spheres[5] = spheres[5].with_material(glass_of(1.4, 0.2, None));
     spheres[6] = spheres[6].with_opacity(0.5);
     spheres
+}
+
+/// All materials, a light, a sky and ground.
+pub(crate) fn everything() -> LitView {
+    scaled(1.0, DVec3::ZERO)
 }
 
 fn scaled(scale: f64, moved: DVec3) -> LitView {
