@@ -224,14 +224,17 @@ impl Mul for Number {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let is_one = |number: &Self| number.low == 1.0 && number.high == 1.0 && number.terms == 1;
+        let one = Interval { low: 1.0, high: 1.0 };
+        let is_one = |Self { low, high, terms, products, .. }: Self| {
+            Interval { low, high } == one && terms == 1 && products == 0
+        };
         if self.is_zero() || other.is_zero() {
             return Self::ZERO;
         }
-        if is_one(&self) && self.products == 0 {
+        if is_one(self) {
             return other;
         }
-        if is_one(&other) && other.products == 0 {
+        if is_one(other) {
             return self;
         }
         let ends = [

@@ -172,8 +172,12 @@ fn wide(value: f32) -> f64 {
 /// Either neighbour.
 fn round(random: &mut Rng, exact: f64) -> f32 {
     let nearest = exact as f32;
-    let other = if wide(nearest) < exact { nearest.next_up() } else { nearest.next_down() };
-    let rounded = if wide(nearest) == exact || random.bool() { nearest } else { other };
+    let other = match wide(nearest).total_cmp(&exact) {
+        std::cmp::Ordering::Less => nearest.next_up(),
+        std::cmp::Ordering::Equal => nearest,
+        std::cmp::Ordering::Greater => nearest.next_down(),
+    };
+    let rounded = if random.bool() { nearest } else { other };
     if rounded.is_subnormal() && random.bool() { 0.0 } else { rounded }
 }
 

@@ -36,8 +36,8 @@ impl Checker<'_> {
     /// Judges every stage of every path. The recording must be of this checker's scene.
     #[must_use]
     pub fn certify_paths(&self, recording: &PathRecording) -> PathCertificate {
-        let mut certificate = PathCertificate::default();
-        certificate.upload = upload::check(self.scene, &self.candidates, recording).err();
+        let upload = upload::check(self.scene, &self.candidates, recording).err();
+        let mut certificate = PathCertificate { upload, ..PathCertificate::default() };
         if certificate.upload.is_some() {
             return certificate;
         }
@@ -55,7 +55,7 @@ impl Checker<'_> {
         for sample in &recording.samples {
             let pixels = ranges(sample.start.len(), CHUNK);
             for part in map_parts(pixels, |range| check.judge(sample, range)) {
-                certificate.add(part);
+                certificate.join(part);
             }
         }
         certificate
@@ -63,7 +63,8 @@ impl Checker<'_> {
 }
 
 impl PathCertificate {
-    fn add(&mut self, part: Self) {
+    /// Adds what was found of other paths.
+    pub fn join(&mut self, part: Self) {
         self.paths += part.paths;
         self.start = self.start.plus(part.start);
         self.extend = self.extend.plus(part.extend);
@@ -71,6 +72,7 @@ impl PathCertificate {
         self.occlude = self.occlude.plus(part.occlude);
         self.settle = self.settle.plus(part.settle);
         self.violation_count += part.violation_count;
+        self.upload = self.upload.take().or(part.upload);
         let room = KEPT.saturating_sub(self.violations.len());
         self.violations.extend(part.violations.into_iter().take(room));
     }

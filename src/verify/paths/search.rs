@@ -1,7 +1,7 @@
 //! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/trace.wgsl`,
 //! `entry_path.wgsl`, `first_segment.wgsl`, `origin_sphere.wgsl`, `occlude.wgsl` and `origin_and_target.wgsl`.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 use super::certificate::PathStage;
 use super::expected::{Expected, Mismatch};
@@ -62,9 +62,9 @@ impl Entry {
     }
 }
 
-/// Whether a sphere is one of those that a ray leaves or ends on.
-fn is_same([x, y, z, radius]: [f32; 4], [a, b, c, r]: [f32; 4]) -> bool {
-    [x, y, z] == [a, b, c] && radius.abs() == r
+/// Whether a sphere is one of those that a ray leaves or ends on. By value: a zero has no sign.
+fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
+    Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
 
 fn four(state: &PathState, which: usize) -> [f32; 4] {

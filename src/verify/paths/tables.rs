@@ -1,5 +1,7 @@
 //! Whether lights, emitters, materials and energies on a device are those that were asked for.
 
+use glam::Vec4;
+
 use super::material::ENERGIES;
 use super::recording::{PathRecording, UploadedLook};
 use super::upload::{PathUploadError, are_near, is_near};
@@ -147,7 +149,7 @@ fn check_emitters(
         let end = f64::from(last) + 1.0;
         let probability = tables.numbers(at + 1)[2];
         let is_right = found_id == *id
-            && tables.numbers(at) == scene.spheres()[*id as usize]
+            && Vec4::from(tables.numbers(at)) == Vec4::from(scene.spheres()[*id as usize])
             && are_near(tables.vector(at + 2), radiance(*id))
             && end > before
             && ((end - before) / all - weight(*id) / total).abs() <= slack

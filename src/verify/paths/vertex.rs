@@ -1,6 +1,6 @@
 //! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/vertex.wgsl`.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 use super::certificate::PathStage;
 use super::expected::Mismatch;
@@ -72,10 +72,10 @@ impl Kernel<'_> {
         } else {
             Number::known(NO_HIT.into())
         };
-        if let Some(distance) = ground {
-            if self.choices.decide(distance.is_less(to_sphere)) {
-                return self.ground_vertex(origin, direction, distance).map(Some);
-            }
+        if let Some(distance) = ground
+            && self.choices.decide(distance.is_less(to_sphere))
+        {
+            return self.ground_vertex(origin, direction, distance).map(Some);
         }
         if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
     }
@@ -155,8 +155,8 @@ impl Kernel<'_> {
         let center = Vector::had([x, y, z]);
         let direction = Vector::had(before.vector(slot::DIRECTION));
         let middle = (center - *origin).dot(direction);
-        let is_far_wall =
-            before.has(flag::INSIDE) && sphere == before.slots[slot::LEFT].map(f32::from_bits);
+        let left = Vec4::from(before.slots[slot::LEFT].map(f32::from_bits));
+        let is_far_wall = before.has(flag::INSIDE) && Vec4::from(sphere) == left;
         let (half, exact) = if is_far_wall {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)
