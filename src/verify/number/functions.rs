@@ -24,9 +24,12 @@ impl Number {
         .bounded()
     }
 
-    /// c0 + x (c1 + x (c2 + …)), with constants of the kernel's text.
+    /// c0 + x (c1 + x (c2 + …)), with constants of the kernel's text; or the same multiplied out, whose powers come
+    /// through as many more roundings.
     fn polynomial(self, coefficients: &[f64]) -> Self {
-        coefficients.iter().rev().fold(Self::ZERO, |sum, c| Self::constant(*c) + self * sum)
+        let sum =
+            coefficients.iter().rev().fold(Self::ZERO, |sum, c| Self::constant(*c) + self * sum);
+        Self { products: sum.products + coefficients.len() as u32, ..sum }
     }
 
     /// The whole numbers that `floor` may give.
