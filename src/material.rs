@@ -97,11 +97,6 @@ impl Finish {
         Ok(())
     }
 
-    /// Whether the surface scatters light by its colour, which then may not exceed 1.
-    pub(crate) fn scatters(&self) -> bool {
-        !matches!(self.material, Material::Emissive { .. })
-    }
-
     /// As bits, to tell finishes apart.
     pub(crate) fn bits(&self) -> [u32; 5] {
         let [kind, a, b, c] = match self.material {

@@ -1,6 +1,8 @@
 //! How long a lit picture is worked on: for a time, until little noise is left, or until a signal.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+#[cfg(feature = "gpu")]
+use std::time::Instant;
 
 use clap::Args;
 
@@ -22,8 +24,8 @@ pub(super) struct PatienceArgs {
     /// Take samples until the noise is at most this part of the light, such as 0.01, up to --samples
     #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// On Ctrl-C write the picture with the samples that there are, at least one; a second Ctrl-C writes nothing
-    #[arg(long, help_heading = HEADING)]
+    /// Of a lit picture, on Ctrl-C write what the samples so far give, at least one; a second Ctrl-C writes nothing
+    #[arg(long)]
     keep_partial: bool,
 }
 

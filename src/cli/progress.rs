@@ -76,7 +76,7 @@ pub(super) fn rendering(part: f64, message: String) {
         return;
     }
     if line.total != Some(STEPS) {
-        let template = "rendering [{bar:30}] {percent}%, {eta} left; {msg}";
+        let template = "rendering [{bar:20}] {percent}%, {eta} left; {wide_msg}";
         line.show(ProgressBar::new(STEPS), template, Some(STEPS));
     }
     if let Some(bar) = &line.bar {

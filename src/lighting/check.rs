@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Integrator, LightKind, Lighting, PathTracing, Sampling, SkyLight, Studio};
 use crate::color::LinearRgb;
+use crate::material::Material;
 use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::range::RangeError;
 use crate::scene::Scene;
@@ -37,6 +38,14 @@ pub enum LightingError {
         /// Which one.
         what: String,
         /// Its linear colour.
+        rgb: [f32; 3],
+    },
+    /// Something shines so strongly that sums of squares would exceed f32.
+    #[error("{what} shines with {rgb:?}, which is too strong; each component must be at most 1e18")]
+    TooBright {
+        /// Which one.
+        what: String,
+        /// Its linear light.
         rgb: [f32; 3],
     },
     /// The ground's normal is zero, or its point not finite.
@@ -73,6 +82,7 @@ impl Lighting {
             within("strength", (*strength).into(), [0.0, 1e6], "from 0 to 1e6")?;
             within("rotation", *rotation, [-1e3, 1e3], "from -1000 to 1000 radians")?;
         }
+        self.check_brightness()?;
         if let Some(ground) = &self.ground {
             let is_near = ground.point.abs().cmple(glam::DVec3::splat(MAX_LENGTH)).all();
             if unit(ground.normal).is_none() || !is_near {
@@ -81,6 +91,56 @@ impl Lighting {
             check_albedo(ground.color, || "the ground".to_owned())?;
         }
         check_materials(scene)
+    }
+
+    /// Of all but spheres.
+    fn check_brightness(&self) -> Result<(), LightingError> {
+        for (index, light) in self.lights.iter().enumerate() {
+            let color = match &light.kind {
+                LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
+                LightKind::Point { intensity, .. } => intensity,
+                LightKind::Sphere { radiance, .. } => radiance,
+            };
+            check_brightness(color.to_array(), 1.0, || format!("light {index}"))?;
+        }
+        let ambient = self.studio().map(|studio| studio.ambient);
+        let others = ambient.into_iter().chain([self.background]);
+        match &self.sky.light {
+            SkyLight::Constant(color) => {
+                check_brightness(color.to_array(), 1.0, || "the sky".to_owned())?;
+            }
+            SkyLight::Gradient { zenith, horizon, nadir } => {
+                for color in [zenith, horizon, nadir] {
+                    check_brightness(color.to_array(), 1.0, || "the sky".to_owned())?;
+                }
+            }
+            SkyLight::Image { environment, strength, .. } => {
+                for texel in environment.texels() {
+                    check_brightness(*texel, *strength, || "the sky".to_owned())?;
+                }
+            }
+        }
+        for color in others {
+            let what = || "the ambient light, or the background,".to_owned();
+            check_brightness(color.to_array(), 1.0, what)?;
+        }
+        Ok(())
+    }
+}
+
+/// Its square, and the sum of many, stay below 2¹²⁸.
+pub(crate) const BRIGHTEST: f32 = 1e18;
+
+fn check_brightness(
+    rgb: [f32; 3],
+    by: f32,
+    what: impl Fn() -> String,
+) -> Result<(), LightingError> {
+    let rgb = rgb.map(|c| c * by);
+    if rgb.iter().all(|c| *c <= BRIGHTEST) {
+        Ok(())
+    } else {
+        Err(LightingError::TooBright { what: what(), rgb })
     }
 }
 
@@ -163,13 +223,17 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), LightingError> {
 fn check_materials(scene: &Scene) -> Result<(), LightingError> {
     for (place, (color, finish)) in scene.palette().iter().zip(scene.finishes()).enumerate() {
         finish.check()?;
-        if finish.scatters() {
-            check_albedo(*color, || {
-                let id = scene.color_indices().map_or(Some(0), |places| {
-                    places.iter().position(|found| *found as usize == place)
-                });
-                id.map_or_else(|| "a material".to_owned(), |id| format!("sphere {id}"))
-            })?;
+        let what = || {
+            let id = scene
+                .color_indices()
+                .map_or(Some(0), |places| places.iter().position(|found| *found as usize == place));
+            id.map_or_else(|| "a material".to_owned(), |id| format!("sphere {id}"))
+        };
+        match finish.material {
+            Material::Emissive { strength } => {
+                check_brightness(color.to_array(), strength, what)?;
+            }
+            _ => check_albedo(*color, what)?,
         }
     }
     Ok(())

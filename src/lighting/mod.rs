@@ -20,6 +20,8 @@ mod light;
 mod sky;
 mod studio;
 
+#[cfg(feature = "scene-file")]
+pub(crate) use check::BRIGHTEST;
 pub use check::LightingError;
 pub use emitters::Emitters;
 pub use ground::Ground;

@@ -7,6 +7,7 @@ use serde::de::{self, SeqAccess, Visitor};
 
 use crate::color::LinearRgb;
 use crate::exact;
+use crate::lighting::{BRIGHTEST, LightingError};
 
 /// A CSS colour, or a linear triple.
 #[derive(Clone, Copy)]
@@ -56,8 +57,10 @@ impl<'de> Deserialize<'de> for Vector {
     }
 }
 
-/// A colour times a number that was checked.
-pub(super) fn scaled(color: LinearRgb, by: f64) -> Result<LinearRgb, String> {
+/// A colour times a number that was checked: the light of `what`.
+pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, LightingError> {
     let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
-    LinearRgb::new(rgb).map_err(|error| error.to_string())
+    let too_bright = || LightingError::TooBright { what: what.to_owned(), rgb };
+    let is_bearable = rgb.iter().all(|c| *c <= BRIGHTEST);
+    LinearRgb::new(rgb).ok().filter(|_| is_bearable).ok_or_else(too_bright)
 }

@@ -33,7 +33,7 @@ fn message(text: &str) -> String {
 
 fn lighting(text: &str) -> Lighting {
     let file = parse(text);
-    let kind = file.integrator().expect("it asks for light");
+    let kind = file.integrator().unwrap();
     lighting_by(text, kind)
 }
 
@@ -45,7 +45,7 @@ fn lighting_by(text: &str, kind: IntegratorKind) -> Lighting {
 }
 
 fn studio(text: &str) -> Studio {
-    lighting(text).studio().expect("a studio").clone()
+    lighting(text).studio().unwrap().clone()
 }
 
 fn first_finish(text: &str) -> Finish {
@@ -490,6 +490,25 @@ fn what_is_wrong_is_named_with_a_remedy() {
         ("[elements.Fe]\n", "line 1, column 1: `elements` concerns `data`, which is not given"),
     ] {
         assert_eq!(message(text), expected, "{text}");
+    }
+    for (bright, what) in [
+        (
+            "[[lights]]\nkind = 'head'\ncolor = [1e30, 0, 0]\n",
+            "line 1, column 1: the light shines with [1e30, 0.0, 0.0]",
+        ),
+        (
+            "[path]\n[sky]\nkind = 'constant'\ncolor = [0, 1e19, 0]\n",
+            "line 2, column 1: the sky shines with",
+        ),
+        ("[studio]\nambient = [1e20, 0, 0]\n", "the ambient light, or the background, shines with"),
+        (
+            "[materials.a]\nkind = 'emissive'\nstrength = 1e6\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\
+             color = [1e13, 0, 0]\nmaterial = 'a'\n",
+            "line 4, column 1: sphere 0 shines with",
+        ),
+    ] {
+        let found = message(bright);
+        assert!(found.contains(what) && found.ends_with("at most 1e18"), "{found}");
     }
     // What shines may be brighter than white, and a picture without light as well.
     let lamp = "[materials.a]\nkind = 'emissive'\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\

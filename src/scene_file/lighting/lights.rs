@@ -135,7 +135,7 @@ fn times(
         _ => (STRONGEST, "from 0 to 1e6"),
     };
     let by = keys.within(key, [0.0, most], range)?.unwrap_or(1.0);
-    scaled(color.map_or(LinearRgb::WHITE, |color| color.0), by)
+    scaled(color.map_or(LinearRgb::WHITE, |color| color.0), by, "the light")
         .map_err(|error| keys.table.error(error))
 }
 

@@ -23,6 +23,7 @@ use studio::StudioPlan;
 
 use super::SceneFile;
 use super::place::{Lines, Place, Placed, SceneFileError, span};
+use super::value::scaled;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::environment::Environment;
@@ -30,6 +31,7 @@ use crate::exact::Table;
 use crate::lighting::{
     Integrator, Light, Lighting, LightingError, PathTracing, Sampling, Sky, SkyLight,
 };
+use crate::material::Material;
 use crate::scene::Scene;
 
 /// How light is followed, by name.
@@ -181,10 +183,17 @@ impl SceneFile {
     /// Refuses spheres of this file that would create light.
     fn check_colors(&self) -> Result<(), SceneFileError> {
         for (index, sphere) in self.spheres.iter().enumerate() {
-            let rgb = sphere.value.color.to_array();
-            if sphere.value.finish.scatters() && rgb.iter().any(|c| *c > 1.0) {
-                let what = format!("sphere {index}");
-                return Err(sphere.place.error(LightingError::Albedo { what, rgb }));
+            let (color, finish) = (sphere.value.color, sphere.value.finish);
+            let (rgb, what) = (color.to_array(), format!("sphere {index}"));
+            match finish.material {
+                Material::Emissive { strength } => {
+                    scaled(color, strength.into(), &what)
+                        .map_err(|error| sphere.place.error(error))?;
+                }
+                _ if rgb.iter().any(|c| *c > 1.0) => {
+                    return Err(sphere.place.error(LightingError::Albedo { what, rgb }));
+                }
+                _ => {}
             }
         }
         Ok(())
@@ -197,7 +206,7 @@ impl SceneFile {
         match error {
             LightingError::Ground | LightingError::Catcher => ground(),
             LightingError::Albedo { what, .. } if what == "the ground" => ground(),
-            LightingError::Albedo { .. } => data(),
+            LightingError::Albedo { .. } | LightingError::TooBright { .. } => data(),
             _ => None,
         }
         .unwrap_or(Place::START)

@@ -83,7 +83,7 @@ impl SkyPlan {
         let strength = keys.within("strength", [0.0, 1e6], "from 0 to 1e6")?.unwrap_or(1.0);
         let color = |value: Option<Spanned<ColorValue>>, default: f32| {
             let color = value.map_or(LinearRgb::gray(default), |color| color.into_inner().0);
-            scaled(color, strength).map_err(|error| place.error(error))
+            scaled(color, strength, "the sky").map_err(|error| place.error(error))
         };
         // Without numbers of its own, the gradient of a sky that no file describes.
         let light = match kind {
