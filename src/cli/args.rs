@@ -238,7 +238,7 @@ impl From<Structure> for AccelChoice {
 }
 
 /// Arguments of `verify` that say what is rendered, and by what; a recording has all that in it.
-const RENDERING: [&str; 26] = [
+const RENDERING: [&str; 27] = [
     "path",
     "format",
     "radius",
@@ -264,6 +264,7 @@ const RENDERING: [&str; 26] = [
     "adapter",
     "limits",
     "accel",
+    "paths",
     "save",
 ];
 
@@ -277,7 +278,8 @@ const RENDERING: [&str; 26] = [
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (of their bounds), `upload` (null, or what is wrong), \
-    `violations` (the first hundred: pixel, stage, message), `legal`, `command`. `version` and `command` are those \
+    `violations` (the first hundred: pixel, stage, message), `paths` (where light is followed along paths: paths, \
+    stages, upload, violation_count, violations, legal), `legal`, `command`. `version` and `command` are those \
     of the program that rendered. Keys may be added, not changed."
 )]
 pub(super) struct VerifyArgs {
@@ -290,6 +292,10 @@ pub(super) struct VerifyArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
+    /// How many samples of each pixel are followed and checked, bounce by bounce, of a scene whose integrator is
+    /// `path`; of a picture with a side of more than 256 pixels, those in its middle [default: 1]
+    #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub(super) paths: Option<u32>,
     /// Also write what was found as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,

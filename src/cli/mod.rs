@@ -45,6 +45,7 @@ mod threads;
 mod verify;
 mod verify_output;
 mod verify_page;
+mod verify_paths;
 mod verify_pictures;
 mod verify_report;
 mod views;

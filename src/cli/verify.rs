@@ -12,11 +12,14 @@ use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads};
 use crate::verify::run_file::{self, Run};
-use crate::verify::{Certificate, Checker, Verdict};
+use crate::verify::{Certificate, Checker, PathCertificate, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    let (run, outputs) = match (&args.replay, &args.path) {
-        (Some(path), _) => replayed(path, args)?,
+    let (run, outputs, paths) = match (&args.replay, &args.path) {
+        (Some(path), _) => {
+            let (run, outputs) = replayed(path, args)?;
+            (run, outputs, None)
+        }
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
     };
@@ -24,11 +27,12 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let checker = Checker::new(&run.scene).context("the checker")?;
     let certificate = checker.certify(&run.recording);
     drop(checker);
-    let report = Report::new(&run, &certificate);
+    let report = Report::new(&run, &certificate, paths.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report)?;
-    verdict(&certificate)
+    verdict(&certificate)?;
+    paths.as_ref().map_or(Ok(()), verdict_of_paths)
 }
 
 /// What somebody saved.
@@ -56,11 +60,28 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     }
 }
 
+fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::Unproven(anyhow!("the paths are not legal: {error}")));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::Unproven(anyhow!(
+            "the paths are not legal: {} of {} stages; the first is {first}",
+            certificate.violation_count,
+            certificate.stages().checked
+        ))),
+    }
+}
+
+/// A recording, where its results go, and what was found of its paths if it has any.
+type Recorded = (Run, VerifyOutputs, Option<PathCertificate>);
+
 #[cfg(not(feature = "gpu"))]
 mod recorded {
     use super::*;
 
-    pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
+    pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<Recorded, Failure> {
         Err(Failure::usage(
             "this program was built without the feature `gpu`; it has only `pinhole verify --replay RUN`",
         ))
@@ -77,15 +98,12 @@ mod recorded {
     use crate::cli::speak::tell;
     use crate::cli::verify_report::command_line;
     use crate::cli::with_scene::with_scene;
-    use crate::cli::{memory, self_test};
+    use crate::cli::{memory, self_test, verify_paths};
     use crate::gpu::Headless;
     use crate::verify::run_file::Provenance;
 
     /// What an adapter makes of a scene now.
-    pub(super) fn recorded(
-        path: &Path,
-        args: &VerifyArgs,
-    ) -> Result<(Run, VerifyOutputs), Failure> {
+    pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
         let source = Source::of_view(path, &args.view)?;
         let outputs = VerifyOutputs::new(args)?;
         let wanted = WantedAdapter::new(&args.adapter);
@@ -98,10 +116,17 @@ mod recorded {
         if input.eyes.is_some() {
             tell("note: the camera has two eyes; what is checked is the picture from between them");
         }
-        if input.lighting.is_some() {
+        let followed = input.lighting.as_ref().filter(|lighting| lighting.studio().is_none());
+        if followed.is_none() && args.paths.is_some() {
+            return Err(Failure::usage("--paths needs a scene whose integrator is `path`"));
+        }
+        if input.lighting.is_some() && followed.is_none() {
             tell(
                 "note: the scene asks for light; what is checked is its picture without, by one ray a pixel",
             );
+        }
+        if followed.is_some() && args.save.is_some() {
+            tell("note: what --save keeps is the picture by one ray a pixel, and no paths");
         }
         let headless = wanted.open_any()?;
         self_test::check(&headless)?;
@@ -115,7 +140,12 @@ mod recorded {
             })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
-        Ok((Run { scene: input.scene, recording, provenance }, outputs))
+        let samples = args.paths.unwrap_or(1);
+        let certify = |lighting| {
+            verify_paths::certify(&headless, &input, lighting, samples, choice(args.accel.accel))
+        };
+        let paths = followed.map(certify).transpose()?;
+        Ok((Run { scene: input.scene, recording, provenance }, outputs, paths))
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

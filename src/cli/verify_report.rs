@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
+use super::verify_paths::PathReport;
 use crate::text::one_line;
 use crate::verify::run_file::{Run, scene_sha256};
-use crate::verify::{Certificate, Verdict, Violation};
+use crate::verify::{Certificate, PathCertificate, Verdict, Violation};
 
 /// At most so many violations are in the JSON document.
-const LISTED: usize = 100;
+pub(super) const LISTED: usize = 100;
 
 /// The JSON document.
 #[derive(Serialize)]
@@ -25,6 +26,9 @@ pub(super) struct Report {
     pub(super) worst_normal: f64,
     pub(super) upload: Option<String>,
     pub(super) violations: Vec<Listed>,
+    /// Of a scene whose light is followed along paths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) paths: Option<PathReport>,
     pub(super) legal: bool,
     pub(super) command: String,
     /// The certificate's own table.
@@ -70,7 +74,11 @@ impl From<&Violation> for Listed {
 }
 
 impl Report {
-    pub(super) fn new(run: &Run, certificate: &Certificate) -> Self {
+    pub(super) fn new(
+        run: &Run,
+        certificate: &Certificate,
+        paths: Option<&PathCertificate>,
+    ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
         Self {
@@ -94,7 +102,8 @@ impl Report {
             worst_normal: certificate.worst_normal,
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
-            legal: certificate.is_legal(),
+            paths: paths.map(PathReport::from),
+            legal: certificate.is_legal() && paths.is_none_or(PathCertificate::is_legal),
             command: one_line(&provenance.command),
             table: certificate.to_string(),
         }
@@ -103,12 +112,17 @@ impl Report {
     /// The verdict in a line.
     pub(super) fn verdict(&self) -> String {
         match (self.legal, &self.upload, self.count(Verdict::Violation)) {
+            (true, ..) if self.paths.is_some() => {
+                "legal: every pixel by one ray, and every path, is as a conforming device may have made it"
+                    .to_owned()
+            }
             (true, ..) => {
                 "legal: every pixel is as a conforming device may have made it".to_owned()
             }
             (false, Some(_), _) => {
                 "NOT legal: the device was not given what was asked for".to_owned()
             }
+            (false, None, 0) => "NOT legal: paths".to_owned(),
             (false, None, 1) => "NOT legal: 1 violation".to_owned(),
             (false, None, count) => format!("NOT legal: {count} violations"),
         }
@@ -123,10 +137,11 @@ impl Report {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
         let adapter = one_line(&self.adapter.adapter.line());
+        let paths = self.paths.as_ref().map_or(String::new(), |paths| format!("{}\n", paths.line));
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
-             structure: {structure}\n{}\n{}\n",
+             structure: {structure}\n{}\n{paths}{}\n",
             16 * spheres,
             self.table,
             self.verdict()

@@ -103,6 +103,9 @@ pub enum GpuError {
     /// The host asked to stop.
     #[error("stopped before the picture was finished")]
     Stopped,
+    /// Only paths can be recorded.
+    #[error("a studio has no paths that could be recorded; choose the integrator `path`")]
+    NotPaths,
     /// `record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,

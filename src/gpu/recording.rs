@@ -23,6 +23,27 @@ use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
 };
 
+/// A camera, and the numbers that kernels get of it and of the scene's box.
+pub(super) fn requested_view(
+    space: &SceneSpace,
+    camera: &dyn Camera,
+) -> (RequestedCamera, UploadedView) {
+    let vectors = camera.vectors();
+    let records::Camera { origin, advance, right, up, forward, first, second, third } =
+        records::Camera::new(camera.kind(), &vectors, space);
+    let uploaded = UploadedView {
+        origin,
+        advance,
+        right,
+        up,
+        forward,
+        numbers: [first, second, third],
+        scene_min: space.min.to_array(),
+        scene_max: space.max.to_array(),
+    };
+    (RequestedCamera { kind: camera.kind(), vectors }, uploaded)
+}
+
 /// A recording in which nothing is traced yet.
 fn new_recording(
     space: &SceneSpace,
@@ -30,23 +51,12 @@ fn new_recording(
     film: &Film,
     settings: &Settings,
 ) -> Result<Recording, GpuError> {
-    let vectors = camera.vectors();
-    let records::Camera { origin, advance, right, up, forward, first, second, third } =
-        records::Camera::new(camera.kind(), &vectors, space);
+    let (requested, uploaded) = requested_view(space, camera);
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
     Ok(Recording {
-        camera: RequestedCamera { kind: camera.kind(), vectors },
-        uploaded: UploadedView {
-            origin,
-            advance,
-            right,
-            up,
-            forward,
-            numbers: [first, second, third],
-            scene_min: space.min.to_array(),
-            scene_max: space.max.to_array(),
-        },
+        camera: requested,
+        uploaded,
         film: *film,
         settings: *settings,
         pixels: vec![untraced; image.color().len()],

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, CameraVectors};
 use crate::color::LinearRgb;
 use crate::math::unit;
 
@@ -81,7 +81,11 @@ impl Light {
     /// which [`Lighting`](super::Lighting) refuses.
     #[must_use]
     pub fn in_world(&self, camera: &dyn Camera) -> Option<LightKind> {
-        let vectors = camera.vectors();
+        self.in_view(&camera.vectors())
+    }
+
+    /// The same, of a camera's vectors.
+    pub(crate) fn in_view(&self, vectors: &CameraVectors) -> Option<LightKind> {
         let axes = [vectors.right, vectors.up, -vectors.forward].map(DVec3::normalize_or_zero);
         let turned = |v: DVec3| match self.frame {
             LightFrame::World => v,

@@ -72,17 +72,24 @@ impl Candidates {
         (self.nodes[0].low, self.nodes[0].high)
     }
 
-    /// Offers every sphere that a ray may meet before `nearest`, which the offer returns anew.
-    pub(super) fn visit(&self, line: &Line, mut offer: impl FnMut(&Candidate) -> f64) {
+    /// Offers every sphere that a ray, moved by up to `moved`, may meet before `nearest`, which the offer returns
+    /// anew.
+    pub(super) fn visit(
+        &self,
+        line: &Line,
+        moved: f64,
+        mut nearest: f64,
+        mut offer: impl FnMut(&Candidate) -> f64,
+    ) {
         let root = &self.nodes[0];
-        let longest = farthest(line.origin, root);
+        let longest = farthest(line.origin, root) + moved;
         let slab = Slab {
             origin: line.origin,
             inverse: line.inverse(),
-            beside: (BESIDE + 2.0 * line.bend) * longest,
+            beside: (BESIDE + 2.0 * line.bend) * longest + moved,
         };
         // A box that is not entered is entered at infinity, which is farther.
-        let mut nearest = f64::MAX;
+        nearest = nearest.min(f64::MAX);
         let mut stack = [Visit::default(); LEVELS];
         let mut top = 0;
         let end = self.items.len();

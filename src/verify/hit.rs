@@ -25,7 +25,7 @@ pub struct LegalHit {
     pub near: Option<Interval>,
     /// Distances to its far wall, if the ray may start inside.
     pub far: Option<Interval>,
-    sphere: [u32; 4],
+    pub(super) sphere: [u32; 4],
 }
 
 impl LegalHit {
@@ -39,11 +39,11 @@ impl LegalHit {
         self.walls().find(|wall| wall.contains(t))
     }
 
-    fn lowest(&self) -> f64 {
+    pub(super) fn lowest(&self) -> f64 {
         self.walls().map(|wall| wall.low).fold(f64::INFINITY, f64::min)
     }
 
-    fn highest(&self) -> f64 {
+    pub(super) fn highest(&self) -> f64 {
         self.walls().map(|wall| wall.high).fold(0.0, f64::max)
     }
 }
@@ -77,8 +77,22 @@ impl LegalHits {
     /// Finds them anew; keeps the memory.
     pub(super) fn find(&mut self, candidates: &Candidates, line: &Line) {
         self.clear();
-        candidates.visit(line, |candidate| {
-            if let Some((hit, may_miss)) = legal_hit(candidate, line) {
+        self.find_nearer(candidates, line, Slack::default(), |_| false);
+    }
+
+    /// Finds what may be nearer than what is known, but for spheres that are left out.
+    pub(super) fn find_nearer(
+        &mut self,
+        candidates: &Candidates,
+        line: &Line,
+        slack: Slack,
+        is_left_out: impl Fn([f32; 4]) -> bool,
+    ) {
+        candidates.visit(line, slack.across + slack.along, self.limit, |candidate| {
+            if is_left_out(candidate.sphere) {
+                return self.limit;
+            }
+            if let Some((hit, may_miss)) = legal_hit(candidate, line, slack) {
                 if hit.lowest() <= self.limit {
                     self.spheres.push(hit);
                 }
@@ -104,8 +118,12 @@ impl LegalHits {
     }
 }
 
-fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line) -> Option<(LegalHit, bool)> {
-    let test = SphereTest::new(line, *sphere, Slack::default())?;
+pub(super) fn legal_hit(
+    Candidate { sphere, id }: &Candidate,
+    line: &Line,
+    slack: Slack,
+) -> Option<(LegalHit, bool)> {
+    let test = SphereTest::new(line, *sphere, slack)?;
     let roots = test.roots();
     let hit =
         LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
@@ -124,7 +142,9 @@ mod tests {
         let mut legal = LegalHits::default();
         legal.clear();
         for (sphere, id) in spheres.iter().zip(0..) {
-            if let Some((hit, may_miss)) = legal_hit(&Candidate { sphere: *sphere, id }, line) {
+            if let Some((hit, may_miss)) =
+                legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default())
+            {
                 legal.spheres.push(hit);
                 if !may_miss {
                     legal.miss = false;

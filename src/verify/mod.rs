@@ -31,8 +31,11 @@ mod camera;
 mod candidates;
 mod certificate;
 mod checker;
+mod choices;
 mod hit;
 mod line;
+mod number;
+mod paths;
 mod pixel;
 mod recording;
 mod rounding;
@@ -47,6 +50,10 @@ pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
+pub use paths::{
+    PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation,
+    RecordedSample, RecordedSurface, StageCounts, UploadedLook, UploadedSky,
+};
 pub use recording::{NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]

@@ -20,29 +20,14 @@ impl LegalNormals {
         let Some(test) = SphereTest::new(line, sphere, slack) else {
             return Self::default();
         };
-        // The legs of a triangle whose hypotenuse is the radius, nearly.
-        let radius = f64::from(sphere[3]);
-        let wall = |from_foot: f64| {
-            let exact = test.exact_half();
-            let half_error = (test.half.high - exact).max(exact - test.half.low);
-            let outward = from_foot * line.direction - test.foot;
-            let length = outward.length();
-            let error = half_error
-                + test.foot_error
-                + test.half.high * slack.direction
-                + gamma(2) * (test.half.high + length)
-                + 4.0 * FLUSH;
-            // Dunkl and Williams, "A simple norm inequality" (1964): 2 |x − y| / (|x| + |y|), with |y| no less
-            // than |x| − |x − y|.
-            let turned = 2.0 * error / (2.0 * length - error).max(error);
-            let normal = if length > 0.0 { outward / length } else { DVec3::ZERO };
-            let unit = unit_error(radius);
-            (normal, (PAD * turned + 2.0 * unit).min(2.0 + unit))
+        let wall = |is_behind: bool| {
+            let chord = Chord { half: test.half, exact: test.exact_half(), is_behind };
+            normal_at(&test, line, chord, sphere[3], slack)
         };
         Self {
             walls: [
-                test.may_start_outside().then(|| wall(-test.exact_half())),
-                test.may_start_inside().then(|| wall(test.exact_half())),
+                test.may_start_outside().then(|| wall(false)),
+                test.may_start_inside().then(|| wall(true)),
             ],
         }
     }
@@ -59,6 +44,41 @@ impl LegalNormals {
     pub(super) fn walls(&self) -> impl Iterator<Item = (DVec3, f64)> {
         self.walls.into_iter().flatten()
     }
+}
+
+/// Half of what a sphere cuts out of a ray, and whether the hit is at the far end of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chord {
+    pub(super) half: Interval,
+    pub(super) exact: f64,
+    pub(super) is_behind: bool,
+}
+
+/// The exact normal at one end of a chord, and how far a device's may be from it.
+pub(super) fn normal_at(
+    test: &SphereTest,
+    line: &Line,
+    chord: Chord,
+    radius: f32,
+    slack: Slack,
+) -> (DVec3, f64) {
+    // The legs of a triangle whose hypotenuse is the radius, nearly.
+    let Chord { half, exact, is_behind } = chord;
+    let from_foot = if is_behind { exact } else { -exact };
+    let half_error = (half.high - exact).max(exact - half.low);
+    let outward = from_foot * line.direction - test.foot;
+    let length = outward.length();
+    let error = half_error
+        + test.foot_error
+        + half.high * slack.direction
+        + gamma(2) * (half.high + length)
+        + 4.0 * FLUSH;
+    // Dunkl and Williams, "A simple norm inequality" (1964): 2 |x − y| / (|x| + |y|), with |y| no less
+    // than |x| − |x − y|.
+    let turned = 2.0 * error / (2.0 * length - error).max(error);
+    let normal = if length > 0.0 { outward / length } else { DVec3::ZERO };
+    let unit = unit_error(radius.into());
+    (normal, (PAD * turned + 2.0 * unit).min(2.0 + unit))
 }
 
 /// The depths that may be written for a hit at `t` of a ray that starts `distance` away: their sum.

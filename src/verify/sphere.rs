@@ -103,7 +103,7 @@ impl SphereTest {
         };
         Some(Self {
             b,
-            b_error: PAD * b_error,
+            b_error: PAD * (b_error + moved + slack.direction * l.length()),
             foot,
             foot_error: PAD * (foot_errors.length() + slack.across)
                 + 2.0 * slack.direction * l.length(),

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::candidates::Candidates;
-use super::recording::Recording;
+use super::recording::{Recording, RequestedCamera, UploadedView};
 use super::rounding::{Interval, U};
 use crate::bounds::Bounds;
 use crate::math::wide;
@@ -68,7 +68,27 @@ pub(super) fn check(
     candidates: &Candidates,
     recording: &Recording,
 ) -> Result<(), UploadError> {
-    let (view, vectors) = (&recording.uploaded, &recording.camera.vectors);
+    check_view(scene, candidates, &recording.camera, &recording.uploaded)?;
+    let Recording { film, pixels, image, .. } = recording;
+    let film = [film.width(), film.height()];
+    let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
+    if size != film || count != recording.film.pixel_count() {
+        return Err(UploadError::Size { pixels: count, image: size, film });
+    }
+    if image.depth().is_none() || image.normal().is_none() || image.id().is_none() {
+        return Err(UploadError::Layers);
+    }
+    Ok(())
+}
+
+/// Compares the camera and the scene's box.
+pub(super) fn check_view(
+    scene: &Scene,
+    candidates: &Candidates,
+    camera: &RequestedCamera,
+    view: &UploadedView,
+) -> Result<(), UploadError> {
+    let vectors = &camera.vectors;
     let advance = f64::from(view.advance);
     let origin = vectors.origin - scene.origin();
     let moved = origin + advance * vectors.forward;
@@ -104,7 +124,7 @@ pub(super) fn check(
         .into_iter()
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
-    let nearest = if recording.camera.kind.is_linear() { nearest } else { 0.0 };
+    let nearest = if camera.kind.is_linear() { nearest } else { 0.0 };
     // A rounding to f32, and those of f64 where the box lies far from the camera.
     let far =
         f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()
@@ -123,15 +143,6 @@ pub(super) fn check(
                 spheres: [spheres_low.to_array(), spheres_high.to_array()],
             });
         }
-    }
-    let Recording { film, pixels, image, .. } = recording;
-    let film = [film.width(), film.height()];
-    let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
-    if size != film || count != recording.film.pixel_count() {
-        return Err(UploadError::Size { pixels: count, image: size, film });
-    }
-    if image.depth().is_none() || image.normal().is_none() || image.id().is_none() {
-        return Err(UploadError::Layers);
     }
     Ok(())
 }

@@ -7,8 +7,6 @@ use pinhole::image::{NO_ID, Pixel};
 use pinhole::verify::{NO_HIT, Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
-use crate::legal_camera::LegalRay;
-
 /// How it rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Habit {
@@ -111,7 +109,7 @@ impl LegalDevice {
     }
 
     /// The lines of `intersect_sphere` in shaders/sphere.wgsl that lead to its roots.
-    fn triangle(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> Triangle {
+    pub(crate) fn triangle(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> Triangle {
         let (center, d) = ([x, y, z], ray.direction);
         let l = [0, 1, 2].map(|k| self.add(center[k], -ray.origin[k]));
         let b = self.dot(&mut [0, 1, 2].map(|k| (l[k], d[k])));
@@ -140,12 +138,12 @@ impl LegalDevice {
 }
 
 /// Of ray, foot point and hit.
-struct Triangle {
+pub(crate) struct Triangle {
     b: f32,
-    foot: [f32; 3],
+    pub(crate) foot: [f32; 3],
     discriminant: f32,
     c: f32,
-    from_foot: f32,
+    pub(crate) from_foot: f32,
 }
 
 /// The kernels of a picture, one after the other.
@@ -168,7 +166,7 @@ impl LegalDevice {
         [x, sign * along(self, pixel[1], film.height())]
     }
 
-    /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
+    /// The ray of a pixel in the scene's box, and whether it meets that.
     fn ray(
         &mut self,
         kind: CameraKind,
@@ -177,8 +175,19 @@ impl LegalDevice {
         pixel: [u32; 2],
     ) -> (TracedRay, bool) {
         let location = self.location(film, pixel);
-        let LegalRay { origin, direction, distance, is_seen } =
-            self.camera_ray(kind, view, location, [0.5; 2]);
+        let ray = self.camera_ray(kind, view, location, [0.5; 2]);
+        let (entered, is_inside) = self.enter(view, ray.origin, ray.direction);
+        let distance = self.add(ray.distance, entered.distance);
+        (TracedRay { distance, ..entered }, ray.is_seen && is_inside)
+    }
+
+    /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
+    pub(crate) fn enter(
+        &mut self,
+        view: &UploadedView,
+        origin: [f32; 3],
+        direction: [f32; 3],
+    ) -> (TracedRay, bool) {
         let (mut near, mut far) = (0.0_f32, f32::MAX);
         for k in 0..3 {
             let size = direction[k].abs().max(2_f32.powi(-40));
@@ -191,8 +200,7 @@ impl LegalDevice {
             (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
         }
         let origin = self.vector(|this, k| this.mul_add(near, direction[k], origin[k]));
-        let distance = self.add(distance, near);
-        (TracedRay { origin, direction, distance }, is_seen && near <= far)
+        (TracedRay { origin, direction, distance: near }, near <= far)
     }
 
     /// `sphere_normal` of shaders/sphere.wgsl.

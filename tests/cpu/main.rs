@@ -26,6 +26,7 @@ mod invariants;
 mod legal_camera;
 mod legal_camera_rays;
 mod legal_device;
+mod legal_paths;
 mod lens;
 mod light;
 mod npy;

@@ -20,7 +20,7 @@ use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
 
 /// What a device is given; it has made nothing of it yet.
-fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
+pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let vectors = camera.vectors();
     let bounds = scene.bounds_to_frame();
     let margin = 1e-4 * bounds.size().length();

@@ -16,6 +16,7 @@ mod lens;
 mod light;
 mod light_program;
 mod parts;
+mod paths;
 mod pictures;
 mod plan;
 mod program;
@@ -67,6 +68,7 @@ fn main() {
         light_program::trials(),
         pictures::trials(),
         parts::trials(),
+        paths::trials(),
         embedding::trials(),
         device::trials(),
         program::trials(),

@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use libtest_mimic::Trial;
+use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
 use pinhole::gpu::Headless;
-use pinhole::{Environment, PixelFilter, filter, sampling};
+use pinhole::{PixelFilter, filter, sampling};
 
 use crate::support::maps::{AS_IT_IS, direction, random_map};
 use crate::{compute, trial};

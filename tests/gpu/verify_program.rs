@@ -14,6 +14,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("verify_program::a_scene_is_proved_and_proved_again", proved),
         trial("verify_program::no_sphere_and_one_pixel", small),
         trial("verify_program::a_pixel_that_is_wrong_is_named", named),
+        trial("verify_program::paths_are_proved", paths),
     ]
 }
 
@@ -110,4 +111,25 @@ fn named(_: &'static Headless) {
     assert!(stdout.ends_with("\nNOT legal: 1 violation\n"), "{stdout}");
     let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
     assert!(page.contains("All of them"), "{page}");
+}
+
+const PATHS: &str = "integrator = 'path'\n[film]\nwidth = 40\nheight = 30\n[camera.pinhole]\neye = [0, 1, 6]\n\
+                     look_at = [0, 0, 0]\n[ground]\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
+
+fn paths(_: &'static Headless) {
+    let folder = folder();
+    std::fs::write(folder.path().join("paths.toml"), PATHS).unwrap();
+    let found = table(&folder, "verify paths.toml --paths 3 --json a.json");
+    assert!(found.contains("\n3600 paths, ") && found.contains(", 0 violations\n"), "{found}");
+    let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["paths"]["paths"], 3600);
+    assert_eq!(json["paths"]["stages"]["start"]["checked"], 3600);
+    assert_eq!((&json["paths"]["legal"], &json["legal"]), (&true.into(), &true.into()));
+    // Without paths, nothing is said of them.
+    table(&folder, "verify scene.toml --size 8x6 --json b.json");
+    let json = std::fs::read_to_string(folder.path().join("b.json")).unwrap();
+    assert!(!json.contains("paths"), "{json}");
+    let refused = command(&folder, "verify scene.toml --paths 2").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use pinhole::Environment;
+use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
 
 /// Not turned.

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use self::film::Sums;
 use self::look::Lit;
 use self::run::Run;
-use self::tile::{TileBuffers, lit_tile_size};
+use self::tile::{FRAMES, TileBuffers, lit_tile_size};
 use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::headless::Headless;
@@ -30,6 +30,7 @@ mod film;
 mod kernels;
 mod look;
 mod plan;
+mod recording;
 pub(super) mod records;
 mod renderer;
 mod run;
@@ -207,11 +208,7 @@ impl Headless {
             let tile_buffers = TileBuffers::new(device, queue, renderer, size, lit, lighting)?;
             let limit = iteration_limit(device);
             let total = lighting.sampling.samples;
-            // Wherever there is ground there is something to be seen.
-            let seen = lighting.ground.is_none().then(|| {
-                let around = lighting.sampling.filter.radius();
-                Seen::of(camera, scenes[0].space(), film).widened(around)
-            });
+            let seen = seen(scenes[0], (camera, film), lighting);
             let tile_list: Vec<Tile> = tiles(film, size).collect();
             while sums.samples() < total {
                 let first = sums.samples();
@@ -222,12 +219,7 @@ impl Headless {
                 // All tiles' sums, so that a batch counts as a whole or not at all.
                 let mut gathered = Vec::new();
                 for (number, tile) in tile_list.iter().enumerate() {
-                    let all = Groups::of_size(tile.size);
-                    let traced = seen.map_or(all, |seen| seen.groups_of(*tile));
-                    let [scene, occluders] = scenes.map(SceneBuffers::space);
-                    let frames = [(scene, all), (scene, traced), (occluders, traced)].map(
-                        |(space, groups)| Frame::of_tile(camera, space, film, *tile, groups, limit),
-                    );
+                    let frames = frames(scenes, (camera, film), seen, *tile, limit);
                     let tiles_done = number as f64 / tile_list.len() as f64;
                     progress.part =
                         (f64::from(first) + f64::from(count) * tiles_done) / f64::from(total);
@@ -256,6 +248,34 @@ impl Headless {
             Ok(())
         })
     }
+}
+
+/// Where the scene may be seen; `None` for everywhere.
+fn seen(
+    scene: &SceneBuffers,
+    (camera, film): (&dyn Camera, &Film),
+    lighting: &Lighting,
+) -> Option<Seen> {
+    // Wherever there is ground there is something to be seen.
+    lighting.ground.is_none().then(|| {
+        let around = lighting.sampling.filter.radius();
+        Seen::of(camera, scene.space(), film).widened(around)
+    })
+}
+
+/// Records of all of a tile; of where the scene may be seen; the same for what casts shadows.
+fn frames(
+    scenes: [&SceneBuffers; 2],
+    (camera, film): (&dyn Camera, &Film),
+    seen: Option<Seen>,
+    tile: Tile,
+    limit: u32,
+) -> [Frame; FRAMES] {
+    let all = Groups::of_size(tile.size);
+    let traced = seen.map_or(all, |seen| seen.groups_of(tile));
+    let [scene, occluders] = scenes.map(SceneBuffers::space);
+    [(scene, all), (scene, traced), (occluders, traced)]
+        .map(|(space, groups)| Frame::of_tile(camera, space, film, tile, groups, limit))
 }
 
 impl LitScene {

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use wgpu::{BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline};
 
+use super::recording::Keeper;
 use super::records::Stage;
 use super::renderer::LitRenderer;
 use super::tile::{FRAMES, MOST_STAGES, TileBuffers};
@@ -28,6 +29,8 @@ pub(super) struct Run<'a> {
     gathered: u64,
     /// Told after every submission.
     pub(super) after: &'a mut dyn FnMut() -> Result<(), GpuError>,
+    /// What keeps the paths, if they are recorded.
+    pub(super) keeper: Option<&'a mut Keeper>,
 }
 
 impl<'a> Run<'a> {
@@ -51,6 +54,7 @@ impl<'a> Run<'a> {
             stages,
             gathered,
             after,
+            keeper: None,
         }
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use wgpu::ComputePipeline;
 
 use super::look::Lit;
+use super::recording::Moment;
 use super::records::Stage;
 use super::renderer::Shaders;
 use super::run::Run;
@@ -49,11 +50,13 @@ impl Run<'_> {
         let renderer = self.renderer;
         let surface = &self.scene.bricks()[0].surface_group;
         self.shade(&renderer.start, true, surface, stage)?;
+        self.keep(Moment::Started)?;
         match &lighting.integrator {
             Integrator::Studio(studio) => self.studio(stage, lit, studio)?,
             Integrator::Path(path) => self.path(stage, lit, path.max_depth)?,
         }
-        self.deposit(stage)
+        self.deposit(stage)?;
+        self.keep(Moment::Deposited)
     }
 
     fn studio(&mut self, stage: Stage, lit: &Lit, studio: &Studio) -> Result<(), GpuError> {
@@ -107,9 +110,12 @@ impl Run<'_> {
             if !self.extend(stage)? {
                 break;
             }
+            self.keep(Moment::Traced)?;
             self.shade_bricks(scatter, stage)?;
+            self.keep(Moment::Scattered)?;
             if lit.look.source_count > 0 && surface < max_depth {
                 self.search_occluders(occlude, stage)?;
+                self.keep(Moment::Occluded)?;
             }
         }
         Ok(())

@@ -55,7 +55,7 @@ pub(in crate::verify) struct EnteredRay {
     exact: CameraRay,
     direction_had: DVec3,
     /// Where it enters the box.
-    enter: Interval,
+    pub(in crate::verify) enter: Interval,
     /// Of the direction, component by component.
     pub(in crate::verify) direction: [Interval; 3],
     /// Whether the device may find that there is a ray that meets the box, and that there is none.

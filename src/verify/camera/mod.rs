@@ -25,13 +25,13 @@ const LENS_CENTER: DVec2 = DVec2::splat(0.5);
 pub(super) struct CameraRay {
     pub(super) line: Line,
     /// From the camera's own origin of this ray to where the line starts.
-    distance: f64,
-    origin_error: DVec3,
-    direction_error: DVec3,
-    distance_error: f64,
+    pub(super) distance: f64,
+    pub(super) origin_error: DVec3,
+    pub(super) direction_error: DVec3,
+    pub(super) distance_error: f64,
     /// Whether the device may find that there is a ray, and that there is none.
-    may_be_seen: bool,
-    may_be_unseen: bool,
+    pub(super) may_be_seen: bool,
+    pub(super) may_be_unseen: bool,
 }
 
 /// Every ray that a conforming device may make of exactly these numbers, in the scene's frame, before it is moved
@@ -89,9 +89,9 @@ pub(super) struct CameraModel {
 
 /// A relative location, exactly, and how far a device's may be from it.
 #[derive(Clone, Copy, Debug)]
-struct Location {
-    exact: DVec2,
-    error: DVec2,
+pub(super) struct Location {
+    pub(super) exact: DVec2,
+    pub(super) error: DVec2,
 }
 
 impl CameraModel {
@@ -119,7 +119,7 @@ impl CameraModel {
     }
 
     /// The ray of a location through a point of the lens, in the unit square.
-    fn ray_through_lens(&self, location: Location, lens: DVec2) -> CameraRay {
+    pub(super) fn ray_through_lens(&self, location: Location, lens: DVec2) -> CameraRay {
         match self.kind {
             CameraKind::Pinhole => self.pinhole(location),
             CameraKind::Orthographic => self.orthographic(location),

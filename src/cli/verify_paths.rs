@@ -1,0 +1,142 @@
+//! `pinhole verify` of a scene whose light is followed along paths: some samples of every pixel, stage by stage.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::verify_report::LISTED;
+use crate::verify::{PathCertificate, PathViolation, StageCounts};
+
+/// The object `paths` of the JSON document.
+#[derive(Serialize)]
+pub(super) struct PathReport {
+    paths: u64,
+    stages: BTreeMap<&'static str, Counts>,
+    upload: Option<String>,
+    violation_count: u64,
+    violations: Vec<Listed>,
+    legal: bool,
+    /// The certificate's own line.
+    #[serde(skip)]
+    pub(super) line: String,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    checked: u64,
+    decided: u64,
+    open: u64,
+    undecided: u64,
+}
+
+#[derive(Serialize)]
+struct Listed {
+    pixel: [u32; 2],
+    sample: u32,
+    surface: u32,
+    stage: &'static str,
+    message: String,
+}
+
+impl From<StageCounts> for Counts {
+    fn from(StageCounts { checked, decided, open, undecided }: StageCounts) -> Self {
+        Self { checked, decided, open, undecided }
+    }
+}
+
+impl From<&PathViolation> for Listed {
+    fn from(violation: &PathViolation) -> Self {
+        let PathViolation { pixel, sample, surface, stage, message } = violation;
+        let (stage, message) = (stage.name(), message.clone());
+        Self { pixel: *pixel, sample: *sample, surface: *surface, stage, message }
+    }
+}
+
+impl From<&PathCertificate> for PathReport {
+    fn from(certificate: &PathCertificate) -> Self {
+        let PathCertificate { start, extend, scatter, occlude, settle, .. } = *certificate;
+        let stages = [
+            ("start", start),
+            ("extend", extend),
+            ("scatter", scatter),
+            ("occlude", occlude),
+            ("settle", settle),
+        ];
+        Self {
+            paths: certificate.paths,
+            stages: stages.map(|(name, counts)| (name, counts.into())).into(),
+            upload: certificate.upload.as_ref().map(ToString::to_string),
+            violation_count: certificate.violation_count,
+            violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
+            legal: certificate.is_legal(),
+            line: certificate.to_string(),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+pub(super) use recorded::certify;
+
+#[cfg(feature = "gpu")]
+mod recorded {
+    use anyhow::Context;
+
+    use super::*;
+    use crate::accel::AccelChoice;
+    use crate::cli::device::explained_alone;
+    use crate::cli::failure::Failure;
+    use crate::cli::input::Input;
+    use crate::cli::views::Views;
+    use crate::cli::with_scene::with_accel;
+    use crate::cli::{interrupt, progress, render_lit};
+    use crate::gpu::{Headless, LitDecision};
+    use crate::image::LayerSet;
+    use crate::lighting::Lighting;
+    use crate::verify::Checker;
+
+    /// Follows so many samples on an adapter, one after the other, and judges them.
+    pub(in crate::cli) fn certify(
+        headless: &Headless,
+        input: &Input,
+        lighting: &Lighting,
+        samples: u32,
+        choice: AccelChoice,
+    ) -> Result<PathCertificate, Failure> {
+        let Input { scene, camera, film, .. } = input;
+        let views = Views::of(input);
+        let plan =
+            |choice| render_lit::plan(headless, input, lighting, &views, LayerSet::COLOR, choice);
+        let done = with_accel(headless, scene, choice, plan, |accel| {
+            let uploaded = interrupt::on_device(|| headless.upload_lit(scene, &accel))?;
+            drop(accel);
+            let buffers = match uploaded {
+                Ok(buffers) => buffers,
+                Err(error) => return Ok(Err(error)),
+            };
+            let checker = Checker::new(scene).context("the checker")?;
+            let mut certificate = PathCertificate::default();
+            for sample in 0..samples {
+                progress::stage(format!("following paths: sample {sample}"));
+                let recording = interrupt::on_device(|| {
+                    let watch = &mut |_: &_| match interrupt::decide() {
+                        std::ops::ControlFlow::Continue(()) => LitDecision::GoOn,
+                        std::ops::ControlFlow::Break(()) => LitDecision::Stop,
+                    };
+                    let view = (camera.as_ref(), film);
+                    let range = sample..sample + 1;
+                    headless.record_paths(scene, &buffers, view, lighting, range, watch)
+                })?;
+                match recording {
+                    Ok(recording) => {
+                        progress::stage("checking paths");
+                        certificate.join(checker.certify_paths(&recording));
+                    }
+                    Err(error) => return Ok(Err(error)),
+                }
+            }
+            Ok(Ok(certificate))
+        })?;
+        let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
+        Ok(certificate)
+    }
+}

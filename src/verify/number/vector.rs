@@ -1,0 +1,110 @@
+//! Three numbers.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use glam::DVec3;
+
+use super::Number;
+use crate::verify::rounding::Interval;
+
+/// A vector or a colour that a kernel has computed.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::verify) struct Vector(pub(in crate::verify) [Number; 3]);
+
+impl Vector {
+    pub(in crate::verify) const ZERO: Self = Self([Number::ZERO; 3]);
+    pub(in crate::verify) const ONE: Self = Self([Number::ONE; 3]);
+
+    /// One that the device had.
+    pub(in crate::verify) fn had(vector: [f32; 3]) -> Self {
+        Self(vector.map(Number::had))
+    }
+
+    /// All that is within `error` of another, along each axis.
+    pub(in crate::verify) fn around(exact: DVec3, error: f64) -> Self {
+        Self(exact.to_array().map(|x| Number::around(x, error)))
+    }
+
+    pub(in crate::verify) fn map(self, f: impl Fn(Number) -> Number) -> Self {
+        Self(self.0.map(f))
+    }
+
+    pub(in crate::verify) fn zip(self, other: Self, f: impl Fn(Number, Number) -> Number) -> Self {
+        let ([a, b, c], [p, q, r]) = (self.0, other.0);
+        Self([f(a, p), f(b, q), f(c, r)])
+    }
+
+    /// Component by component.
+    pub(in crate::verify) fn times(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    pub(in crate::verify) fn fence(self) -> Self {
+        self.map(Number::fence)
+    }
+
+    pub(in crate::verify) fn dot(self, other: Self) -> Number {
+        let Self([x, y, z]) = self.times(other);
+        x + y + z
+    }
+
+    pub(in crate::verify) fn squared(self) -> Number {
+        let Self([x, y, z]) = self.map(Number::squared);
+        x + y + z
+    }
+
+    /// Of unit length, or anything of about that if it may be none.
+    pub(in crate::verify) fn normalized(self) -> Self {
+        let v = self.fence();
+        let length = v.squared().sqrt();
+        v.map(|x| {
+            let unit = x / length;
+            // A quotient of a component and the length that contains it.
+            unit.clamp(-UNIT, UNIT)
+        })
+    }
+
+    pub(in crate::verify) fn largest(self) -> Number {
+        let Self([x, y, z]) = self;
+        x.max(y).max(z)
+    }
+
+    pub(in crate::verify) fn intervals(self) -> [Interval; 3] {
+        self.0.map(Number::interval)
+    }
+}
+
+/// More than a component of a vector that was divided by its length may be.
+const UNIT: f64 = 1.0 + 1e-5;
+
+impl Add for Vector {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Vector {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Neg for Vector {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self.map(|x| -x)
+    }
+}
+
+impl Mul<Number> for Vector {
+    type Output = Self;
+
+    fn mul(self, factor: Number) -> Self {
+        self.map(|x| x * factor)
+    }
+}

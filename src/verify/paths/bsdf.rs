@@ -1,0 +1,181 @@
+//! Where surfaces scatter light. Twin of `shaders/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl` and
+//! `scatter_matt.wgsl`.
+
+use super::kernel::{Kernel, Surface};
+use super::material::{
+    ENERGIES, Material, ggx_lambda, mirrors_brdf, reflected_density, visible_mirror,
+};
+use super::warp::{cosine_direction, pi};
+use crate::verify::number::{Number, Vector};
+
+/// The BSDF times the cosine, and the density of scattering light there.
+pub(super) struct Reflection {
+    pub(super) value: Vector,
+    pub(super) density: Number,
+}
+
+/// A direction in the frame of the normal, what light from there counts, and the density.
+pub(super) struct Scattered {
+    pub(super) direction: Vector,
+    pub(super) weight: Vector,
+    pub(super) density: Number,
+}
+
+/// Densities below this are taken for it, where something is divided by them.
+fn at_least_little(density: Number) -> Number {
+    density.max(Number::constant(1e-30))
+}
+
+fn schlick(color: Vector, cosine: Number) -> Vector {
+    let m = (Number::ONE - cosine).clamp(0.0, 1.0);
+    let m2 = m.squared();
+    let part = m2.squared() * m;
+    color.map(|c| c + (Number::ONE - c) * part)
+}
+
+fn given_back(color: Vector, kept: Number) -> Vector {
+    let lost = (Number::ONE - kept) / kept;
+    color.map(|c| Number::ONE + c * lost)
+}
+
+impl Kernel<'_> {
+    pub(super) fn reflect_toward(
+        &mut self,
+        material: &Material,
+        color: Vector,
+        out: Vector,
+        toward: Vector,
+    ) -> Reflection {
+        let none = Reflection { value: Vector::ZERO, density: Number::ZERO };
+        let (along, back) = (toward.0[2].fence(), out.0[2].fence());
+        if !material.is_lambert() && !material.is_metal() {
+            return none;
+        }
+        if !self.choices.decide(along.is_above_zero()) || !self.choices.decide(back.is_above_zero())
+        {
+            return none;
+        }
+        // What has been decided.
+        let along = along.max(Number::ZERO);
+        let [out, toward] = [(out, back.max(Number::ZERO)), (toward, along)]
+            .map(|(Vector([x, y, _]), z)| Vector([x, y, z]));
+        let is_metal = material.is_metal();
+        let share = if is_metal { Number::ONE } else { material.parameter };
+        let matt = (Number::ONE - share) * along / pi();
+        if share.is_zero() {
+            return Reflection { value: color * matt, density: matt };
+        }
+        let half = (out + toward).normalized();
+        let kept = self.energy(material.energies, out.0[2]);
+        let mirrors = mirrors_brdf(material.alpha, out, toward, half);
+        let lobe = if is_metal {
+            schlick(color, half.dot(out)).times(given_back(color, kept))
+        } else {
+            Vector::ONE.map(|one| one / kept)
+        };
+        let matt = if is_metal { Number::ZERO } else { matt };
+        let density = matt + share * reflected_density(material.alpha, out, half);
+        Reflection { value: color * matt + lobe * (share * mirrors), density }
+    }
+
+    pub(super) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
+        let color = Vector::had(at.vertex.color);
+        let Surface { material, out, .. } = at;
+        if material.is_dielectric() {
+            return self.scatter_dielectric(at, lobe, u);
+        }
+        if self.is_matt {
+            let direction = cosine_direction(u);
+            let density = direction.0[2] / pi();
+            return Scattered { direction, weight: color, density };
+        }
+        let is_metal = material.is_metal();
+        if !is_metal && lobe.is_less(material.parameter) != Some(true) {
+            let direction = cosine_direction(u);
+            let r = self.reflect_toward(material, color, *out, direction);
+            let weight = if material.parameter.is_zero() {
+                color
+            } else {
+                let divisor = at_least_little(r.density);
+                r.value.map(|value| value / divisor)
+            };
+            return self.above(direction, weight, r.density);
+        }
+        let half = visible_mirror(material.alpha, *out, u, self.choices);
+        let direction = half * (Number::TWO * half.dot(*out)) - *out;
+        let r = self.reflect_toward(material, color, *out, direction);
+        if is_metal {
+            let kept = self.energy(material.energies, out.0[2]);
+            let seen = Number::ONE + ggx_lambda(material.alpha, out.0[2]);
+            let ratio = seen / (seen + ggx_lambda(material.alpha, direction.0[2]));
+            let weight = schlick(color, half.dot(*out)).times(given_back(color, kept)) * ratio;
+            return self.above(direction, weight, r.density);
+        }
+        let divisor = at_least_little(r.density);
+        Scattered { direction, weight: r.value.map(|value| value / divisor), density: r.density }
+    }
+
+    /// What is scattered below the surface counts nothing.
+    fn above(&mut self, direction: Vector, weight: Vector, density: Number) -> Scattered {
+        let is_above = self.choices.decide(direction.0[2].is_above_zero());
+        let weight = if is_above { weight } else { Vector::ZERO };
+        Scattered { direction, weight, density }
+    }
+
+    fn scatter_dielectric(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
+        let Surface { material, out, .. } = at;
+        let is_entering = !at.vertex.is_back;
+        let relative =
+            if is_entering { material.parameter } else { Number::ONE / material.parameter };
+        let is_rough = !material.alpha.is_zero();
+        let half = if is_rough {
+            visible_mirror(material.alpha, *out, u, self.choices)
+        } else {
+            Vector([Number::ZERO, Number::ZERO, Number::ONE])
+        };
+        let cosine = out.dot(half).clamp(0.0, 1.0);
+        let share = self.fresnel(relative, cosine);
+        let is_reflected = self.choices.decide(lobe.is_less(share));
+        let toward = if is_reflected {
+            half * (Number::TWO * cosine) - *out
+        } else {
+            let beyond = beyond(relative, cosine);
+            half * (cosine / relative - beyond) - out.map(|c| c / relative)
+        };
+        let is_up = self.choices.decide(toward.0[2].is_above_zero());
+        if is_up != is_reflected {
+            return Scattered { direction: toward, weight: Vector::ZERO, density: Number::ZERO };
+        }
+        let weight = if is_rough {
+            let first = material.energies + if is_entering { 0 } else { ENERGIES / 4 };
+            let kept = self.energy(first, out.0[2]);
+            let hidden = Number::ONE + ggx_lambda(material.alpha, toward.0[2].abs());
+            Number::ONE / (hidden * kept)
+        } else {
+            Number::ONE
+        };
+        Scattered { direction: toward, weight: Vector([weight; 3]), density: Number::ZERO }
+    }
+
+    /// The share of unpolarised light that is reflected.
+    fn fresnel(&mut self, relative: Number, cosine: Number) -> Number {
+        let sine2 = (Number::ONE - cosine.squared()) / relative.squared();
+        if !self.choices.decide(sine2.is_less(Number::ONE)) {
+            return Number::ONE;
+        }
+        let beyond = (Number::ONE - sine2).max(Number::ZERO).sqrt();
+        let behind = relative * beyond;
+        let across = (cosine - behind) / (cosine + behind);
+        let ahead = relative * cosine;
+        let along = (ahead - beyond) / (ahead + beyond);
+        let whole = Number::HALF * (across.squared() + along.squared());
+        // All of it is reflected at most, but for rounding.
+        whole.min(Number::known(1.0 + 1e-4))
+    }
+}
+
+/// The cosine on the other side.
+fn beyond(relative: Number, cosine: Number) -> Number {
+    let sine2 = (Number::ONE - cosine.squared()) / relative.squared();
+    (Number::ONE - sine2).max(Number::ZERO).sqrt()
+}

@@ -1,0 +1,282 @@
+//! All stages of all paths of a recording.
+
+use super::certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
+use super::expected::{Expected, Mismatch};
+use super::kernel::{Address, Hit, Kernel, settled};
+use super::recording::{PathRecording, PathState, RecordedSample, flag, slot};
+use super::{search, start, upload};
+use crate::material::{Finish, Material};
+use crate::parallel::{map_parts, ranges};
+use crate::verify::camera::CameraModel;
+use crate::verify::certificate::KEPT;
+use crate::verify::checker::Checker;
+use crate::verify::choices::Choices;
+use crate::verify::hit::LegalHits;
+use crate::verify::number::{Number, Vector};
+
+/// How many pixels a thread takes at a time.
+const CHUNK: usize = 256;
+
+/// What is known of a stage.
+enum Verdict {
+    Decided,
+    Open,
+    Undecided,
+}
+
+/// What paths are judged by.
+struct PathCheck<'a> {
+    checker: &'a Checker<'a>,
+    recording: &'a PathRecording,
+    model: CameraModel,
+    is_matt: bool,
+}
+
+impl Checker<'_> {
+    /// Judges every stage of every path. The recording must be of this checker's scene.
+    #[must_use]
+    pub fn certify_paths(&self, recording: &PathRecording) -> PathCertificate {
+        let upload = upload::check(self.scene, &self.candidates, recording).err();
+        let mut certificate = PathCertificate { upload, ..PathCertificate::default() };
+        if certificate.upload.is_some() {
+            return certificate;
+        }
+        let is_matt = |finish: &Finish| match finish.material {
+            Material::Lambert { specular, .. } => specular == 0.0,
+            Material::Emissive { .. } => true,
+            Material::Conductor { .. } | Material::Dielectric { .. } => false,
+        };
+        let check = PathCheck {
+            checker: self,
+            recording,
+            model: CameraModel::new(recording.camera.kind, &recording.uploaded, &recording.film),
+            is_matt: self.scene.finishes().iter().all(is_matt),
+        };
+        for sample in &recording.samples {
+            let pixels = ranges(sample.start.len(), CHUNK);
+            for part in map_parts(pixels, |range| check.judge(sample, range)) {
+                certificate.join(part);
+            }
+        }
+        certificate
+    }
+}
+
+impl PathCertificate {
+    /// Adds what was found of other paths.
+    pub fn join(&mut self, part: Self) {
+        self.paths += part.paths;
+        self.start = self.start.plus(part.start);
+        self.extend = self.extend.plus(part.extend);
+        self.scatter = self.scatter.plus(part.scatter);
+        self.occlude = self.occlude.plus(part.occlude);
+        self.settle = self.settle.plus(part.settle);
+        self.violation_count += part.violation_count;
+        self.upload = self.upload.take().or(part.upload);
+        let room = KEPT.saturating_sub(self.violations.len());
+        self.violations.extend(part.violations.into_iter().take(room));
+    }
+}
+
+impl StageCounts {
+    fn count(&mut self, verdict: &Verdict) {
+        self.checked += 1;
+        match verdict {
+            Verdict::Decided => self.decided += 1,
+            Verdict::Open => self.open += 1,
+            Verdict::Undecided => self.undecided += 1,
+        }
+    }
+}
+
+/// Takes note of what became of a stage.
+fn note(
+    counts: &mut StageCounts,
+    violations: &mut Vec<PathViolation>,
+    Address { pixel, sample, surface }: Address,
+    result: Result<Verdict, Mismatch>,
+) {
+    match result {
+        Ok(verdict) => counts.count(&verdict),
+        Err(mismatch) => {
+            counts.checked += 1;
+            let (stage, message) = (mismatch.stage, mismatch.to_string());
+            violations.push(PathViolation { pixel, sample, surface, stage, message });
+        }
+    }
+}
+
+/// Follows a stage along every combination of open decisions, until one leads to what the device did.
+fn along_choices(
+    mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
+) -> Result<Verdict, Mismatch> {
+    let mut choices = Choices::default();
+    let mut nearest: Option<Mismatch> = None;
+    loop {
+        match follow(&mut choices) {
+            Ok(expected) if expected.is_wide => return Ok(Verdict::Undecided),
+            Ok(_) if choices.were_open() => return Ok(Verdict::Open),
+            Ok(_) => return Ok(Verdict::Decided),
+            Err(mismatch) => {
+                if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
+                    nearest = Some(mismatch);
+                }
+            }
+        }
+        if !choices.advance() {
+            break;
+        }
+    }
+    match nearest {
+        Some(mismatch) if !choices.were_too_many() => Err(mismatch),
+        _ => Ok(Verdict::Undecided),
+    }
+}
+
+fn simple(is_open: bool) -> Verdict {
+    if is_open { Verdict::Open } else { Verdict::Decided }
+}
+
+impl PathCheck<'_> {
+    fn judge(&self, sample: &RecordedSample, range: std::ops::Range<usize>) -> PathCertificate {
+        let mut part = PathCertificate::default();
+        let mut legal = LegalHits::default();
+        for index in range {
+            part.paths += 1;
+            self.judge_path(sample, index, &mut part, &mut legal);
+        }
+        part.violation_count = part.violations.len() as u64;
+        part.violations.truncate(KEPT);
+        part
+    }
+
+    fn judge_path(
+        &self,
+        recorded: &RecordedSample,
+        index: usize,
+        part: &mut PathCertificate,
+        legal: &mut LegalHits,
+    ) {
+        let PathRecording { origin, size, .. } = self.recording;
+        let width = size[0].max(1) as usize;
+        // A film's sides are u32.
+        let pixel = [origin[0] + (index % width) as u32, origin[1] + (index / width) as u32];
+        let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
+        let mut state = recorded.start[index];
+        let PathCertificate { violations, start, extend, scatter, occlude, settle, .. } = part;
+        note(start, violations, address, self.start(address, &state));
+        let mut last = None;
+        for (surface, stage) in (0..).zip(&recorded.surfaces) {
+            address.surface = surface;
+            let mut after = stage.scattered[index];
+            if state.has(flag::ALIVE) {
+                let hit = Hit::new(stage.hits[index]);
+                note(extend, violations, address, self.extend(&state, last, hit, legal));
+                note(scatter, violations, address, self.scatter(address, &state, hit, &after));
+                last = Some(hit);
+            } else {
+                // An ended path stays as it is.
+                let mut expected = Expected::default();
+                let same = (0..PathState::SLOTS).try_for_each(|which| {
+                    let name = (PathStage::Scatter, "a path that has ended");
+                    expected.same(name, [&state, &after], which)
+                });
+                if let Err(mismatch) = same {
+                    note(scatter, violations, address, Err(mismatch));
+                }
+            }
+            let open = f32::from_bits(stage.open[index]);
+            let is_searched = surface < self.recording.max_depth
+                && self.recording.look.source_count > 0
+                && after.number(slot::SHADOW) > 0.0;
+            if is_searched {
+                note(occlude, violations, address, self.occlude(&after, open));
+            } else if stage.open[index] != after.bits(slot::PENDING) {
+                let words = format!("{open:?}, without a search");
+                let fail = Expected::default().fail(PathStage::Occlude, "the light's way", words);
+                note(occlude, violations, address, Err(fail));
+            }
+            if stage.open[index] != after.bits(slot::PENDING) {
+                // What is hidden need not be searched again.
+                after.slots[slot::PENDING][3] = stage.open[index];
+                after.slots[slot::SHADOW][3] = 0;
+            }
+            state = after;
+        }
+        if state.has(flag::ALIVE) {
+            let words = "the path was not followed to its end".to_owned();
+            let fail = Expected::default().fail(PathStage::Extend, "the hit", words);
+            note(extend, violations, address, Err(fail));
+        }
+        note(settle, violations, address, Self::settle(&state, recorded.sums[index]));
+    }
+
+    fn start(&self, address: Address, state: &PathState) -> Result<Verdict, Mismatch> {
+        along_choices(|choices| {
+            let mut expected = Expected::default();
+            let (recording, model) = (self.recording, &self.model);
+            start::check(recording, model, address, state, &mut expected, choices)?;
+            Ok(expected)
+        })
+    }
+
+    fn extend(
+        &self,
+        state: &PathState,
+        last: Option<Hit>,
+        hit: Hit,
+        legal: &mut LegalHits,
+    ) -> Result<Verdict, Mismatch> {
+        let mut expected = Expected::default();
+        let candidates = &self.checker.candidates;
+        search::check_hit(&self.model, candidates, state, last, hit, &mut expected, legal)
+            .map(simple)
+    }
+
+    fn scatter(
+        &self,
+        address: Address,
+        before: &PathState,
+        hit: Hit,
+        after: &PathState,
+    ) -> Result<Verdict, Mismatch> {
+        along_choices(|choices| {
+            let mut kernel = Kernel {
+                scene: self.checker.scene,
+                recording: self.recording,
+                is_matt: self.is_matt,
+                address,
+                before,
+                hit,
+                after,
+                expected: Expected::default(),
+                choices,
+            };
+            kernel.follow()?;
+            Ok(kernel.expected)
+        })
+    }
+
+    fn occlude(&self, state: &PathState, open: f32) -> Result<Verdict, Mismatch> {
+        let mut expected = Expected::default();
+        let candidates = &self.checker.candidates;
+        search::check_open(&self.model, candidates, state, open, &mut expected).map(simple)
+    }
+
+    /// What a sample adds to the picture.
+    fn settle(state: &PathState, sums: [[u32; 4]; 2]) -> Result<Verdict, Mismatch> {
+        const COLOR: (PathStage, &str) = (PathStage::Settle, "the sample's colour");
+        const ALPHA: (PathStage, &str) = (PathStage::Settle, "the sample's opacity");
+        const ALBEDO: (PathStage, &str) = (PathStage::Settle, "the first surface's colour");
+        const SQUARE: (PathStage, &str) = (PathStage::Settle, "the luminance's square");
+        let [[r, g, b, alpha], [x, y, z, square]] = sums.map(|sum| sum.map(f32::from_bits));
+        let mut expected = Expected::default();
+        let color = settled(state);
+        expected.vector(COLOR, [r, g, b], color)?;
+        expected.number(ALPHA, alpha, Number::had(state.number(slot::RADIANCE)))?;
+        expected.vector(ALBEDO, [x, y, z], Vector::had(state.vector(slot::FIRST)))?;
+        let weights = Vector([0.2126, 0.7152, 0.0722].map(Number::constant));
+        expected.number(SQUARE, square, color.dot(weights).squared())?;
+        Ok(if expected.is_wide { Verdict::Undecided } else { Verdict::Decided })
+    }
+}

@@ -1,0 +1,135 @@
+//! What a kernel may have written, number by number, against what it wrote.
+
+use std::fmt;
+
+use super::certificate::PathStage;
+use super::recording::PathState;
+use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+/// A bound that is wider than this, of the number itself, says nothing.
+const WIDE: f64 = 0.1;
+
+/// Something that a device wrote and may not have written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mismatch {
+    pub(super) stage: PathStage,
+    pub(super) what: &'static str,
+    pub(super) answer: Answer,
+    /// How many comparisons went well before.
+    pub(super) after: u32,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Answer {
+    Number { found: f32, legal: Interval },
+    Bits { found: u32, legal: u32 },
+    Words(String),
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, answer, .. } = self;
+        match answer {
+            Answer::Number { found, legal } => write!(f, "{what} is {found:?}; legal is {legal}"),
+            Answer::Bits { found, legal } => write!(f, "{what} is {found:#x}; legal is {legal:#x}"),
+            Answer::Words(words) => write!(f, "{what}: {words}"),
+        }
+    }
+}
+
+/// Compares, and takes note of bounds that say nothing.
+#[derive(Debug, Default)]
+pub(super) struct Expected {
+    passed: u32,
+    /// Whether a bound was too wide to say anything.
+    pub(super) is_wide: bool,
+}
+
+impl Expected {
+    fn mismatch(&self, stage: PathStage, what: &'static str, answer: Answer) -> Mismatch {
+        Mismatch { stage, what, answer, after: self.passed }
+    }
+
+    /// Integers.
+    pub(super) fn bits(
+        &mut self,
+        (stage, what): (PathStage, &'static str),
+        found: u32,
+        legal: u32,
+    ) -> Result<(), Mismatch> {
+        if found != legal {
+            return Err(self.mismatch(stage, what, Answer::Bits { found, legal }));
+        }
+        self.passed += 1;
+        Ok(())
+    }
+
+    /// A number; its bound is narrow if it is so of `scale`.
+    fn within(
+        &mut self,
+        (stage, what): (PathStage, &'static str),
+        found: f32,
+        legal: Interval,
+        scale: f64,
+    ) -> Result<(), Mismatch> {
+        if !legal.contains(found.into()) {
+            return Err(self.mismatch(stage, what, Answer::Number { found, legal }));
+        }
+        self.passed += 1;
+        self.is_wide |= legal.high - legal.low > WIDE * scale + f64::from(f32::MIN_POSITIVE) * 4.0;
+        Ok(())
+    }
+
+    pub(super) fn number(
+        &mut self,
+        name: (PathStage, &'static str),
+        found: f32,
+        legal: Number,
+    ) -> Result<(), Mismatch> {
+        let legal = legal.interval();
+        self.within(name, found, legal, legal.high.abs().max(legal.low.abs()))
+    }
+
+    /// A vector, whose length is what its bounds are compared with.
+    pub(super) fn vector(
+        &mut self,
+        name: (PathStage, &'static str),
+        found: [f32; 3],
+        legal: Vector,
+    ) -> Result<(), Mismatch> {
+        self.vector_of(name, found, legal, 0.0)
+    }
+
+    /// A vector of a thing that has a size.
+    pub(super) fn vector_of(
+        &mut self,
+        name: (PathStage, &'static str),
+        found: [f32; 3],
+        legal: Vector,
+        size: f64,
+    ) -> Result<(), Mismatch> {
+        let legal = legal.intervals();
+        let scale =
+            legal.iter().map(|axis| axis.high.abs().max(axis.low.abs())).fold(size, f64::max);
+        found
+            .into_iter()
+            .zip(legal)
+            .try_for_each(|(found, legal)| self.within(name, found, legal, scale))
+    }
+
+    /// A slot that is what it was.
+    pub(super) fn same(
+        &mut self,
+        name: (PathStage, &'static str),
+        [before, after]: [&PathState; 2],
+        slot: usize,
+    ) -> Result<(), Mismatch> {
+        let pairs = after.slots[slot].into_iter().zip(before.slots[slot]);
+        pairs.into_iter().try_for_each(|(found, legal)| self.bits(name, found, legal))
+    }
+
+    pub(super) fn fail(&self, stage: PathStage, what: &'static str, words: String) -> Mismatch {
+        self.mismatch(stage, what, Answer::Words(words))
+    }
+}

@@ -1,0 +1,267 @@
+//! The kernel that shades, followed number by number: what it is given, and what it may write. Twin of
+//! `shaders/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
+
+use super::certificate::PathStage;
+use super::expected::{Expected, Mismatch};
+use super::recording::{PathRecording, PathState, UploadedLook, flag, slot};
+use super::vertex::Vertex;
+use super::warp::Axes;
+use crate::sampling::{pair, pixel_seed};
+use crate::scene::Scene;
+use crate::verify::choices::Choices;
+use crate::verify::number::{Number, Vector};
+
+/// What a ray met, as the device had it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    pub(super) t: f32,
+    pub(super) id: u32,
+    pub(super) place: u32,
+    pub(super) distance: f32,
+}
+
+impl Hit {
+    pub(super) fn new([t, id, place, distance]: [u32; 4]) -> Self {
+        Self { t: f32::from_bits(t), id, place, distance: f32::from_bits(distance) }
+    }
+}
+
+/// Which path, and which of its surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Address {
+    pub(super) pixel: [u32; 2],
+    pub(super) sample: u32,
+    pub(super) surface: u32,
+}
+
+/// One invocation, along one combination of its open decisions.
+pub(super) struct Kernel<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) recording: &'a PathRecording,
+    /// Whether the kernel is the one for scenes in which all is matt or sends out light.
+    pub(super) is_matt: bool,
+    pub(super) address: Address,
+    pub(super) before: &'a PathState,
+    pub(super) hit: Hit,
+    pub(super) after: &'a PathState,
+    pub(super) expected: Expected,
+    pub(super) choices: &'a mut Choices,
+}
+
+/// A point that scatters light.
+pub(super) struct Surface {
+    pub(super) vertex: Vertex,
+    pub(super) material: super::material::Material,
+    pub(super) axes: Axes,
+    /// Back to where the ray came from, in the frame of the normal.
+    pub(super) out: Vector,
+}
+
+/// A name of a number for reports.
+type Name = (PathStage, &'static str);
+
+const ORIGIN: Name = (PathStage::Vertex, "where the path goes on");
+const DIRECTION: Name = (PathStage::Scatter, "where the path goes");
+const DENSITY: Name = (PathStage::Scatter, "the density of going there");
+const FLAGS: Name = (PathStage::Scatter, "the path's flags");
+const LEFT: Name = (PathStage::Vertex, "the sphere that the path leaves");
+const THROUGHPUT: Name = (PathStage::Scatter, "what the path carries");
+const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
+const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
+const PENDING: Name = (PathStage::Light, "the pending light");
+const LIGHT: Name = (PathStage::Light, "the light that is looked for");
+const MEDIUM: Name = (PathStage::Scatter, "what absorbs light on the way");
+const FIRST: Name = (PathStage::Vertex, "the first surface's colour");
+
+impl<'a> Kernel<'a> {
+    pub(super) fn look(&self) -> &'a UploadedLook {
+        &self.recording.look
+    }
+
+    /// A vector of the tables; zeros beyond them.
+    pub(super) fn table(&self, at: u32) -> [u32; 4] {
+        self.recording.tables.get(at as usize).copied().unwrap_or_default()
+    }
+
+    pub(super) fn table_numbers(&self, at: u32) -> [f32; 4] {
+        self.table(at).map(f32::from_bits)
+    }
+
+    pub(super) fn pair(&self, number: u32) -> [u32; 2] {
+        let Address { pixel, sample, surface } = self.address;
+        pair(pixel_seed(pixel, self.look().seed), sample, number + 8 * surface)
+    }
+
+    pub(super) fn is_last(&self) -> bool {
+        self.address.surface >= self.recording.max_depth
+    }
+
+    /// Follows the kernel, and compares what it wrote.
+    pub(super) fn follow(&mut self) -> Result<(), Mismatch> {
+        let (before, after) = (self.before, self.after);
+        let settled = self.settled();
+        let alpha = before.number(slot::RADIANCE);
+        let through = Vector::had(before.vector(slot::THROUGHPUT));
+        let Some(vertex) = self.vertex()? else {
+            let light = self.light_from_afar();
+            return self.end(settled + through.times(light), alpha);
+        };
+        let medium = Vector::had(before.vector(slot::MEDIUM));
+        let arriving = if self.is_matt {
+            through
+        } else {
+            through.times(medium.map(|m| (-m * vertex.distance).exp()))
+        };
+        let [x, y, z, radius] = vertex.sphere;
+        self.expected.vector(LEFT, after.vector(slot::LEFT), Vector::had([x, y, z]))?;
+        self.expected.number(LEFT, after.number(slot::LEFT), Number::had(radius))?;
+        if vertex.is_passed {
+            return self.pass(&vertex, settled, arriving);
+        }
+        let is_seen = !before.has(flag::SCATTERED);
+        if is_seen && before.number(slot::FIRST) >= 0.0 {
+            let first = Vector::had(vertex.color).map(|c| c.min(Number::ONE));
+            self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
+            self.expected.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
+        } else {
+            self.expected.same(FIRST, [before, after], slot::FIRST)?;
+        }
+        let material = self.material_of(&vertex);
+        if material.is_emissive() {
+            let density = self.known_density(self.hit.id, before.vector(slot::ORIGIN));
+            let weight = self.chance_weight(density);
+            let light = Vector::had(vertex.color) * material.parameter * weight;
+            self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
+            return self.stop();
+        }
+        let axes = self.axes_around(vertex.normal);
+        let out = axes.to_local(-Vector::had(before.vector(slot::DIRECTION)));
+        let at = Surface { vertex, material, axes, out };
+        let light = self.head_light(&at, is_seen);
+        self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
+        if self.is_last() {
+            return self.stop();
+        }
+        self.look_for_light(&at, arriving)?;
+        self.bounce(&at, arriving)
+    }
+
+    /// The radiance so far, and the light that was looked for last if nothing is in between.
+    fn settled(&self) -> Vector {
+        settled(self.before)
+    }
+
+    pub(super) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
+        const KEPT: Name = (PathStage::Scatter, "what stays as it is");
+        let states = [self.before, self.after];
+        slots.iter().try_for_each(|slot| self.expected.same(KEPT, states, *slot))
+    }
+
+    fn compare_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
+        let after = self.after;
+        self.expected.vector(RADIANCE, after.vector(slot::RADIANCE), radiance)?;
+        self.expected.number(ALPHA, after.number(slot::RADIANCE), alpha)
+    }
+
+    /// The pending light, and whether it is still to be asked what is in between: 1, or 0.
+    pub(super) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
+        let after = self.after;
+        self.expected.vector(PENDING, after.vector(slot::PENDING), light)?;
+        self.expected.number(LIGHT, after.number(slot::PENDING), open)
+    }
+
+    /// No light is looked for; in which direction there was none, does not matter.
+    fn compare_no_light(&mut self) -> Result<(), Mismatch> {
+        let after = self.after;
+        self.expected.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
+        self.compare_light(Vector::ZERO, Number::ZERO)
+    }
+
+    /// The path ends behind everything.
+    fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
+        let after = self.after;
+        self.compare_radiance(radiance, Number::had(alpha))?;
+        self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
+        self.expected.bits(FLAGS, after.flags(), 0)?;
+        self.compare_no_light()?;
+        self.same(&[slot::DIRECTION, slot::LEFT, slot::THROUGHPUT, slot::FIRST])?;
+        self.same(&[slot::TARGET, slot::MEDIUM])
+    }
+
+    /// The path ends on a surface. Where it would have gone, does not matter.
+    fn stop(&mut self) -> Result<(), Mismatch> {
+        self.expected.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
+        self.compare_no_light()
+    }
+
+    /// The path goes through a surface as if there were nothing.
+    fn pass(&mut self, at: &Vertex, settled: Vector, arriving: Vector) -> Result<(), Mismatch> {
+        let (before, after) = (self.before, self.after);
+        self.compare_radiance(settled, Number::had(before.number(slot::RADIANCE)))?;
+        self.same(&[slot::FIRST, slot::MEDIUM])?;
+        self.compare_no_light()?;
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
+        self.expected.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
+        self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
+        let alive = if self.is_last() { 0 } else { flag::ALIVE };
+        let scattered = before.flags() & flag::SCATTERED;
+        self.compare_flags(at, true, flag::FULL | scattered | alive)
+    }
+
+    /// Flags, and on which side of a surface the path goes on.
+    fn compare_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
+        let is_inside = at.is_sphere() && is_behind != at.is_back;
+        let side = if is_inside { flag::INSIDE } else { 0 };
+        let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
+        self.expected.bits(FLAGS, self.after.flags(), side | ground | flags)
+    }
+
+    /// Where a surface scatters the path.
+    fn bounce(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
+        let (after, surface) = (self.after, self.address.surface);
+        let lobe = unit(self.pair(3)[0]);
+        let next = self.scatter_light(at, lobe, self.pair(2));
+        let is_behind = self.choices.decide(next.direction.0[2].is_less(Number::ZERO));
+        let direction = at.axes.to_world(next.direction);
+        self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
+        self.expected.number(DENSITY, after.number(slot::DIRECTION), next.density)?;
+
+        let carried = through.times(next.weight).fence();
+        let most = carried.largest();
+        let survival = if surface >= self.look().roulette_from {
+            most.min(Number::constant(0.95))
+        } else {
+            Number::ONE
+        };
+        let divisor = survival.max(Number::constant(1e-30));
+        let carried = carried.map(|c| c / divisor);
+        self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
+
+        let is_glass = at.material.is_dielectric();
+        let medium = if is_glass && is_behind {
+            if at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
+        } else {
+            Vector::had(self.before.vector(slot::MEDIUM))
+        };
+        self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
+
+        let draw = unit(self.pair(6)[0]);
+        let is_dead = !self.choices.decide(most.is_above_zero())
+            || !self.choices.decide(draw.is_less(survival));
+        let full = if is_glass { flag::FULL } else { 0 };
+        let alive = if is_dead { 0 } else { flag::ALIVE };
+        self.compare_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
+    }
+}
+
+/// The number in [0, 1) that the upper 24 bits stand for, exactly.
+pub(super) fn unit(bits: u32) -> Number {
+    Number::known(crate::sampling::unit(bits))
+}
+
+/// The radiance of a path, and the light that it looked for last if nothing is in between.
+pub(super) fn settled(state: &PathState) -> Vector {
+    let open = Number::had(state.number(slot::PENDING));
+    Vector::had(state.vector(slot::RADIANCE)) + Vector::had(state.vector(slot::PENDING)) * open
+}

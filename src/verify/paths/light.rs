@@ -1,0 +1,278 @@
+//! The light that a surface looks for. Twin of `shaders/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
+
+use super::certificate::PathStage;
+use super::expected::Mismatch;
+use super::kernel::{Kernel, Surface, unit};
+use super::recording::{flag, slot};
+use super::warp::{axes_around, cone_direction, cone_of_sphere, pi};
+use crate::verify::number::{Number, Vector};
+use crate::verify::recording::NO_HIT;
+
+pub(super) const HEAD: u32 = 0;
+pub(super) const DIRECTIONAL: u32 = 1;
+const POINT: u32 = 2;
+const MULTIPLE: u32 = 2;
+
+/// A light as a surface sees it.
+struct Found {
+    direction: Vector,
+    distance: Number,
+    /// Of a light that may be met by chance as well; else 0.
+    density: Number,
+    /// Over the density.
+    radiance: Vector,
+    sphere: [f32; 4],
+}
+
+/// An emissive sphere as kernels have it.
+struct Emitter {
+    sphere: [f32; 4],
+    probability: Number,
+    radiance: Vector,
+}
+
+const DIRECTION: (PathStage, &str) = (PathStage::Light, "the direction towards the light");
+const DISTANCE: (PathStage, &str) = (PathStage::Light, "how far the light is");
+const TARGET: (PathStage, &str) = (PathStage::Light, "the sphere that is looked for");
+
+impl Kernel<'_> {
+    /// Lights at the eye, on what the camera sees.
+    pub(super) fn head_light(&mut self, at: &Surface, is_seen: bool) -> Vector {
+        if !is_seen || at.material.is_dielectric() {
+            return Vector::ZERO;
+        }
+        let sum = (0..self.look().light_count)
+            .filter(|light| self.table(3 * light)[3] == HEAD)
+            .map(|light| {
+                let [r, g, b, _] = self.table_numbers(3 * light + 1);
+                Vector::had([r, g, b])
+            })
+            .fold(Vector::ZERO, |sum, light| sum + light);
+        if sum.0.iter().all(Number::is_zero) {
+            return Vector::ZERO;
+        }
+        let color = Vector::had(at.vertex.color);
+        let r = self.reflect_toward(&at.material, color, at.out, at.out);
+        (sum * pi()).times(r.value)
+    }
+
+    pub(super) fn look_for_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
+        let (look, after) = (self.look(), self.after);
+        if look.source_count == 0 {
+            return self.same(&[slot::SHADOW, slot::PENDING, slot::TARGET]);
+        }
+        let (u, [which, choice]) = (self.pair(4), self.pair(5));
+        let place = unit(which) * Number::known(look.source_count.into());
+        let source = self.choices.pick(place.floor()) as u32;
+        let source = source.min(look.source_count - 1);
+        let position = at.vertex.position;
+        let is_emitter = source == look.lamp_sources && look.emitter_count > 0;
+        let found = if source < look.lamp_sources {
+            self.find_lamp(source, position, u)
+        } else if is_emitter {
+            self.find_sphere(position, u, choice)
+        } else {
+            self.find_sky(u)
+        };
+        self.expected.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
+        let [x, y, z, radius] = found.sphere;
+        self.expected.vector(TARGET, after.vector(slot::TARGET), Vector::had([x, y, z]))?;
+        self.expected.number(TARGET, after.number(slot::TARGET), Number::had(radius))?;
+
+        let color = Vector::had(at.vertex.color);
+        let toward = at.axes.to_local(found.direction);
+        let r = self.reflect_toward(&at.material, color, at.out, toward);
+        let mut light = through.times(r.value).times(found.radiance);
+        if look.light_sampling == MULTIPLE && self.choices.decide(found.density.is_above_zero()) {
+            let all = (found.density + r.density).max(Number::constant(1e-30));
+            light = light * (found.density / all);
+        }
+        let is_open = self.is_open(at, &found, light);
+        let (light, open, distance) = if is_open {
+            (light, Number::ONE, found.distance)
+        } else {
+            (Vector::ZERO, Number::ZERO, Number::ZERO)
+        };
+        self.expected.number(DISTANCE, after.number(slot::SHADOW), distance)?;
+        self.compare_light(light, open)
+    }
+
+    /// Whether there is light, and what hides it needs a search.
+    fn is_open(&mut self, at: &Surface, found: &Found, light: Vector) -> bool {
+        let vertex = &at.vertex;
+        if !self.choices.decide(light.largest().is_above_zero()) {
+            return false;
+        }
+        if vertex.is_back {
+            let [x, y, z, _] = vertex.sphere;
+            let to_center = Vector::had([x, y, z]) - vertex.position;
+            let to_wall = (Number::TWO * to_center.dot(found.direction)).max(Number::ZERO);
+            if self.choices.decide(to_wall.is_less(found.distance)) {
+                return false;
+            }
+        }
+        if vertex.is_sphere() {
+            let ground = self.ground_distance(vertex.position, found.direction, Number::ZERO);
+            if ground.is_some_and(|t| self.choices.decide(t.is_less(found.distance))) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn sources(&self) -> Number {
+        Number::known(self.look().source_count.max(1).into())
+    }
+
+    fn find_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> Found {
+        let light = self.table(3 * source + 2)[0];
+        let at = light.saturating_mul(3);
+        let [x, y, z, _] = self.table_numbers(at);
+        let place = Vector::had([x, y, z]);
+        let [r, g, b, size] = self.table_numbers(at.saturating_add(1));
+        let (power, size) = (Vector::had([r, g, b]), Number::had(size));
+        let kind = self.table(at)[3];
+        let far = Number::known(NO_HIT.into());
+        let sources = self.sources();
+        let found = |direction, distance, density, strength: Vector| Found {
+            direction,
+            distance,
+            density,
+            radiance: strength * (pi() * sources),
+            sphere: [0.0; 4],
+        };
+        if kind == DIRECTIONAL {
+            let direction = axes_around(place, self.choices).to_world(cone_direction(u, size));
+            let direction = self.looked_for(direction);
+            let strength = power * (Number::TWO / (Number::TWO - size));
+            let density = if size.is_zero() {
+                Number::ZERO
+            } else {
+                Number::ONE / (Number::TWO * pi() * size * sources)
+            };
+            return found(direction, far, density, strength);
+        }
+        let toward = place - position;
+        let distance = toward.fence().squared().sqrt();
+        let axis = toward.fence().map(|c| c / distance.max(Number::constant(1e-30)));
+        if kind == POINT {
+            let square = distance.squared().max(Number::constant(1e-30));
+            return found(axis, distance, Number::ZERO, power.map(|p| p / square));
+        }
+        let is_outside = self.choices.decide(size.is_less(distance));
+        let (k, around) = if is_outside {
+            (cone_of_sphere(size, distance), axis)
+        } else {
+            (Number::TWO, Vector([Number::ZERO, Number::ZERO, Number::ONE]))
+        };
+        let direction = axes_around(around, self.choices).to_world(cone_direction(u, k));
+        let direction = self.looked_for(direction);
+        let middle = toward.dot(direction);
+        let foot = toward - direction * middle;
+        let chord = (size.squared() - foot.squared()).max(Number::ZERO).sqrt();
+        let wall = if is_outside { middle - chord } else { middle + chord };
+        found(direction, wall.max(Number::ZERO), Number::ZERO, power * (Number::TWO * k))
+    }
+
+    /// A fenced direction towards a light is the one that the state tells, if it may be.
+    fn looked_for(&self, direction: Vector) -> Vector {
+        let recorded = Vector::had(self.after.vector(slot::SHADOW));
+        direction.zip(recorded, Number::narrowed)
+    }
+
+    fn emitter(&self, index: u32) -> Emitter {
+        let at = self.look().emitter_first.saturating_add(3 * index);
+        let [_, _, probability, _] = self.table_numbers(at + 1);
+        let [r, g, b, _] = self.table_numbers(at + 2);
+        Emitter {
+            sphere: self.table_numbers(at),
+            probability: Number::had(probability),
+            radiance: Vector::had([r, g, b]),
+        }
+    }
+
+    /// The first emitter of which a word is at least so large.
+    fn find_emitter(&self, word: usize, value: u32) -> u32 {
+        let count = self.look().emitter_count;
+        let first = self.look().emitter_first;
+        let is_before = |index: u32| self.table(first + 3 * index + 1)[word] < value;
+        let (mut low, mut high) = (0, count);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if is_before(middle) { low = middle + 1 } else { high = middle }
+        }
+        low.min(count.max(1) - 1)
+    }
+
+    /// The density with which a point sees a point of an emitter chosen; 0 from inside.
+    fn emitter_density(&mut self, emitter: &Emitter, position: Vector) -> Number {
+        let [x, y, z, radius] = emitter.sphere;
+        let radius = Number::had(radius);
+        let distance = (Vector::had([x, y, z]) - position).fence().squared().sqrt();
+        if !self.choices.decide(radius.is_less(distance)) {
+            return Number::ZERO;
+        }
+        let k = cone_of_sphere(radius, distance.max(radius));
+        emitter.probability / (Number::TWO * pi() * k)
+    }
+
+    /// The density with which an emitter that was met would have been looked for.
+    pub(super) fn known_density(&mut self, id: u32, position: [f32; 3]) -> Number {
+        if self.look().emitter_count == 0 {
+            return Number::ZERO;
+        }
+        let found = self.emitter(self.find_emitter(0, id));
+        self.emitter_density(&found, Vector::had(position)) / self.sources()
+    }
+
+    fn find_sphere(&mut self, position: Vector, u: [u32; 2], choice: u32) -> Found {
+        let found = self.emitter(self.find_emitter(1, choice));
+        let density = self.emitter_density(&found, position) / self.sources();
+        let [x, y, z, radius] = found.sphere;
+        let radius = Number::had(radius);
+        let toward = Vector::had([x, y, z]) - position;
+        let length = toward.fence().squared().max(Number::constant(1e-30)).sqrt();
+        let k = cone_of_sphere(radius, length.max(radius));
+        let axis = toward.fence().map(|c| c / length);
+        let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
+        let direction = self.looked_for(direction);
+        let middle = toward.dot(direction);
+        let foot = toward - direction * middle;
+        let chord = (radius.squared() - foot.squared()).max(Number::ZERO).sqrt();
+        let distance = (middle - chord).max(Number::ZERO);
+        let radiance = if density.is_zero() {
+            Vector::ZERO
+        } else {
+            let divisor = density.max(Number::constant(1e-30));
+            found.radiance.map(|c| c / divisor)
+        };
+        Found { direction, distance, density, radiance, sphere: found.sphere }
+    }
+
+    fn find_sky(&mut self, u: [u32; 2]) -> Found {
+        let (direction, density) = self.sample_sky(u);
+        let density = density / self.sources();
+        let divisor = density.max(Number::constant(1e-30));
+        let radiance = if density.is_zero() {
+            Vector::ZERO
+        } else {
+            self.sky_radiance(direction).map(|c| c / divisor)
+        };
+        let distance = Number::known(NO_HIT.into());
+        Found { direction, distance, density, radiance, sphere: [0.0; 4] }
+    }
+
+    /// What light that is met counts, if it might have been looked for with a density.
+    pub(super) fn chance_weight(&mut self, looked_for: Number) -> Number {
+        let sampling = self.look().light_sampling;
+        let is_sought = !looked_for.is_zero() && self.choices.decide(looked_for.is_above_zero());
+        if self.before.has(flag::FULL) || sampling == 0 || !is_sought {
+            return Number::ONE;
+        }
+        if sampling != MULTIPLE {
+            return Number::ZERO;
+        }
+        let scattered = Number::had(self.before.number(slot::DIRECTION));
+        scattered / (scattered + looked_for).max(Number::constant(1e-30))
+    }
+}

@@ -1,0 +1,154 @@
+//! What surfaces do with light, and the GGX distribution. Twin of `shaders/material.wgsl` and `microfacet.wgsl`.
+
+use super::kernel::Kernel;
+use super::vertex::Vertex;
+use super::warp::{disk, pi};
+use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+const LAMBERT: u32 = 0;
+const CONDUCTOR: u32 = 1;
+const DIELECTRIC: u32 = 2;
+const EMISSIVE: u32 = 3;
+
+/// How many numbers a table of an energy has.
+pub(super) const ENERGIES: u32 = 256;
+
+/// A material as kernels have it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Material {
+    kind: u32,
+    pub(super) parameter: Number,
+    /// The square of the roughness.
+    pub(super) alpha: Number,
+    pub(super) energies: u32,
+    pub(super) absorption: Vector,
+}
+
+impl Material {
+    pub(super) fn is_lambert(&self) -> bool {
+        self.kind == LAMBERT
+    }
+
+    pub(super) fn is_metal(&self) -> bool {
+        self.kind == CONDUCTOR
+    }
+
+    pub(super) fn is_dielectric(&self) -> bool {
+        self.kind == DIELECTRIC
+    }
+
+    pub(super) fn is_emissive(&self) -> bool {
+        self.kind == EMISSIVE
+    }
+}
+
+/// The last place of a table of energies.
+const LAST: f64 = (ENERGIES - 1) as f64;
+
+impl Kernel<'_> {
+    pub(super) fn material_of(&self, vertex: &Vertex) -> Material {
+        let at = self.look().material_first.saturating_add(2 * vertex.place);
+        let [kind, _, _, energies] = self.table(at);
+        let [_, parameter, alpha, _] = self.table_numbers(at);
+        let [x, y, z, _] = self.table_numbers(at.saturating_add(1));
+        Material {
+            kind,
+            parameter: Number::had(parameter),
+            alpha: Number::had(alpha),
+            energies,
+            absorption: Vector::had([x, y, z]),
+        }
+    }
+
+    /// What a lobe keeps of the light that it gets at a cosine. From one entry to the next nothing jumps, so that
+    /// all entries that may be meant are taken together.
+    pub(super) fn energy(&self, first: u32, cosine: Number) -> Number {
+        let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
+        let Interval { low, high } = along.interval();
+        let place = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
+        let entry = |at: u32| {
+            Number::had(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize])
+        };
+        (place(low)..=place(high))
+            .map(|below| {
+                let (a, b) = (entry(below), entry(below + 1));
+                let within = Number::between(
+                    low.max(below.into()),
+                    if below + 2 == ENERGIES { high } else { high.min(f64::from(below) + 1.0) },
+                );
+                a + (within - Number::known(below.into())) * (b - a)
+            })
+            .reduce(Number::union)
+            .unwrap_or(Number::ONE)
+    }
+}
+
+/// How many mirrors, by area, hide others from a direction.
+pub(super) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
+    let c2 = cosine.squared().max(Number::constant(1e-12));
+    // At least 0, as c2 is at most 1 or little more; the quotient of two that both grow and fall with the cosine.
+    let beyond = (Number::ONE - c2) / c2;
+    let Interval { low, high } = beyond.interval();
+    let Interval { low: least, high: most } = c2.interval();
+    let exact = Number::between(1.0 / most - 1.0, 1.0 / least - 1.0);
+    let Interval { low: floor, high: ceiling } = exact.interval();
+    // Both bound it: the second after what rounding adds to the quotient and the difference.
+    let error = 8.0 * crate::verify::rounding::U;
+    let beyond = Number::between(
+        low.max(floor - error * (1.0 + 1.0 / most)),
+        high.min(ceiling + error * (1.0 + 1.0 / least)),
+    );
+    let root = (Number::ONE + alpha.squared() * beyond).max(Number::ZERO).sqrt();
+    Number::HALF * (root - Number::ONE)
+}
+
+fn ggx_density(alpha: Number, half: Vector) -> Number {
+    let Vector([x, y, z]) = half;
+    let scaled = Vector([x / alpha, y / alpha, z]);
+    let q = scaled.squared();
+    Number::ONE / (pi() * alpha.squared() * q.squared())
+}
+
+/// A mirror among those that are seen from `out`.
+pub(super) fn visible_mirror(
+    alpha: Number,
+    out: Vector,
+    u: [u32; 2],
+    choices: &mut crate::verify::choices::Choices,
+) -> Vector {
+    let Vector([x, y, z]) = out;
+    let stretched = Vector([alpha * x, alpha * y, z]).normalized();
+    let Vector([x, y, z]) = stretched;
+    let across = x.squared() + y.squared();
+    let is_aside = choices.decide(across.is_more(Number::constant(1e-12)));
+    let first = if is_aside {
+        let length = across.max(Number::constant(1e-12)).sqrt();
+        Vector([-y / length, x / length, Number::ZERO]).map(|c| c.clamp(-1.00001, 1.00001))
+    } else {
+        Vector([Number::ONE, Number::ZERO, Number::ZERO])
+    };
+    let Vector([a, b, _]) = first;
+    // The cross product of both, of which the first has no z.
+    let second = Vector([-(z * b), z * a, x * b - y * a]);
+    let [p, down] = disk(u);
+    let s = Number::HALF * (Number::ONE + z);
+    let q = (Number::ONE - s) * (Number::ONE - p.squared()).max(Number::ZERO).sqrt() + s * down;
+    let up = (Number::ONE - p.squared() - q.squared()).max(Number::ZERO).sqrt();
+    let Vector([x, y, z]) = first * p + second * q + stretched * up;
+    Vector([alpha * x, alpha * y, z.max(Number::constant(1e-6))]).normalized()
+}
+
+/// The density with which light is reflected there by a visible mirror.
+pub(super) fn reflected_density(alpha: Number, out: Vector, half: Vector) -> Number {
+    let z = out.0[2];
+    let seen = Number::ONE / (Number::ONE + ggx_lambda(alpha, z));
+    seen * ggx_density(alpha, half) / (Number::known(4.0) * z)
+}
+
+/// Of white mirrors, the BRDF times the cosine.
+pub(super) fn mirrors_brdf(alpha: Number, out: Vector, toward: Vector, half: Vector) -> Number {
+    let (z, along) = (out.0[2], toward.0[2]);
+    let both = Number::ONE / (Number::ONE + ggx_lambda(alpha, z) + ggx_lambda(alpha, along));
+    both * ggx_density(alpha, half) / (Number::known(4.0) * z)
+}

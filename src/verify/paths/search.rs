@@ -1,0 +1,182 @@
+//! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/trace.wgsl`,
+//! `entry_path.wgsl`, `first_segment.wgsl`, `origin_sphere.wgsl`, `occlude.wgsl` and `origin_and_target.wgsl`.
+
+use glam::{DVec3, Vec4};
+
+use super::certificate::PathStage;
+use super::expected::{Expected, Mismatch};
+use super::kernel::Hit;
+use super::recording::{PathState, flag, slot};
+use crate::image::NO_ID;
+use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
+use crate::verify::candidates::Candidates;
+use crate::verify::hit::{LegalHit, LegalHits, legal_hit};
+use crate::verify::line::Line;
+use crate::verify::number::{Number, Vector};
+use crate::verify::recording::NO_HIT;
+use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
+use crate::verify::sphere::Slack;
+
+const STAGE: PathStage = PathStage::Extend;
+
+/// A ray of a path, from where it enters the scene's box.
+struct Entry {
+    entered: EnteredRay,
+    line: Line,
+    slack: Slack,
+}
+
+impl Entry {
+    /// `distance` is how far it goes before it enters the box, if that is known.
+    fn new(
+        model: &CameraModel,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        distance: Option<f32>,
+    ) -> Self {
+        let line = Line::new(origin, direction);
+        let ray = CameraRay {
+            line,
+            distance: 0.0,
+            origin_error: DVec3::ZERO,
+            direction_error: DVec3::ZERO,
+            distance_error: 0.0,
+            may_be_seen: true,
+            may_be_unseen: false,
+        };
+        let entered = ray.entered(model, line.direction);
+        let enter = match distance {
+            Some(distance) => Interval::around(distance.into(), 0.0),
+            None => entered.enter,
+        };
+        if enter.high == 0.0 {
+            return Self { entered, line, slack: Slack::default() };
+        }
+        let middle = 0.5 * (enter.low + enter.high);
+        let along = middle * line.direction;
+        let rounded =
+            PAD * gamma(6) * (line.origin.abs() + along.abs()) + DVec3::splat(2.0 * FLUSH);
+        let across = rounded.length();
+        let slack = Slack { across, along: across + enter.high - middle, direction: 0.0 };
+        Self { entered, line: Line::exact(line.origin + along, line.direction), slack }
+    }
+}
+
+/// Whether a sphere is one of those that a ray leaves or ends on. By value: a zero has no sign.
+fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
+    Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
+}
+
+fn four(state: &PathState, which: usize) -> [f32; 4] {
+    state.slots[which].map(f32::from_bits)
+}
+
+/// Judges what a ray has met; says whether there was a choice. `last` is what the path met before.
+pub(super) fn check_hit(
+    model: &CameraModel,
+    candidates: &Candidates,
+    state: &PathState,
+    last: Option<Hit>,
+    found: Hit,
+    expected: &mut Expected,
+    legal: &mut LegalHits,
+) -> Result<bool, Mismatch> {
+    let Hit { t, id, distance, .. } = found;
+    let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
+    let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
+    legal.clear();
+    let left = four(state, slot::LEFT);
+    let own = last.filter(|_| state.has(flag::INSIDE));
+    let own = own.map(|last| (last, far_wall(origin, direction, left)));
+    if let Some((_, wall)) = own {
+        let Interval { high, .. } = wall.interval();
+        legal.miss = false;
+        legal.limit = high;
+    }
+    if entry.entered.may_meet_box {
+        let is_left = |sphere| is_same(sphere, left);
+        legal.find_nearer(candidates, &entry.line, entry.slack, is_left);
+        legal.miss |= entry.entered.may_miss_box && own.is_none();
+    }
+    if let Some((Hit { id, .. }, wall)) = own {
+        let Interval { low, high } = wall.interval();
+        if low <= legal.limit {
+            let (near, far) = (None, Some(Interval { low, high }));
+            legal.spheres.push(LegalHit { id, near, far, sphere: left.map(f32::to_bits) });
+        }
+    }
+    let is_open = legal.count() > 1;
+    let fail = |what, words| Err(expected.fail(STAGE, what, words));
+    if id == NO_ID {
+        if !legal.miss {
+            return fail("a miss", format!("legal is {legal}"));
+        }
+        return if t.to_bits() == NO_HIT.to_bits() {
+            Ok(is_open)
+        } else {
+            fail("the distance of a miss", format!("{t:?}; legal is {NO_HIT:?}"))
+        };
+    }
+    if !legal.allows(id, t.into()) {
+        return fail("the hit", format!("sphere {id} at {t:?}; legal is {legal}"));
+    }
+    let Interval { low, high } = entry.entered.enter;
+    let enter = match own {
+        Some((last, _)) if last.id == id => {
+            expected.bits((STAGE, "the hit's place"), found.place, last.place)?;
+            Number::ZERO
+        }
+        _ => Number::between(low, high),
+    };
+    expected.number((STAGE, "where the ray enters the scene's box"), distance, enter)?;
+    Ok(is_open)
+}
+
+/// The far wall of the sphere on which a ray starts, inside.
+fn far_wall(origin: [f32; 3], direction: [f32; 3], [x, y, z, _]: [f32; 4]) -> Number {
+    let to_center = Vector::had([x, y, z]) - Vector::had(origin);
+    (Number::TWO * to_center.dot(Vector::had(direction))).max(Number::ZERO)
+}
+
+/// Judges whether a light that is looked for was found; says whether there was a choice.
+pub(super) fn check_open(
+    model: &CameraModel,
+    candidates: &Candidates,
+    state: &PathState,
+    open: f32,
+    expected: &mut Expected,
+) -> Result<bool, Mismatch> {
+    const OPEN: (PathStage, &str) = (PathStage::Occlude, "the light's way");
+    let before = state.number(slot::PENDING);
+    let [x, y, z, distance] = four(state, slot::SHADOW);
+    let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
+    let Interval { low, high } = entry.entered.enter;
+    let rest = (Number::had(distance) - Number::between(low, high)).interval();
+    let (mut may_be_hidden, mut must_be_hidden) = (false, false);
+    let exempt = [four(state, slot::LEFT), four(state, slot::TARGET)];
+    if entry.entered.may_meet_box && rest.high > 0.0 {
+        let moved = entry.slack.across + entry.slack.along;
+        candidates.visit(&entry.line, moved, rest.high, |candidate| {
+            if exempt.iter().any(|sphere| is_same(candidate.sphere, *sphere)) {
+                return rest.high;
+            }
+            if let Some((hit, may_miss)) = legal_hit(candidate, &entry.line, entry.slack) {
+                may_be_hidden |= hit.lowest() < rest.high;
+                must_be_hidden |= !may_miss && hit.highest() < rest.low;
+            }
+            // A certain answer ends the search.
+            if must_be_hidden { -1.0 } else { rest.high }
+        });
+    }
+    must_be_hidden &= !entry.entered.may_miss_box && rest.low > 0.0;
+    let is_hidden = open == 0.0;
+    if (is_hidden && !may_be_hidden) || (!is_hidden && must_be_hidden) {
+        let words =
+            if is_hidden { "hidden, but nothing is there" } else { "open, but it is hidden" };
+        return Err(expected.fail(PathStage::Occlude, OPEN.1, words.to_owned()));
+    }
+    if !is_hidden {
+        expected.bits(OPEN, open.to_bits(), before.to_bits())?;
+    }
+    Ok(may_be_hidden && !must_be_hidden)
+}

@@ -1,0 +1,173 @@
+//! Light from infinitely far away. Twin of `shaders/by_chance.wgsl`, `sky_plain.wgsl`, `sky_image.wgsl` and
+//! `environment.wgsl`.
+
+use super::kernel::Kernel;
+use super::light::DIRECTIONAL;
+use super::recording::{UploadedSky, flag, slot};
+use super::warp::pi;
+use crate::sampling::unit;
+use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
+
+impl Kernel<'_> {
+    /// The radiance that a ray meets behind everything, by what it counts.
+    pub(super) fn light_from_afar(&mut self) -> Vector {
+        let look = self.look();
+        let is_seen = !self.before.has(flag::SCATTERED);
+        let is_transparent = look.flags & flag::TRANSPARENT != 0;
+        if is_seen && is_transparent {
+            return Vector::ZERO;
+        }
+        if is_seen && look.flags & flag::SKY_SEEN == 0 {
+            return Vector::had(look.background);
+        }
+        let sources = Number::known(look.source_count.max(1).into());
+        let direction = Vector::had(self.before.vector(slot::DIRECTION));
+        let density = self.sky_density(direction) / sources;
+        let weight = self.chance_weight(density);
+        let mut sum = self.sky_radiance(direction) * weight;
+        for light in 0..look.light_count {
+            let [x, y, z, _] = self.table_numbers(3 * light);
+            let [r, g, b, k] = self.table_numbers(3 * light + 1);
+            if self.table(3 * light)[3] != DIRECTIONAL || k <= 0.0 {
+                continue;
+            }
+            let k = Number::had(k);
+            let aside = (direction - Vector::had([x, y, z])).squared();
+            if !self.choices.decide(aside.is_less(Number::TWO * k)) {
+                continue;
+            }
+            let weight = self.chance_weight(Number::ONE / (Number::TWO * pi() * k * sources));
+            let size = k * (Number::TWO - k);
+            sum = sum + Vector::had([r, g, b]).map(|c| c / size) * weight;
+        }
+        sum
+    }
+
+    /// The image, if the sky is one.
+    fn image(&self) -> Option<&UploadedSky> {
+        self.recording.sky.as_ref()
+    }
+
+    pub(super) fn sky_radiance(&mut self, direction: Vector) -> Vector {
+        let look = self.look();
+        if self.image().is_none() {
+            let height = direction.0[1];
+            let is_down = self.choices.decide(height.is_less(Number::ZERO));
+            let end = Vector::had(if is_down { look.nadir } else { look.zenith });
+            let along = height.abs();
+            return Vector::had(look.horizon) * (Number::ONE - along) + end * along;
+        }
+        let [column, row] = self.place(direction);
+        let at = row as usize * look.environment_size[0] as usize + column as usize;
+        let texel = self.image().and_then(|image| image.texels.get(at)).copied();
+        Vector::had(texel.unwrap_or_default()) * Number::had(look.environment_strength)
+    }
+
+    fn sky_density(&mut self, direction: Vector) -> Number {
+        if self.image().is_none() {
+            return Number::ZERO;
+        }
+        let place = self.place(direction);
+        self.density_of(place)
+    }
+
+    /// x and z, turned about +y.
+    fn turned(&self, [x, z]: [Number; 2], sign: f64) -> [Number; 2] {
+        let [cosine, sine] = self.look().environment_rotation.map(Number::had);
+        let sine = Number::known(sign) * sine;
+        [cosine * x + sine * z, cosine * z - sine * x]
+    }
+
+    /// Column and row of the texel in a direction.
+    fn place(&mut self, direction: Vector) -> [u32; 2] {
+        let Vector([x, y, z]) = direction;
+        let [x, z] = self.turned([x, z], -1.0);
+        let across = atan2_turns(x, -z, self.choices) + Number::HALF;
+        let level = (x.squared() + z.squared()).sqrt();
+        let down = Number::TWO * atan2_turns(level, y, self.choices);
+        let [width, height] = self.look().environment_size;
+        [(across, width), (down, height)].map(|(part, count)| {
+            // Numbers below zero become zero.
+            let all = (part * Number::known(count.into())).max(Number::ZERO);
+            let place = self.choices.pick(all.floor());
+            (place as u32).min(count.max(1) - 1)
+        })
+    }
+
+    fn share(&self, at: usize) -> f64 {
+        let share = self.image().and_then(|image| image.shares.get(at));
+        share.copied().unwrap_or_default().into()
+    }
+
+    /// Where the shares of a row's columns start.
+    fn columns(&self, row: u32) -> usize {
+        let [width, height] = self.look().environment_size.map(|side| side as usize);
+        height + 1 + row as usize * (width + 1)
+    }
+
+    fn density_of(&mut self, [column, row]: [u32; 2]) -> Number {
+        let [width, height] = self.look().environment_size.map(f64::from);
+        let entry = self.columns(row) + column as usize;
+        // Multiples of 2^-24 below 1: exact.
+        let share = |at: usize| Number::known(self.share(at + 1) - self.share(at));
+        let (x, y) = (share(entry), share(row as usize));
+        let height = Number::known(height);
+        let middle = Number::known(f64::from(2 * row + 1)) / (Number::known(4.0) * height);
+        let [first, _] = sin_cos_turns(middle, self.choices);
+        let [second, _] = sin_cos_turns(Number::known(0.25) / height, self.choices);
+        let all = Number::constant(12.566_371) / Number::known(width) * (first * second);
+        x * (y / all)
+    }
+
+    /// The entry of a table, but its last, that is the last that is at most the chance.
+    fn chosen(&self, first: usize, count: u32, chance: f64) -> u32 {
+        let (mut low, mut high) = (0, count);
+        for _ in 0..12 {
+            let middle = (low + high) >> 1;
+            if self.share(first + middle as usize) <= chance { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// A direction, and the density with which it is chosen.
+    pub(super) fn sample_sky(&mut self, u: [u32; 2]) -> (Vector, Number) {
+        if self.image().is_none() {
+            return (Vector::ZERO, Number::ZERO);
+        }
+        let [width, height] = self.look().environment_size;
+        let chance = u.map(unit);
+        let row = self.chosen(0, height, chance[1]);
+        let columns = self.columns(row);
+        let column = self.chosen(columns, width, chance[0]);
+        let ends = |at: usize| [self.share(at), self.share(at + 1)];
+        let [left, right] = ends(columns + column as usize);
+        let [top, bottom] = ends(row as usize);
+        let share = |low: f64, high: f64| Number::known((high - low).max(0.5_f64.powi(24)));
+        let rest = u.map(|bits| Number::known((f64::from(bits & 0xff) + 0.5) * 0.5_f64.powi(32)));
+        let along = (Number::known(chance[0]) - Number::known(left) + rest[0]) / share(left, right);
+        let along = along.min(Number::ONE);
+        let across = (Number::known(column.into()) + along) / Number::known(width.into());
+        let [sine, cosine] = sin_cos_turns(across - Number::HALF, self.choices);
+        // From the nearer pole, by sin² of half the colatitude.
+        let is_upper = 2 * row < height;
+        let from_pole = if is_upper { row } else { height - 1 - row };
+        let into = if is_upper {
+            Number::known(chance[1]) - Number::known(top) + rest[1]
+        } else {
+            Number::known(bottom) - Number::known(chance[1]) - rest[1]
+        };
+        let down = (into / share(top, bottom)).clamp(0.0, 1.0);
+        let mut edge = |row: u32| {
+            let turns = Number::known(row.into()) / Number::known(f64::from(4 * height));
+            let [sine, _] = sin_cos_turns(turns, self.choices);
+            sine.squared()
+        };
+        let [low, high] = [edge(from_pole), edge(from_pole + 1)];
+        let square = low + down * (high - low);
+        let radius = Number::TWO * (square * (Number::ONE - square)).max(Number::ZERO).sqrt();
+        let y = Number::ONE - Number::TWO * square;
+        let y = if is_upper { y } else { -y };
+        let [x, z] = self.turned([radius * sine, -(radius * cosine)], 1.0);
+        (Vector([x, y, z]), self.density_of([column, row]))
+    }
+}

@@ -1,0 +1,224 @@
+//! Whether lights, emitters, materials and energies on a device are those that were asked for.
+
+use glam::Vec4;
+
+use super::material::ENERGIES;
+use super::recording::{PathRecording, UploadedLook};
+use super::upload::{PathUploadError, are_near, is_near};
+use crate::lighting::energy::EnergyTables;
+use crate::lighting::{Integrator, LightKind, LightSampling, SkyLight};
+use crate::material::{Finish, Material};
+use crate::scene::Scene;
+
+/// Tables, and how they are read.
+struct Tables<'a> {
+    words: &'a [[u32; 4]],
+    look: &'a UploadedLook,
+}
+
+impl Tables<'_> {
+    fn words(&self, at: u32) -> [u32; 4] {
+        self.words.get(at as usize).copied().unwrap_or([u32::MAX; 4])
+    }
+
+    fn numbers(&self, at: u32) -> [f32; 4] {
+        self.words(at).map(f32::from_bits)
+    }
+
+    fn vector(&self, at: u32) -> [f32; 3] {
+        let [x, y, z, _] = self.numbers(at);
+        [x, y, z]
+    }
+}
+
+pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
+    let tables = Tables { words: &recording.tables, look: &recording.look };
+    let lamps = check_lights(&tables, scene, recording)?;
+    let emitters = check_emitters(&tables, scene, recording)?;
+    check_materials(&tables, scene)?;
+    let is_image = match &recording.lighting.sky.light {
+        SkyLight::Image { environment, strength, .. } => {
+            environment.has_light() && *strength > 0.0 && is_looked_for(recording)
+        }
+        SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
+    };
+    let sources = lamps + u32::from(emitters > 0) + u32::from(is_image);
+    let UploadedLook { source_count, lamp_sources, emitter_count, .. } = recording.look;
+    if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
+        Ok(())
+    } else {
+        Err(PathUploadError::Look { what: "the number of sources of light" })
+    }
+}
+
+fn is_looked_for(recording: &PathRecording) -> bool {
+    match &recording.lighting.integrator {
+        Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
+        Integrator::Studio(_) => false,
+    }
+}
+
+/// How many of the lights are looked for.
+fn check_lights(
+    tables: &Tables<'_>,
+    scene: &Scene,
+    recording: &PathRecording,
+) -> Result<u32, PathUploadError> {
+    let vectors = &recording.camera.vectors;
+    let mut lamps = 0_u32;
+    let lights = recording.lighting.lights.iter().filter_map(|light| light.in_view(vectors));
+    let mut count = 0;
+    for (light, index) in lights.zip(0_u32..) {
+        count = index + 1;
+        let [place, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
+        let size = tables.numbers(3 * index + 1)[3];
+        let kind = tables.words(3 * index)[3];
+        let near =
+            |color: crate::color::LinearRgb| are_near(power, color.to_array().map(f64::from));
+        // What f64 itself may round where large numbers cancel.
+        let is_at = |point: glam::DVec3| {
+            let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
+            (0..3).all(|axis| {
+                let off = f64::from(place[axis]) - exact[axis];
+                off.abs() <= 2e-7 * exact[axis].abs() + 1e-15 * moved[axis] + 1e-37
+            })
+        };
+        let (is_right, is_lamp) = match light {
+            LightKind::Head { strength } => (kind == 0 && near(strength), false),
+            LightKind::Directional { toward, strength, angular_radius } => {
+                let k = 1.0 - angular_radius.cos();
+                // The difference cancels; the device's number does not.
+                let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
+                let is_right =
+                    kind == 1 && near(strength) && are_near(place, toward.to_array()) && is_size;
+                (is_right, angular_radius == 0.0 || is_looked_for(recording))
+            }
+            LightKind::Point { position, intensity } => {
+                (kind == 2 && near(intensity) && is_at(position), true)
+            }
+            LightKind::Sphere { center, radius, radiance } => {
+                let is_right =
+                    kind == 3 && near(radiance) && is_at(center) && is_near(size, radius);
+                (is_right, true)
+            }
+        };
+        // The lights that are looked for stand, one after the other, behind the first of all lights.
+        let is_found = !is_lamp || tables.words(3 * lamps + 2)[0] == index;
+        lamps += u32::from(is_lamp);
+        if !(is_right && is_found) {
+            return Err(PathUploadError::Table { what: "light", index: index as usize });
+        }
+    }
+    if tables.look.light_count != count {
+        return Err(PathUploadError::Look { what: "the number of lights" });
+    }
+    Ok(lamps)
+}
+
+/// How many emissive spheres are looked for.
+fn check_emitters(
+    tables: &Tables<'_>,
+    scene: &Scene,
+    recording: &PathRecording,
+) -> Result<u32, PathUploadError> {
+    if !is_looked_for(recording) {
+        return Ok(0);
+    }
+    let radiance = |id: u32| {
+        let finish = scene.finish(id);
+        let strength = match finish.material {
+            Material::Emissive { strength } => f64::from(strength) * f64::from(finish.opacity),
+            _ => 0.0,
+        };
+        scene.color(id).to_array().map(|c| f64::from(c) * strength)
+    };
+    let weight = |id: u32| {
+        let [r, g, b] = radiance(id);
+        let size = f64::from(scene.spheres()[id as usize][3]);
+        (0.2126 * r + 0.7152 * g + 0.0722 * b) * size * size
+    };
+    let ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
+    let total: f64 = ids.iter().map(|id| weight(*id)).sum();
+    let all = 2_f64.powi(32);
+    // Each has one pick by right, and picks are whole numbers.
+    let slack = (ids.len() as f64 + 2.0) / all;
+    let mut before = 0.0;
+    for (index, id) in ids.iter().enumerate() {
+        let at = tables.look.emitter_first.saturating_add(3 * index as u32);
+        let [found_id, last, ..] = tables.words(at + 1);
+        let end = f64::from(last) + 1.0;
+        let probability = tables.numbers(at + 1)[2];
+        let is_right = found_id == *id
+            && Vec4::from(tables.numbers(at)) == Vec4::from(scene.spheres()[*id as usize])
+            && are_near(tables.vector(at + 2), radiance(*id))
+            && end > before
+            && ((end - before) / all - weight(*id) / total).abs() <= slack
+            && is_near(probability, (end - before) / all)
+            && (index + 1 < ids.len() || last == u32::MAX);
+        if !is_right {
+            return Err(PathUploadError::Table { what: "emitter", index });
+        }
+        before = end;
+    }
+    Ok(ids.len() as u32)
+}
+
+/// The ground's material, which is the first, and those of the palette.
+fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadError> {
+    let energies = EnergyTables::of(scene.finishes());
+    let ground = Finish::default();
+    let finishes = std::iter::once((&ground, [1.0; 3], None)).chain(
+        scene
+            .finishes()
+            .iter()
+            .zip(scene.palette())
+            .zip(energies.starts())
+            .map(|((finish, color), start)| (finish, color.to_array(), *start)),
+    );
+    for (index, (finish, color, start)) in finishes.enumerate() {
+        let at = tables.look.material_first.saturating_add(2 * index as u32);
+        let [kind, _, _, first] = tables.words(at);
+        let [_, parameter, alpha, _] = tables.numbers(at);
+        let absorption = tables.vector(at.saturating_add(1));
+        let (expected_kind, expected, roughness, absorbed) = match finish.material {
+            Material::Lambert { specular, roughness } => (0, specular, roughness, [0.0; 3]),
+            Material::Conductor { roughness } => (1, 1.0, roughness, [0.0; 3]),
+            Material::Dielectric { ior, roughness, attenuation_distance } => {
+                let absorbed = attenuation_distance.map_or([0.0; 3], |distance| {
+                    color.map(|c| -f64::from(c).max(1e-4).ln() / f64::from(distance))
+                });
+                (2, ior, roughness, absorbed)
+            }
+            Material::Emissive { strength } => (3, strength, 0.0, [0.0; 3]),
+        };
+        let expected_alpha = f64::from(roughness) * f64::from(roughness);
+        let is_right = kind == expected_kind
+            && is_near(parameter, expected.into())
+            && is_near(alpha, expected_alpha)
+            && are_near(absorption, absorbed)
+            && start.is_none_or(|start| has_energies(tables, first, &energies, start, finish));
+        if !is_right {
+            return Err(PathUploadError::Table { what: "material", index });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a material's tables of energies are where it says.
+fn has_energies(
+    tables: &Tables<'_>,
+    first: u32,
+    energies: &EnergyTables,
+    start: u32,
+    finish: &Finish,
+) -> bool {
+    let count = match finish.material {
+        Material::Dielectric { .. } => 2 * ENERGIES,
+        _ => ENERGIES,
+    };
+    (0..count).all(|entry| {
+        let found = tables.numbers(first.saturating_add(entry / 4))[(entry % 4) as usize];
+        let asked = energies.entries().get((start + entry) as usize);
+        asked.is_some_and(|asked| found.to_bits() == asked.to_bits())
+    })
+}

@@ -1,0 +1,148 @@
+//! Whether the numbers that a device was given are those of the scene and the lighting that were asked for.
+
+use super::recording::{PathRecording, UploadedLook, flag};
+use super::tables;
+use crate::environment::Environment;
+use crate::lighting::{Integrator, LightSampling, Lighting, SkyLight};
+use crate::math::unit;
+use crate::scene::Scene;
+use crate::verify::candidates::Candidates;
+use crate::verify::rounding::{FLUSH, U};
+use crate::verify::upload::{UploadError, check_view};
+
+/// A number that the device was given is not what was asked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PathUploadError {
+    /// Of the camera or the scene's box.
+    #[error(transparent)]
+    View(#[from] UploadError),
+    /// Lists of pixels are not as long as the rectangle is large.
+    #[error("the recording does not have {pixels} pixels everywhere")]
+    Size {
+        /// How many there are in the rectangle.
+        pixels: u64,
+    },
+    /// Of the lighting.
+    #[error("{what} on the device is not what was asked for")]
+    Look {
+        /// What it is.
+        what: &'static str,
+    },
+    /// Of the tables.
+    #[error("{what} {index} on the device is not what was asked for")]
+    Table {
+        /// What it is.
+        what: &'static str,
+        /// Which of them, from 0.
+        index: usize,
+    },
+}
+
+/// Whether a number is the nearest f32 of another, or beside it.
+pub(super) fn is_near(found: f32, asked: f64) -> bool {
+    (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH
+}
+
+pub(super) fn are_near<const N: usize>(found: [f32; N], asked: [f64; N]) -> bool {
+    found.into_iter().zip(asked).all(|(found, asked)| is_near(found, asked))
+}
+
+/// Compares them.
+pub(super) fn check(
+    scene: &Scene,
+    candidates: &Candidates,
+    recording: &PathRecording,
+) -> Result<(), PathUploadError> {
+    check_view(scene, candidates, &recording.camera, &recording.uploaded)?;
+    check_size(recording)?;
+    check_look(scene, recording)?;
+    tables::check(scene, recording)
+}
+
+fn check_size(recording: &PathRecording) -> Result<(), PathUploadError> {
+    let pixels = u64::from(recording.size[0]) * u64::from(recording.size[1]);
+    let is_whole = |length: usize| length as u64 == pixels;
+    let are_whole = recording.samples.iter().all(|sample| {
+        is_whole(sample.start.len())
+            && is_whole(sample.sums.len())
+            && sample.surfaces.iter().all(|surface| {
+                is_whole(surface.hits.len())
+                    && is_whole(surface.scattered.len())
+                    && is_whole(surface.open.len())
+            })
+    });
+    if are_whole { Ok(()) } else { Err(PathUploadError::Size { pixels }) }
+}
+
+fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
+    let PathRecording { lighting, look, .. } = recording;
+    let Integrator::Path(path) = &lighting.integrator else {
+        return Err(PathUploadError::Look { what: "the integrator" });
+    };
+    let flags = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+    let expected_flags = flags(lighting.is_transparent, flag::TRANSPARENT)
+        | flags(lighting.sky.is_visible, flag::SKY_SEEN)
+        | flags(lighting.ground.is_some(), flag::GROUND);
+    let sampling = match path.light_sampling {
+        LightSampling::Chance => 0,
+        LightSampling::Direct => 1,
+        LightSampling::Multiple => 2,
+    };
+    let is_ground = lighting.ground.as_ref().is_none_or(|ground| {
+        let point = (ground.point - scene.origin()).to_array();
+        let normal = unit(ground.normal).unwrap_or_default().to_array();
+        let moved = (ground.point.abs() + scene.origin().abs()) * f64::EPSILON * 4.0;
+        let is_point = (0..3).all(|axis| {
+            let off = f64::from(look.ground_point[axis]) - point[axis];
+            off.abs() <= 2.0 * U * point[axis].abs() + moved[axis] + FLUSH
+        });
+        is_point
+            && are_near(look.ground_normal, normal)
+            && are_near(look.ground_color, ground.color.to_array().map(f64::from))
+    });
+    let filter = lighting.sampling.filter.offset_table();
+    let all = [
+        (
+            "the background",
+            are_near(look.background, lighting.background.to_array().map(f64::from)),
+        ),
+        ("the set of flags", look.flags == expected_flags),
+        ("the seed", look.seed == lighting.sampling.seed),
+        ("the start of roulette", look.roulette_from == path.roulette_from),
+        ("how lights are sampled", look.light_sampling == sampling),
+        ("the depth of paths", recording.max_depth == path.max_depth),
+        ("the ground", is_ground),
+        ("the pixel filter", look.filter_table[..] == filter[..]),
+        ("the sky", is_sky(lighting, look, recording)),
+    ];
+    match all.into_iter().find(|(_, is_right)| !is_right) {
+        None => Ok(()),
+        Some((what, _)) => Err(PathUploadError::Look { what }),
+    }
+}
+
+fn is_sky(lighting: &Lighting, look: &UploadedLook, recording: &PathRecording) -> bool {
+    let ends = [look.zenith, look.horizon, look.nadir];
+    let are = |colors: [[f32; 3]; 3]| {
+        ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)))
+    };
+    match &lighting.sky.light {
+        SkyLight::Constant(radiance) => recording.sky.is_none() && are([radiance.to_array(); 3]),
+        SkyLight::Gradient { zenith, horizon, nadir } => {
+            recording.sky.is_none() && are([zenith, horizon, nadir].map(|end| end.to_array()))
+        }
+        SkyLight::Image { environment, strength, rotation } => {
+            let shares = environment.rows().iter().chain(environment.columns());
+            look.environment_size == [environment.width(), environment.height()]
+                && are_near(
+                    look.environment_rotation,
+                    Environment::rotation(*rotation).map(f64::from),
+                )
+                && is_near(look.environment_strength, (*strength).into())
+                && recording.sky.as_ref().is_some_and(|sky| {
+                    sky.texels == environment.texels() && sky.shares.iter().eq(shares)
+                })
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/vertex.wgsl`.
+
+use glam::{DVec3, Vec4};
+
+use super::certificate::PathStage;
+use super::expected::Mismatch;
+use super::kernel::Kernel;
+use super::recording::{flag, slot};
+use crate::image::NO_ID;
+use crate::math::wide;
+use crate::verify::line::Line;
+use crate::verify::number::{Number, Vector};
+use crate::verify::recording::NO_HIT;
+use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
+use crate::verify::shading::{Chord, normal_at};
+use crate::verify::sphere::{Slack, SphereTest};
+
+/// A surface that was met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    pub(super) position: Vector,
+    /// Unit, on the side that is seen.
+    pub(super) normal: Vector,
+    /// Whether that is the inside of a sphere.
+    pub(super) is_back: bool,
+    /// Along the ray.
+    pub(super) distance: Number,
+    /// The sphere; radius 0 for the ground.
+    pub(super) sphere: [f32; 4],
+    pub(super) color: [f32; 3],
+    /// Its place among the materials; the ground is the first.
+    pub(super) place: u32,
+    /// Whether the path goes through it as if there were nothing.
+    pub(super) is_passed: bool,
+}
+
+impl Vertex {
+    pub(super) fn is_sphere(&self) -> bool {
+        self.sphere[3] > 0.0
+    }
+}
+
+/// What is known of a surface before where it is.
+struct Paint {
+    color: [f32; 3],
+    place: u32,
+    is_passed: bool,
+}
+
+const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was met");
+
+impl Kernel<'_> {
+    /// What the ray meets; `None` if nothing.
+    pub(super) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let origin = Vector::had(before.vector(slot::ORIGIN));
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        // A camera's ray starts where spheres begin, and may have met the ground before.
+        let behind = if self.address.surface == 0 {
+            Number::had(before.number(slot::FIRST))
+        } else {
+            Number::ZERO
+        };
+        let ground = if before.has(flag::ON_GROUND) {
+            None
+        } else {
+            self.ground_distance(origin, direction, behind)
+        };
+        let has_sphere = hit.id != NO_ID;
+        let to_sphere = if has_sphere {
+            Number::had(hit.distance) + Number::had(hit.t)
+        } else {
+            Number::known(NO_HIT.into())
+        };
+        if let Some(distance) = ground
+            && self.choices.decide(distance.is_less(to_sphere))
+        {
+            return self.ground_vertex(origin, direction, distance).map(Some);
+        }
+        if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
+    }
+
+    /// Where a ray meets the ground from above, perhaps behind its origin.
+    pub(super) fn ground_distance(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        behind: Number,
+    ) -> Option<Number> {
+        let look = self.look();
+        if look.flags & flag::GROUND == 0 {
+            return None;
+        }
+        let normal = Vector::had(look.ground_normal);
+        let toward = direction.dot(normal);
+        if !self.choices.decide(toward.is_less(Number::ZERO)) {
+            return None;
+        }
+        let height = (origin - Vector::had(look.ground_point)).dot(normal);
+        let toward = toward.min(Number::known(-f64::MIN_POSITIVE));
+        let t = height / -toward;
+        self.choices.decide((-behind).is_less(t)).then_some(t)
+    }
+
+    fn paint(&self, color: [f32; 3], place: u32, opacity: f32) -> Paint {
+        let [_, pass] = self.pair(3).map(crate::sampling::unit);
+        Paint { color, place, is_passed: pass >= f64::from(opacity) }
+    }
+
+    /// The point, which is compared, and then known exactly.
+    fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
+        let found = self.after.vector(slot::ORIGIN);
+        self.expected.vector_of(POSITION, found, position, size)?;
+        Ok(Vector::had(found))
+    }
+
+    fn ground_vertex(
+        &mut self,
+        origin: Vector,
+        direction: Vector,
+        distance: Number,
+    ) -> Result<Vertex, Mismatch> {
+        let look = self.look();
+        let paint = self.paint(look.ground_color, 0, 1.0);
+        let normal = Vector::had(look.ground_normal);
+        let on_ray = origin + direction * distance;
+        let above = (on_ray - Vector::had(look.ground_point)).dot(normal);
+        let position = (on_ray - normal * above).fence();
+        let size = distance.interval().high;
+        let position = self.compared(position, size)?;
+        let Paint { color, place, is_passed } = paint;
+        let sphere = [0.0; 4];
+        Ok(Vertex { position, normal, is_back: false, distance, sphere, color, place, is_passed })
+    }
+
+    fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
+        let (before, hit) = (self.before, self.hit);
+        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
+        else {
+            let words = format!("there is no sphere {}", hit.id);
+            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+        };
+        let palette = self.scene.color_indices().map_or(0, |indices| indices[hit.id as usize]);
+        let finish = self.scene.finishes()[palette as usize];
+        let color = self.scene.palette()[palette as usize].to_array();
+        let paint = self.paint(color, palette + 1, finish.opacity);
+
+        let entered =
+            Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let Entered { line, origin, slack } = &entered;
+        let Some(test) = SphereTest::new(line, sphere, *slack) else {
+            let words = format!("sphere {} is not met", hit.id);
+            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+        };
+        let center = Vector::had([x, y, z]);
+        let direction = Vector::had(before.vector(slot::DIRECTION));
+        let middle = (center - *origin).dot(direction);
+        let left = Vec4::from(before.slots[slot::LEFT].map(f32::from_bits));
+        let is_far_wall = before.has(flag::INSIDE) && Vec4::from(sphere) == left;
+        let (half, exact) = if is_far_wall {
+            let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
+            (middle.abs().interval(), exact)
+        } else {
+            (test.half, test.exact_half())
+        };
+        let is_behind = is_far_wall || self.choices.decide(middle.is_less(Number::had(hit.t)));
+        let chord = Chord { half, exact, is_behind };
+        let (normal, error) = normal_at(&test, line, chord, radius, *slack);
+        let mut outward = Vector::around(normal, error);
+
+        let r = Number::had(radius);
+        let far = Number::known(64.0) * (Number::had(hit.t) + Number::had(hit.distance));
+        let is_on_ray = self.choices.decide(r.is_more(far));
+        let position =
+            if is_on_ray { *origin + direction * Number::had(hit.t) } else { center + outward * r };
+        let position = self.compared(position.fence(), radius.into())?;
+        if !is_on_ray {
+            outward = self.normal_by_point(outward, position, sphere)?;
+        }
+        let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
+        let normal = if is_back { -outward } else { outward };
+        let Paint { color, place, is_passed } = paint;
+        let sphere = [x, y, z, radius];
+        Ok(Vertex { position, normal, is_back, distance, sphere, color, place, is_passed })
+    }
+}
+
+impl Kernel<'_> {
+    /// The normal, as far as the point on the sphere that was made of it tells.
+    fn normal_by_point(
+        &mut self,
+        outward: Vector,
+        position: Vector,
+        [x, y, z, radius]: [f32; 4],
+    ) -> Result<Vector, Mismatch> {
+        let (center, r) = (wide([x, y, z]), f64::from(radius));
+        let away = DVec3::from(position.intervals().map(|axis| axis.low)) - center;
+        // A product and a sum.
+        let size = center.abs() + r * (1.0 + unit_error(r));
+        let error = PAD * gamma(2) * size + DVec3::splat(2.0 * FLUSH);
+        let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
+        if !legal.contains(away.length()) {
+            let words = format!("{:e} from the sphere's centre; legal is {legal}", away.length());
+            return Err(self.expected.fail(POSITION.0, POSITION.1, words));
+        }
+        let by_point = [0, 1, 2].map(|axis| {
+            let (away, error) = (away[axis], error[axis]);
+            Number::between((away - error) / r, (away + error) / r)
+        });
+        Ok(outward.zip(Vector(by_point), Number::narrowed))
+    }
+}
+
+/// A ray from where it enters the scene's box, at a known distance.
+struct Entered {
+    line: Line,
+    origin: Vector,
+    slack: Slack,
+}
+
+impl Entered {
+    fn new(origin: [f32; 3], direction: [f32; 3], distance: f32) -> Self {
+        let (start, along) = (wide(origin), wide(direction));
+        let distance = f64::from(distance);
+        let moved = start + distance * along;
+        if distance == 0.0 {
+            let line = Line::new(origin, direction);
+            return Self { line, origin: Vector::had(origin), slack: Slack::default() };
+        }
+        let error =
+            PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
+        let [x, y, z] = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
+        let length = error.length() + U * FLUSH;
+        Self {
+            line: Line::exact(moved, along),
+            origin: Vector([x, y, z]),
+            slack: Slack { across: length, along: length, direction: 0.0 },
+        }
+    }
+}

@@ -1,0 +1,537 @@
+//! Faults of the kernels of paths that the checker must find, and the stage in which it must.
+
+use pinhole::verify::PathStage;
+use pinhole::verify::PathStage::{
+    Extend, Light, Occlude, Radiance, Scatter, Settle, Start, Vertex,
+};
+
+use super::scenes::{self, LitView};
+
+/// A shader with a fault, and where it shows.
+pub(crate) struct Fault {
+    pub(crate) name: &'static str,
+    pub(crate) stage: PathStage,
+    pub(crate) view: fn() -> LitView,
+    pub(crate) file: &'static str,
+    pub(crate) find: &'static str,
+    pub(crate) replace: &'static str,
+}
+
+type Row = (&'static str, PathStage, fn() -> LitView, &'static str, &'static str, &'static str);
+
+pub(crate) fn all() -> impl Iterator<Item = Fault> {
+    [RAYS, SURFACES, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(
+        |&(name, stage, view, file, find, replace)| Fault {
+            name,
+            stage,
+            view,
+            file,
+            find,
+            replace,
+        },
+    )
+}
+
+/// Where rays start, and what they meet.
+const RAYS: &[Row] = &[
+    (
+        "film_point_of_another_pair",
+        Start,
+        scenes::matt,
+        "start.wgsl",
+        "stage.sample, 0u)",
+        "stage.sample, 1u)",
+    ),
+    (
+        "lens_point_of_another_pair",
+        Start,
+        scenes::lobes,
+        "start.wgsl",
+        "stage.sample, 1u)",
+        "stage.sample, 2u)",
+    ),
+    (
+        "filter_a_thousandth_too_wide",
+        Start,
+        scenes::matt,
+        "film_sample.wgsl",
+        "2.0 * offset",
+        "2.002 * offset",
+    ),
+    (
+        "own_sphere_met_again",
+        Extend,
+        scenes::matt,
+        "origin_sphere.wgsl",
+        "return all(sphere.xyz == left.xyz) && abs(sphere.w) == left.w;",
+        "return false;",
+    ),
+    (
+        "far_wall_a_thousandth_too_near",
+        Extend,
+        scenes::glass,
+        "first_segment.wgsl",
+        "2.0 * middle",
+        "1.998 * middle",
+    ),
+    (
+        "far_wall_forgotten",
+        Extend,
+        scenes::glass,
+        "first_segment.wgsl",
+        "has(path_flags, PATH_INSIDE)",
+        "false",
+    ),
+    (
+        "box_entry_forgotten",
+        Extend,
+        scenes::matt,
+        "trace.wgsl",
+        "+ nearest.place, entry.distance)",
+        "+ nearest.place, 0.0)",
+    ),
+    (
+        "rest_of_a_cell_forgotten",
+        Extend,
+        scenes::many,
+        "list_copied.wgsl",
+        "if (sphere.w < 0.0) {",
+        "if (sphere.w < 0.0 || at == start + 1u) {",
+    ),
+];
+
+/// Where surfaces are, and their frames.
+const SURFACES: &[Row] = &[
+    (
+        "point_beside_the_surface",
+        Vertex,
+        scenes::matt,
+        "vertex.wgsl",
+        "sphere.xyz + sphere.w * outward",
+        "sphere.xyz + 1.00001 * sphere.w * outward",
+    ),
+    (
+        "near_wall_for_far_wall",
+        Vertex,
+        scenes::from_inside,
+        "vertex.wgsl",
+        "is_far_wall || hit.t > middle",
+        "false",
+    ),
+    (
+        "normal_turned_round",
+        Light,
+        scenes::matt,
+        "vertex.wgsl",
+        "select(outward, -outward, is_back)",
+        "-select(outward, -outward, is_back)",
+    ),
+    (
+        "ground_met_from_below_it",
+        Vertex,
+        scenes::matt,
+        "vertex.wgsl",
+        "- dot(on_ray - look.ground_point, n) * n",
+        "- 1.001 * dot(on_ray - look.ground_point, n) * n - 0.0001 * n",
+    ),
+    (
+        "another_sphere_left",
+        Vertex,
+        scenes::matt,
+        "scatter.wgsl",
+        "store(index, LEFT, vertex.sphere);",
+        "store(index, LEFT, vec4f(vertex.sphere.xyz, 1.0001 * vertex.sphere.w));",
+    ),
+    (
+        "frame_with_a_sign_wrong",
+        Scatter,
+        scenes::matt,
+        "warp.wgsl",
+        "vec3f(b, s + n.y * n.y * a, -n.y)",
+        "vec3f(b, s + n.y * n.y * a, n.y)",
+    ),
+    (
+        "direction_of_another_pair",
+        Scatter,
+        scenes::matt,
+        "bounce.wgsl",
+        "2u + 8u * stage.surface",
+        "3u + 8u * stage.surface",
+    ),
+    (
+        "disk_not_concentric",
+        Scatter,
+        scenes::matt,
+        "disk.wgsl",
+        "0.25 * PI * part",
+        "0.24 * PI * part",
+    ),
+    (
+        "density_two_percent_off",
+        Scatter,
+        scenes::matt,
+        "scatter_matt.wgsl",
+        "vertex.color, toward.z / PI",
+        "vertex.color, 1.02 * toward.z / PI",
+    ),
+    (
+        "opacity_by_another_chance",
+        Vertex,
+        scenes::opacity,
+        "scatter.wgsl",
+        "chance.y >= vertex.opacity",
+        "chance.x >= vertex.opacity",
+    ),
+    (
+        "passed_on_the_wrong_side",
+        Scatter,
+        scenes::opacity,
+        "scatter.wgsl",
+        "side_of(at, true), ray.direction",
+        "side_of(at, false), ray.direction",
+    ),
+    (
+        "albedo_of_a_later_surface",
+        Vertex,
+        scenes::matt,
+        "scatter.wgsl",
+        "scattered == 0u && first.w >= 0.0",
+        "true",
+    ),
+];
+
+/// Glass and what is in it.
+const GLASS: &[Row] = &[
+    (
+        "fresnel_of_one_polarisation",
+        Scatter,
+        scenes::glass,
+        "dielectric.wgsl",
+        "0.5 * (across * across + along * along)",
+        "across * across",
+    ),
+    (
+        "index_the_other_way_round",
+        Scatter,
+        scenes::glass,
+        "dielectric.wgsl",
+        "select(1.0 / material.parameter, material.parameter, is_entering)",
+        "select(material.parameter, 1.0 / material.parameter, is_entering)",
+    ),
+    (
+        "index_a_thousandth_off",
+        Scatter,
+        scenes::glass,
+        "dielectric.wgsl",
+        "- out / relative",
+        "- out / (1.001 * relative)",
+    ),
+    (
+        "medium_kept_after_leaving",
+        Scatter,
+        scenes::glass,
+        "bounce.wgsl",
+        "select(medium, inside, is_glass && is_behind)",
+        "select(medium, at.material.absorption, is_glass && is_behind)",
+    ),
+    (
+        "absorption_a_percent_off",
+        Scatter,
+        scenes::glass,
+        "medium_glass.wgsl",
+        "-medium * distance",
+        "-1.01 * medium * distance",
+    ),
+    (
+        "rough_glass_without_masking",
+        Scatter,
+        scenes::glass,
+        "dielectric.wgsl",
+        "ggx_lambda(material.alpha, abs(toward.z))",
+        "0.0",
+    ),
+    (
+        "light_behind_glass_counted_twice",
+        Scatter,
+        scenes::glass,
+        "bounce.wgsl",
+        "select(0u, PATH_FULL, is_glass)",
+        "0u",
+    ),
+];
+
+/// Lobes and metals.
+const LOBES: &[Row] = &[
+    (
+        "masking_of_each_side_alone",
+        Radiance,
+        scenes::lobes,
+        "microfacet.wgsl",
+        "1.0 / (1.0 + ggx_lambda(alpha, out.z) + ggx_lambda(alpha, toward.z))",
+        "1.0 / ((1.0 + ggx_lambda(alpha, out.z)) * (1.0 + ggx_lambda(alpha, toward.z)))",
+    ),
+    (
+        "energy_not_given_back",
+        Radiance,
+        scenes::lobes,
+        "bsdf.wgsl",
+        "vec3f(1.0 / kept)",
+        "vec3f(1.0)",
+    ),
+    (
+        "energy_of_the_next_cosine",
+        Radiance,
+        scenes::lobes,
+        "material.wgsl",
+        "min(u32(along), ENERGIES - 2u)",
+        "min(u32(along) + 4u, ENERGIES - 2u)",
+    ),
+    ("fourth_power_for_fifth", Light, scenes::metals, "bsdf.wgsl", "(m2 * m2 * m)", "(m2 * m2)"),
+    (
+        "mirrors_of_half_the_roughness",
+        Scatter,
+        scenes::metals,
+        "bsdf.wgsl",
+        "visible_mirror(material.alpha, out, u)",
+        "visible_mirror(0.5 * material.alpha, out, u)",
+    ),
+    (
+        "density_of_a_lobe_two_percent_off",
+        Scatter,
+        scenes::lobes,
+        "microfacet.wgsl",
+        "return seen * ggx_density(alpha, half) / (4.0 * out.z);",
+        "return 1.02 * seen * ggx_density(alpha, half) / (4.0 * out.z);",
+    ),
+    (
+        "lobe_by_another_chance",
+        Scatter,
+        scenes::lobes,
+        "scatter.wgsl",
+        "bounce(at, out, chance.x,",
+        "bounce(at, out, chance.y,",
+    ),
+];
+
+/// Light that is looked for.
+const LIGHTS: &[Row] = &[
+    (
+        "cosine_left_out",
+        Light,
+        scenes::matt,
+        "scatter_matt.wgsl",
+        "select(0.0, toward.z / PI, toward.z > 0.0 && out.z > 0.0)",
+        "select(0.0, 1.0 / PI, toward.z > 0.0 && out.z > 0.0)",
+    ),
+    (
+        "emitter_after_the_chosen_one",
+        Light,
+        scenes::emitters,
+        "emitters.wgsl",
+        "return find_emitter(1u, bits);",
+        "return (find_emitter(1u, bits) + 1u) % look.emitter_count;",
+    ),
+    (
+        "light_of_another_pair",
+        Light,
+        scenes::emitters,
+        "direct.wgsl",
+        "stage.sample, 4u",
+        "stage.sample, 2u",
+    ),
+    (
+        "balance_left_out",
+        Light,
+        scenes::emitters,
+        "direct.wgsl",
+        "select(1.0, balanced, is_balanced)",
+        "1.0",
+    ),
+    (
+        "sources_not_counted",
+        Light,
+        scenes::matt,
+        "direct.wgsl",
+        "PI * sources * lamp.strength",
+        "PI * lamp.strength",
+    ),
+    (
+        "point_falls_off_by_distance",
+        Light,
+        scenes::matt,
+        "lamp.wgsl",
+        "power.rgb / max(distance * distance, 1e-30)",
+        "power.rgb / max(distance, 1e-30)",
+    ),
+    (
+        "lamp_of_half_its_size",
+        Light,
+        scenes::lobes,
+        "lamp.wgsl",
+        "power.rgb * (2.0 * k)",
+        "power.rgb * k",
+    ),
+    (
+        "sun_without_a_size",
+        Light,
+        scenes::sun,
+        "lamp.wgsl",
+        "to_world(axes_around(place.xyz), cone_direction(u, k))",
+        "place.xyz",
+    ),
+    (
+        "sky_chosen_in_another_row",
+        Light,
+        scenes::image,
+        "environment.wgsl",
+        "let row = environment_row(chance.y);",
+        "let row = environment_row(chance.x);",
+    ),
+    (
+        "sky_turned_the_other_way",
+        Light,
+        scenes::image,
+        "environment.wgsl",
+        "vec2f(longitude.x, -longitude.y), 1.0)",
+        "vec2f(longitude.x, -longitude.y), -1.0)",
+    ),
+    (
+        "head_light_without_pi",
+        Radiance,
+        scenes::lobes,
+        "bounce.wgsl",
+        "return PI * sum *",
+        "return sum *",
+    ),
+    ("own_wall_hides_no_light", Light, scenes::from_inside, "direct.wgsl", "&& !is_in_own", ""),
+    ("ground_hides_no_light", Light, scenes::image_over_ground, "direct.wgsl", "&& !is_below", ""),
+    (
+        "shadow_ray_too_short",
+        Occlude,
+        scenes::emitters,
+        "occlude.wgsl",
+        "let rest = shadow.w - entry.distance;",
+        "let rest = 0.5 * shadow.w - entry.distance;",
+    ),
+    (
+        "shadow_ray_too_long",
+        Occlude,
+        scenes::emitters,
+        "occlude.wgsl",
+        "let rest = shadow.w - entry.distance;",
+        "let rest = 2.0 * shadow.w - entry.distance;",
+    ),
+    (
+        "emitter_hides_itself",
+        Occlude,
+        scenes::emitters,
+        "occlude.wgsl",
+        "target_sphere = load(index, TARGET);",
+        "target_sphere = vec4f(0.0);",
+    ),
+    (
+        "nothing_hides_light",
+        Occlude,
+        scenes::matt,
+        "occlude.wgsl",
+        "paths[slot(index, PENDING)].w = 0u;",
+        "",
+    ),
+];
+
+/// Light that is met by chance.
+const CHANCE: &[Row] = &[
+    (
+        "met_light_without_a_weight",
+        Radiance,
+        scenes::emitters,
+        "by_chance.wgsl",
+        "return select(weight, 1.0,",
+        "return select(1.0, 1.0,",
+    ),
+    (
+        "met_light_counted_directly",
+        Radiance,
+        scenes::emitters_directly,
+        "by_chance.wgsl",
+        "select(balanced, 0.0, look.light_sampling == LIGHT_DIRECT)",
+        "balanced",
+    ),
+    (
+        "known_density_of_another_emitter",
+        Radiance,
+        scenes::emitters,
+        "bounce.wgsl",
+        "emitter_with_id(id)",
+        "(emitter_with_id(id) + 1u) % look.emitter_count",
+    ),
+    (
+        "gradient_of_the_wrong_half",
+        Radiance,
+        scenes::matt,
+        "sky_plain.wgsl",
+        "direction.y >= 0.0",
+        "direction.y < 0.0",
+    ),
+    ("sun_met_too_far_aside", Radiance, scenes::sun, "by_chance.wgsl", "<= 2.0 * k", "<= 4.0 * k"),
+    (
+        "texel_beside",
+        Radiance,
+        scenes::image,
+        "environment.wgsl",
+        "atan2_turns(flat.x, 0.0 - flat.y) + 0.5",
+        "atan2_turns(flat.x, 0.0 - flat.y) + 0.53",
+    ),
+];
+
+/// How paths end, and what they leave.
+const ENDS: &[Row] = &[
+    (
+        "roulette_without_division",
+        Scatter,
+        scenes::matt,
+        "bounce.wgsl",
+        "carried / max(survival, 1e-30)",
+        "carried",
+    ),
+    (
+        "roulette_by_another_chance",
+        Scatter,
+        scenes::matt,
+        "bounce.wgsl",
+        "6u + 8u * stage.surface)).x",
+        "7u + 8u * stage.surface)).x",
+    ),
+    (
+        "roulette_one_surface_late",
+        Scatter,
+        scenes::matt,
+        "bounce.wgsl",
+        "stage.surface >= look.roulette_from",
+        "stage.surface > look.roulette_from",
+    ),
+    (
+        "hidden_light_added",
+        Radiance,
+        scenes::matt,
+        "settle_path.wgsl",
+        "pending.rgb * pending.w",
+        "pending.rgb",
+    ),
+    (
+        "light_added_twice",
+        Settle,
+        scenes::matt,
+        "deposit.wgsl",
+        "let sample = settled(index);",
+        "let sample = settled(index) + vec4f(load(index, PENDING).rgb * load(index, PENDING).w, 0.0);",
+    ),
+    (
+        "luminance_of_other_weights",
+        Settle,
+        scenes::matt,
+        "deposit.wgsl",
+        "vec3f(0.2126, 0.7152, 0.0722)",
+        "vec3f(0.2990, 0.5870, 0.1140)",
+    ),
+];

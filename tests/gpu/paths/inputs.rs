@@ -1,0 +1,141 @@
+//! What a device is given, spoilt; or what is said that it was given.
+
+use pinhole::glam::DVec3;
+use pinhole::lighting::LightKind;
+use pinhole::material::Material;
+use pinhole::verify::PathRecording;
+use pinhole::{LinearRgb, Scene, Sphere};
+
+use super::scenes::{self, LitView};
+
+/// What is spoilt.
+#[derive(Clone, Copy)]
+pub(crate) enum Spoil {
+    /// Before the device renders it.
+    Given(fn(&mut LitView)),
+    /// Afterwards.
+    Said(fn(&mut PathRecording)),
+}
+
+/// With all kinds of things to be spoilt.
+pub(crate) fn view() -> LitView {
+    scenes::everything()
+}
+
+pub(crate) const ALL: &[(&str, Spoil)] = &[
+    (
+        "color_a_thousandth_off",
+        Spoil::Given(|view| {
+            on_spheres(view, |spheres| {
+                let [r, g, b] = spheres[3].color.to_array();
+                spheres[3].color = LinearRgb::new([r, g * 0.999, b]).unwrap();
+            })
+        }),
+    ),
+    (
+        "opacity_off",
+        Spoil::Given(|view| {
+            on_spheres(view, |spheres| {
+                spheres[6] = spheres[6].with_opacity(0.8);
+            })
+        }),
+    ),
+    (
+        "roughness_a_thousandth_off",
+        Spoil::Given(|view| {
+            on_spheres(view, |spheres| {
+                spheres[1] = spheres[1].with_material(Material::Conductor { roughness: 0.3003 });
+            })
+        }),
+    ),
+    (
+        "emitter_a_thousandth_brighter",
+        Spoil::Given(|view| {
+            on_spheres(view, |spheres| {
+                spheres[0] = spheres[0].with_material(Material::Emissive { strength: 1.001 });
+            })
+        }),
+    ),
+    ("two_spheres_swapped", Spoil::Given(|view| on_spheres(view, |spheres| spheres.swap(0, 3)))),
+    (
+        "light_moved",
+        Spoil::Given(|view| {
+            for light in &mut view.lighting.lights {
+                if let LightKind::Point { position, .. } = &mut light.kind {
+                    *position += DVec3::new(1e-4, 0.0, 0.0);
+                }
+            }
+        }),
+    ),
+    ("another_seed", Spoil::Given(|view| view.lighting.sampling.seed += 1)),
+    (
+        "another_filter",
+        Spoil::Given(|view| {
+            view.lighting.sampling.filter = pinhole::PixelFilter::Box;
+        }),
+    ),
+    (
+        "ground_moved",
+        Spoil::Given(|view| {
+            if let Some(ground) = &mut view.lighting.ground {
+                ground.point.y -= 1e-5;
+            }
+        }),
+    ),
+    ("sky_seen", Spoil::Given(|view| view.lighting.sky.is_visible ^= true)),
+    (
+        "light_left_out",
+        Spoil::Given(|view| {
+            view.lighting.lights.pop();
+        }),
+    ),
+    ("another_number_of_sources", Spoil::Said(|recording| recording.look.source_count += 1)),
+    (
+        "energy_of_a_lobe",
+        Spoil::Said(|recording| {
+            let last = recording.tables.len() - 3;
+            recording.tables[last][1] ^= 1;
+        }),
+    ),
+    (
+        "emitter_more_likely",
+        Spoil::Said(|recording| {
+            let at = recording.look.emitter_first as usize + 1;
+            recording.tables[at][1] += 1 << 20;
+        }),
+    ),
+    (
+        "one_surface_less",
+        Spoil::Said(|recording| {
+            recording.samples[0].surfaces.pop();
+        }),
+    ),
+    ("a_sample_of_another_number", Spoil::Said(|recording| recording.samples[0].sample = 5)),
+    (
+        "a_pixel_less",
+        Spoil::Said(|recording| {
+            recording.samples[1].start.pop();
+        }),
+    ),
+    (
+        "a_bit_of_a_sum",
+        Spoil::Said(|recording| {
+            recording.samples[1].sums[777][0][0] ^= 1 << 3;
+        }),
+    ),
+    (
+        "a_bit_of_an_ended_path",
+        Spoil::Said(|recording| {
+            let surfaces = &mut recording.samples[0].surfaces;
+            let last = surfaces.len() - 1;
+            surfaces[last].scattered[0].slots[4][1] ^= 1;
+        }),
+    ),
+    ("a_camera_elsewhere", Spoil::Said(|recording| recording.uploaded.origin[1] += 1e-5)),
+];
+
+fn on_spheres(view: &mut LitView, change: impl FnOnce(&mut Vec<Sphere>)) {
+    let mut spheres = scenes::mixed();
+    change(&mut spheres);
+    view.scene = Scene::new(&spheres).unwrap();
+}

@@ -1,0 +1,171 @@
+//! What the checker says of the paths of this device, and of faults that are planted in it.
+
+mod faults;
+mod inputs;
+mod scenes;
+
+use std::path::Path;
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::OrthographicCamera;
+use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LitDecision, ShaderEdit};
+use pinhole::lighting::{Integrator, Studio};
+use pinhole::verify::{Checker, PathCertificate, PathRecording};
+use pinhole::{Film, Lighting};
+
+use crate::{headless, trial};
+use faults::Fault;
+use scenes::LitView;
+
+/// How few bytes a binding has, for a scene of 300 spheres to have four bricks.
+const SMALL_BINDING: u64 = 16 * 100;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (name, view) in scenes::all() {
+        trials.push(Trial::test(format!("paths::legal::{name}"), move || legal(&view())));
+    }
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
+    {
+        let name = format!("paths::legal::in_a_{choice:?}").to_lowercase();
+        trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
+    }
+    trials.push(Trial::test("paths::legal::in_bricks", || {
+        legal_in(AccelChoice::List, SMALL_BINDING)
+    }));
+    for fault in faults::all() {
+        let name = format!("paths::faults::{}", fault.name);
+        trials.push(Trial::test(name, move || is_found(&fault)));
+    }
+    for (name, spoil) in inputs::ALL {
+        let name = format!("paths::faults::input_{name}");
+        trials.push(Trial::test(name, move || input_fault_is_found(*spoil)));
+    }
+    trials.push(Trial::test("paths::faults::film_of_one_pixel_more", part_of_a_large_film));
+    trials.push(trial("paths::refuses_a_studio", refuses_a_studio));
+    trials.push(trial("paths::stops_when_told", stops_when_told));
+    trials
+}
+
+fn record(headless: &Headless, view: &LitView) -> Result<PathRecording, Failed> {
+    let spheres = view.scene.spheres();
+    record_in(headless, view, &headless.plan(&view.scene, AccelChoice::Auto).build(spheres))
+}
+
+fn record_in(
+    headless: &Headless,
+    view: &LitView,
+    accel: &pinhole::accel::Accel,
+) -> Result<PathRecording, Failed> {
+    let LitView { scene, camera, film, lighting } = view;
+    let buffers = headless.upload_lit(scene, accel)?;
+    let go_on = &mut |_: &_| LitDecision::GoOn;
+    let seen = (camera.as_ref(), film);
+    Ok(headless.record_paths(scene, &buffers, seen, lighting, 0..2, go_on)?)
+}
+
+fn certify(view: &LitView, recording: &PathRecording) -> PathCertificate {
+    Checker::new(&view.scene).unwrap().certify_paths(recording)
+}
+
+/// Legal, and that says something: most stages have one legal answer.
+fn is_legal(view: &LitView, recording: &PathRecording) -> Result<(), Failed> {
+    let certificate = certify(view, recording);
+    let stages = certificate.stages();
+    let is_telling = stages.checked > 10_000
+        && stages.decided + stages.open > stages.checked / 1000 * 999
+        && stages.open < stages.checked / 20;
+    if certificate.is_legal() && is_telling {
+        Ok(())
+    } else {
+        Err(format!("{certificate}\n{certificate:#?}").into())
+    }
+}
+
+fn legal(view: &LitView) -> Result<(), Failed> {
+    is_legal(view, &record(headless()?, view)?)
+}
+
+/// Whatever finds the spheres.
+fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
+    let view = scenes::many();
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    is_legal(&view, &record_in(headless()?, &view, &accel)?)
+}
+
+/// By the stage that it is a fault of.
+fn is_found(fault: &Fault) -> Result<(), Failed> {
+    let Fault { file, find, replace, stage, .. } = *fault;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
+    if !std::fs::read_to_string(path)?.contains(find) {
+        return Err(format!("{file} has no `{find}`").into());
+    }
+    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
+    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+    let view = (fault.view)();
+    let certificate = certify(&view, &record(&Headless::open(&options)?, &view)?);
+    match certificate.violations.first() {
+        None => Err(format!("the fault was not found: {certificate}").into()),
+        Some(first) if first.stage != stage => Err(format!("elsewhere: {certificate}").into()),
+        Some(_) => Ok(()),
+    }
+}
+
+/// What was asked for is not what the device was given.
+fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
+    let view = inputs::view();
+    let mut given = inputs::view();
+    let mut spoilt = None;
+    match spoil {
+        inputs::Spoil::Given(change) => change(&mut given),
+        inputs::Spoil::Said(change) => spoilt = Some(change),
+    }
+    let mut recording = record(headless()?, &given)?;
+    recording.lighting = view.lighting.clone();
+    if let Some(change) = spoilt {
+        change(&mut recording);
+    }
+    let certificate = certify(&view, &recording);
+    if certificate.is_legal() {
+        return Err(format!("the fault was not found: {certificate}").into());
+    }
+    Ok(())
+}
+
+/// Of a large film the middle is recorded; at another place its paths are not legal.
+fn part_of_a_large_film() -> Result<(), Failed> {
+    let pose = pinhole::camera::Pose::looking_at([0.5, 1.5, 7.0], [0.0; 3], [0.1, 1.0, 0.0])?;
+    let camera = OrthographicCamera::new(pose, [5.0, 4.5])?;
+    let film = Film::new(300, 270)?;
+    let view = LitView { camera: Box::new(camera), film, ..scenes::matt() };
+    let mut recording = record(headless()?, &view)?;
+    if recording.origin != [22, 7] || recording.size != [256, 256] {
+        return Err(format!("{:?}, {:?}", recording.origin, recording.size).into());
+    }
+    is_legal(&view, &recording)?;
+    recording.origin[0] += 1;
+    if certify(&view, &recording).is_legal() { Err("of another place".into()) } else { Ok(()) }
+}
+
+fn refuses_a_studio(headless: &'static Headless) {
+    let view = scenes::matt();
+    let lighting = Lighting { integrator: Integrator::Studio(Studio::default()), ..view.lighting };
+    let accel = headless.plan(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
+    let buffers = headless.upload_lit(&view.scene, &accel).unwrap();
+    let seen = (view.camera.as_ref(), &view.film);
+    let go_on = &mut |_: &_| LitDecision::GoOn;
+    let refused = headless.record_paths(&view.scene, &buffers, seen, &lighting, 0..1, go_on);
+    assert_eq!(refused.unwrap_err(), GpuError::NotPaths);
+}
+
+fn stops_when_told(headless: &'static Headless) {
+    let view = scenes::matt();
+    let accel = headless.plan(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
+    let buffers = headless.upload_lit(&view.scene, &accel).unwrap();
+    let seen = (view.camera.as_ref(), &view.film);
+    let stop = &mut |_: &_| LitDecision::Stop;
+    let stopped = headless.record_paths(&view.scene, &buffers, seen, &view.lighting, 0..1, stop);
+    assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
+}

@@ -1,0 +1,345 @@
+//! Small lit scenes, each with something that a fault of its kind would show in.
+
+use std::sync::Arc;
+
+use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::environment::Environment;
+use pinhole::glam::DVec3;
+use pinhole::lighting::{
+    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Lighting, PathTracing,
+    Sampling, Sky, SkyLight,
+};
+use pinhole::material::Material;
+use pinhole::{Film, LinearRgb, Scene, Sphere};
+
+/// A scene, and how it is lit and seen.
+pub(crate) struct LitView {
+    pub(crate) scene: Scene,
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) film: Film,
+    pub(crate) lighting: Lighting,
+}
+
+type Named = (&'static str, fn() -> LitView);
+
+pub(crate) fn all() -> Vec<Named> {
+    vec![
+        ("matt", matt),
+        ("lobes", lobes),
+        ("metals", metals),
+        ("glass", glass),
+        ("emitters", emitters),
+        ("emitters_directly", emitters_directly),
+        ("emitters_by_chance", emitters_by_chance),
+        ("sun", sun),
+        ("image", image),
+        ("opacity", opacity),
+        ("from_inside", from_inside),
+        ("many", many),
+        ("tiny", || scaled(1e-4, DVec3::ZERO)),
+        ("huge", || scaled(1e6, DVec3::ZERO)),
+        ("far_from_the_origin", || scaled(1.0, DVec3::new(3e5, -2e5, 1e5))),
+        ("small_spheres_far_away", small_and_far),
+        ("a_planet", planet),
+    ]
+}
+
+pub(crate) fn gray(level: f32) -> LinearRgb {
+    LinearRgb::new([level; 3]).unwrap()
+}
+
+fn rgb(r: f32, g: f32, b: f32) -> LinearRgb {
+    LinearRgb::new([r, g, b]).unwrap()
+}
+
+fn ball(center: [f64; 3], radius: f64, color: LinearRgb) -> Sphere {
+    Sphere::new(center, radius, color)
+}
+
+fn lobe(specular: f32, roughness: f32) -> Material {
+    Material::Lambert { specular, roughness }
+}
+
+fn metal(roughness: f32) -> Material {
+    Material::Conductor { roughness }
+}
+
+fn glass_of(ior: f32, roughness: f32, attenuation_distance: Option<f32>) -> Material {
+    Material::Dielectric { ior, roughness, attenuation_distance }
+}
+
+fn light(kind: LightKind) -> Light {
+    Light { kind, frame: LightFrame::World }
+}
+
+fn directional(angular_radius: f64) -> LightKind {
+    let toward = DVec3::new(-0.5, 0.9, 0.4);
+    LightKind::Directional { toward, strength: rgb(1.0, 0.9, 0.7), angular_radius }
+}
+
+fn sky() -> Sky {
+    let gradient = SkyLight::Gradient {
+        zenith: rgb(0.3, 0.5, 0.9),
+        horizon: gray(0.8),
+        nadir: rgb(0.2, 0.15, 0.1),
+    };
+    Sky { light: gradient, is_visible: true }
+}
+
+fn no_sky() -> Sky {
+    Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false }
+}
+
+fn ground(y: f64) -> Ground {
+    Ground {
+        point: DVec3::new(0.3, y, 0.1),
+        normal: DVec3::new(0.05, 1.0, 0.02),
+        color: rgb(0.6, 0.5, 0.4),
+        is_shadow_catcher: false,
+    }
+}
+
+fn lighting(lights: Vec<Light>, sky: Sky, light_sampling: LightSampling) -> Lighting {
+    Lighting {
+        integrator: Integrator::Path(PathTracing {
+            max_depth: 6,
+            roulette_from: 2,
+            light_sampling,
+        }),
+        sampling: Sampling { samples: 2, seed: 7, ..Sampling::default() },
+        lights,
+        sky,
+        ground: None,
+        background: rgb(0.1, 0.2, 0.3),
+        is_transparent: false,
+    }
+}
+
+fn camera(eye: [f64; 3], look_at: [f64; 3]) -> PinholeCamera {
+    let pose = Pose::looking_at(eye, look_at, [0.1, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, f64::to_radians(40.0), 1.2).unwrap()
+}
+
+fn view(spheres: &[Sphere], lighting: Lighting) -> LitView {
+    LitView {
+        scene: Scene::new(spheres).unwrap(),
+        camera: Box::new(camera([0.5, 1.5, 7.0], [0.0, 0.0, 0.0])),
+        film: Film::new(48, 40).unwrap(),
+        lighting,
+    }
+}
+
+/// Nine spheres in a square, and what each is made of.
+fn grid(material: impl Fn(usize) -> Material) -> Vec<Sphere> {
+    (0..9)
+        .map(|i| {
+            let (x, y) = (i % 3, i / 3);
+            let center = [x as f64 * 1.5 - 1.5, y as f64 * 1.5 - 1.5, (i % 2) as f64 * 0.4];
+            let level = |k: usize| ((i * k) % 7 + 2) as f32 / 9.0;
+            ball(center, 0.7, rgb(level(1), level(3), level(5))).with_material(material(i))
+        })
+        .collect()
+}
+
+pub(crate) fn matt() -> LitView {
+    let lights = vec![
+        light(directional(0.0)),
+        light(LightKind::Point {
+            position: DVec3::new(2.0, 3.0, 4.0),
+            intensity: rgb(9.0, 8.0, 7.0),
+        }),
+    ];
+    let lit = lighting(lights, sky(), LightSampling::Multiple);
+    view(&grid(|_| Material::default()), Lighting { ground: Some(ground(-2.4)), ..lit })
+}
+
+pub(crate) fn lobes() -> LitView {
+    let lights = vec![
+        light(LightKind::Head { strength: gray(0.4) }),
+        light(LightKind::Sphere {
+            center: DVec3::new(-3.0, 4.0, 3.0),
+            radius: 0.8,
+            radiance: rgb(12.0, 11.0, 9.0),
+        }),
+    ];
+    let lit = lighting(lights, sky(), LightSampling::Multiple);
+    let material = |i| lobe(0.1 + 0.1 * i as f32, 0.05 + 0.1 * i as f32);
+    let pinhole = camera([0.5, 1.5, 7.0], [0.0, 0.0, 0.0]);
+    let lens = ThinLensCamera::new(pinhole, 0.05, 7.0).unwrap();
+    LitView { camera: Box::new(lens), ..view(&grid(material), lit) }
+}
+
+pub(crate) fn metals() -> LitView {
+    let lit = lighting(vec![light(directional(0.02))], sky(), LightSampling::Multiple);
+    let material = |i| metal(if i == 0 { 0.02 } else { 0.11 * i as f32 });
+    view(&grid(material), Lighting { ground: Some(ground(-2.4)), ..lit })
+}
+
+pub(crate) fn glass() -> LitView {
+    let lit = lighting(vec![light(directional(0.0))], sky(), LightSampling::Multiple);
+    let material = |i| match i % 3 {
+        0 => glass_of(1.5, 0.0, Some(0.8)),
+        1 => glass_of(1.33, 0.1 * i as f32, Some(2.0)),
+        _ => glass_of(2.2, 0.02, None),
+    };
+    let mut spheres = grid(material);
+    // Inside of one, and behind all.
+    spheres.push(ball([-1.5, -1.5, 0.0], 0.3, rgb(0.9, 0.3, 0.2)));
+    spheres.push(ball([0.0, 0.0, -4.0], 2.5, rgb(0.7, 0.7, 0.2)));
+    view(&spheres, lit)
+}
+
+fn lamps() -> Vec<Sphere> {
+    let mut spheres = grid(|i| match i {
+        0 | 4 => Material::Emissive { strength: 1.0 + i as f32 },
+        1 => metal(0.3),
+        2 => lobe(0.5, 0.2),
+        3 => glass_of(1.5, 0.0, None),
+        _ => Material::default(),
+    });
+    spheres[8] = spheres[8].with_material(Material::Emissive { strength: 30.0 });
+    spheres[8].radius = 0.05;
+    spheres
+}
+
+fn with_lamps(sampling: LightSampling) -> LitView {
+    let lit = lighting(Vec::new(), no_sky(), sampling);
+    view(&lamps(), Lighting { ground: Some(ground(-2.4)), ..lit })
+}
+
+pub(crate) fn emitters() -> LitView {
+    with_lamps(LightSampling::Multiple)
+}
+
+pub(crate) fn emitters_directly() -> LitView {
+    with_lamps(LightSampling::Direct)
+}
+
+fn emitters_by_chance() -> LitView {
+    with_lamps(LightSampling::Chance)
+}
+
+pub(crate) fn sun() -> LitView {
+    let lit = lighting(vec![light(directional(0.3))], sky(), LightSampling::Multiple);
+    let lit = Lighting { ground: Some(ground(-2.4)), ..lit };
+    view(&grid(|i| if i % 2 == 0 { metal(0.2) } else { lobe(0.3, 0.3) }), lit)
+}
+
+fn map() -> Arc<Environment> {
+    let texels = (0..16 * 8)
+        .map(|i| {
+            let level = |k: usize| ((i * k) % 11) as f32 / 11.0;
+            let bright = if i == 37 { 20.0 } else { 0.0 };
+            [level(3) + bright, level(5) + bright, level(7)]
+        })
+        .collect();
+    Arc::new(Environment::new(16, 8, texels).unwrap())
+}
+
+pub(crate) fn image() -> LitView {
+    let image = SkyLight::Image { environment: map(), strength: 0.7, rotation: 0.6 };
+    let sky = Sky { light: image, is_visible: true };
+    let lit = lighting(Vec::new(), sky, LightSampling::Multiple);
+    view(&grid(|i| if i % 2 == 0 { metal(0.4) } else { Material::default() }), lit)
+}
+
+pub(crate) fn image_over_ground() -> LitView {
+    let view = image();
+    LitView { lighting: Lighting { ground: Some(ground(-2.4)), ..view.lighting }, ..view }
+}
+
+pub(crate) fn opacity() -> LitView {
+    let lit = lighting(vec![light(directional(0.0))], sky(), LightSampling::Multiple);
+    let spheres: Vec<_> = grid(|i| if i == 4 { glass_of(1.5, 0.0, None) } else { lobe(0.2, 0.4) })
+        .into_iter()
+        .enumerate()
+        .map(|(i, sphere)| sphere.with_opacity(i as f32 / 8.0))
+        .collect();
+    view(&spheres, Lighting { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
+}
+
+pub(crate) fn from_inside() -> LitView {
+    // Of which nothing gets inside.
+    let sun = vec![light(directional(0.0))];
+    let lit = lighting(sun, no_sky(), LightSampling::Multiple);
+    let mut spheres = lamps();
+    spheres.push(ball([0.0, 0.0, 0.0], 9.0, gray(0.8)));
+    let pose = Pose::looking_at([0.5, 1.5, 5.0], [0.0; 3], [0.1, 1.0, 0.0]).unwrap();
+    LitView { camera: Box::new(PanoramaCamera::new(pose)), ..view(&spheres, lit) }
+}
+
+/// So many that there is a structure.
+pub(crate) fn many() -> LitView {
+    let mut random = fastrand::Rng::with_seed(5);
+    let spheres: Vec<_> = (0..300)
+        .map(|i| {
+            let center = [0; 3].map(|_| random.f64() * 4.0 - 2.0);
+            let color = rgb(random.f32() * 0.9, random.f32() * 0.9, random.f32() * 0.9);
+            let material = match i % 6 {
+                0 => metal(0.3),
+                1 => lobe(0.4, 0.2),
+                2 => glass_of(1.5, 0.0, Some(0.5)),
+                3 => Material::Emissive { strength: 2.0 },
+                _ => Material::default(),
+            };
+            ball(center, 0.08 + 0.12 * random.f64(), color).with_material(material)
+        })
+        .collect();
+    let lit = lighting(vec![light(directional(0.1))], sky(), LightSampling::Multiple);
+    view(&spheres, Lighting { ground: Some(ground(-2.4)), ..lit })
+}
+
+pub(crate) fn mixed() -> Vec<Sphere> {
+    let mut spheres = lamps();
+    spheres[5] = spheres[5].with_material(glass_of(1.4, 0.2, None));
+    spheres[6] = spheres[6].with_opacity(0.5);
+    spheres
+}
+
+/// All materials, a light, a sky and ground.
+pub(crate) fn everything() -> LitView {
+    scaled(1.0, DVec3::ZERO)
+}
+
+fn scaled(scale: f64, moved: DVec3) -> LitView {
+    let place = |v: DVec3| scale * v + moved;
+    let spheres: Vec<_> = mixed()
+        .into_iter()
+        .map(|mut sphere| {
+            sphere.center = place(DVec3::from(sphere.center)).to_array();
+            sphere.radius *= scale;
+            sphere
+        })
+        .collect();
+    let lights = vec![light(LightKind::Point {
+        position: place(DVec3::new(2.0, 3.0, 4.0)),
+        intensity: gray(9.0 * (scale * scale) as f32),
+    })];
+    let lit = lighting(lights, sky(), LightSampling::Multiple);
+    let below = Ground { point: place(ground(-2.4).point), ..ground(0.0) };
+    let eye = place(DVec3::new(0.5, 1.5, 7.0)).to_array();
+    LitView {
+        camera: Box::new(camera(eye, place(DVec3::ZERO).to_array())),
+        ..view(&spheres, Lighting { ground: Some(below), ..lit })
+    }
+}
+
+fn small_and_far() -> LitView {
+    let mut spheres = mixed();
+    for (i, sphere) in spheres.iter_mut().enumerate() {
+        sphere.radius *= [1.0, 1e-1, 1e-2][i % 3];
+    }
+    let small = ball([0.0, 0.0, 1.0], 1e-4, gray(0.9));
+    spheres.push(small);
+    let lit = lighting(vec![light(directional(0.0))], sky(), LightSampling::Multiple);
+    let pose = Pose::looking_at([50.0, 150.0, 700.0], [0.0; 3], [0.1, 1.0, 0.0]).unwrap();
+    let far = PinholeCamera::with_vertical_fov(pose, f64::to_radians(0.4), 1.2).unwrap();
+    LitView { camera: Box::new(far), ..view(&spheres, lit) }
+}
+
+/// A sphere so large that its own numbers are coarser than what is on it.
+fn planet() -> LitView {
+    let mut spheres = mixed();
+    spheres.push(ball([0.0, -1e4 - 2.3, 0.0], 1e4, rgb(0.5, 0.6, 0.4)));
+    view(&spheres, lighting(vec![light(directional(0.0))], sky(), LightSampling::Multiple))
+}
