@@ -60,8 +60,10 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let is_end = stage.is_last != 0u || (is_emitter && !is_passed);
     var next = bounce(at, out, chance.x, arriving, seed, medium);
     next.light = look_for_light(at, out, arriving, seed, is_end || is_passed);
+    // Glass ends at its wall, also where that lets light pass.
+    let beyond = select(medium, vec3f(0.0), at.material.kind == DIELECTRIC && vertex.is_back);
     let passed = Onward(vertex.position, PATH_FULL | PATH_ALIVE | scattered | side_of(at, true), ray.direction, 0.0,
-        arriving, medium, next.light);
+        arriving, beyond, next.light);
     if (is_passed) {
         next = passed;
     }

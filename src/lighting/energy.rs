@@ -14,7 +14,7 @@ use crate::parallel;
 /// How many entries a table has. Entry k is of the cosine μ = (k/255)⁴: the finer, the flatter the view, since
 /// lobes of roughness 0.02 change where μ is about 0.0004.
 ///
-/// Interpolating them linearly is off by less than 0.0002 for reflection and 0.0005 for refraction, and entries
+/// Interpolating them linearly is off by less than 0.0002 for reflection and 0.0005 for refraction (ior from 1.1), and entries
 /// themselves by less than 0.0005 and 0.001.
 pub const ENTRIES: usize = 256;
 

@@ -52,6 +52,7 @@ pub(crate) fn paths() -> Vec<(&'static str, LitView)> {
         ("path_sun_and_lamps", view(&shiny(), on_ground(sunny()))),
         ("path_sky_image", view(&shiny(), on_ground(under_image()))),
         ("path_opacity", view(&clear(), on_ground(path(multiple)))),
+        ("path_clear_glass", view(&clear_glass(), on_ground(path(multiple)))),
         ("path_inside_a_sphere", view(&inside(), night(multiple))),
         ("path_tiny", moved(&shiny(), path(multiple), 1e-4, 0.0)),
         ("path_huge", moved(&shiny(), path(multiple), 1e6, 0.0)),
@@ -100,6 +101,13 @@ fn glass() -> Vec<Sphere> {
         Material::Dielectric { ior: 1.33, roughness: 0.3, attenuation_distance: None },
         Material::default(),
     ])
+}
+
+/// Glass that lets light pass on its way in and out.
+fn clear_glass() -> Vec<Sphere> {
+    let tint = |ior| Material::Dielectric { ior, roughness: 0.0, attenuation_distance: Some(0.5) };
+    let spheres = with(&[tint(1.5), Material::default(), tint(1.2)]);
+    spheres.into_iter().map(|sphere| sphere.with_opacity(0.6)).collect()
 }
 
 fn lamps() -> Vec<Sphere> {
