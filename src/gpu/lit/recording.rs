@@ -89,14 +89,14 @@ impl Run<'_> {
         match moment {
             Moment::Traced => {
                 keeper.hits.record_copy(self.encoder(), &tile.hits);
-                self.submit(&[keeper.hits.buffer()])?;
+                self.run_gathered(&[keeper.hits.buffer()])?;
                 let pixels = keeper.pixels;
                 let hits = keeper.hits.read(|hits: &[Hit]| hits[..pixels].to_vec())?;
                 keeper.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
             }
             Moment::Started | Moment::Scattered | Moment::Occluded => {
                 keeper.paths.record_copy(self.encoder(), &tile.paths);
-                self.submit(&[keeper.paths.buffer()])?;
+                self.run_gathered(&[keeper.paths.buffer()])?;
                 let states = keeper.read_states()?;
                 let open = |states: &[PathState]| {
                     states.iter().map(|state| state.slots[PathState::PENDING][3]).collect()
@@ -113,7 +113,7 @@ impl Run<'_> {
             Moment::Deposited => {
                 tile.record_copy_film(self.encoder());
                 tile.record_copy_status(self.encoder());
-                self.submit(&[tile.film_back.buffer(), tile.status_back.buffer()])?;
+                self.run_gathered(&[tile.film_back.buffer(), tile.status_back.buffer()])?;
                 let used = 2 * keeper.pixels;
                 keeper.sample.sums = tile.film_back.read(|sums: &[[u32; 4]]| {
                     sums[..used].chunks_exact(2).map(|sum| [sum[0], sum[1]]).collect()

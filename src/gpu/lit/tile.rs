@@ -33,6 +33,8 @@ pub(super) struct TileBuffers {
     pub(super) stage_stride: usize,
     status: Buffer,
     film: Buffer,
+    pub(super) paths: Buffer,
+    pub(super) hits: Buffer,
     pub(super) status_back: ReadableBuffer,
     pub(super) film_back: ReadableBuffer,
     pub(super) search: [BindGroup; 2],
@@ -160,6 +162,8 @@ impl TileBuffers {
                 frames,
                 stages,
                 status,
+                paths,
+                hits,
                 film,
             }
         })
