@@ -16,6 +16,10 @@
 //! [`Headless::self_test`](crate::gpu::Headless::self_test) checks. And of spheres that are the same to the bit the
 //! smallest id wins, also where they are in different bricks: all kernels of a picture find the same for the same.
 //!
+//! Paths of lit pictures are judged in the same way, dispatch by dispatch ([`Checker::certify_paths`]). There a number
+//! that stands in two places of a kernel's text, and is fenced, is taken to be the same in both; and products of sums
+//! are taken not to be multiplied out.
+//!
 //! ```no_run
 //! # use pinhole::{Scene, Film, Settings, camera::PinholeCamera, gpu::{Headless, HeadlessOptions}};
 //! # fn f(scene: &Scene, camera: &PinholeCamera, film: &Film) -> Result<(), Box<dyn std::error::Error>> {

@@ -235,7 +235,7 @@ pub(super) const SCHEDULE: &[Row] = &[
         "every_tile_shows_the_first",
         views::two_tiles,
         LIST,
-        "enter.wgsl",
+        "camera_entry.wgsl",
         "frame.tile_origin + pixel_in_tile",
         "pixel_in_tile",
     ),
