@@ -58,11 +58,12 @@ impl Subject<'_> {
 
 fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Lighting {
     let studio = Studio { occlusion, ..Studio::default() };
-    let mut lighting = Lighting::default();
-    lighting.integrator = Integrator::Studio(studio);
-    lighting.lights = lights;
-    lighting.sampling = Sampling { samples, seed: 0, filter: PixelFilter::Box };
-    lighting
+    Lighting {
+        integrator: Integrator::Studio(studio),
+        lights,
+        sampling: Sampling { samples, seed: 0, filter: PixelFilter::Box },
+        ..Lighting::default()
+    }
 }
 
 /// Grey spheres under a white sky, without direct light: one ray a bounce.

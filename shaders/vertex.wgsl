@@ -66,9 +66,9 @@ fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Ver
     let middle = dot(sphere.xyz - entered.origin, ray.direction);
     // Which wall it is, the search has decided.
     let half_chord = select(abs(found.from_foot), abs(middle), is_far_wall);
-    found.from_foot = select(-half_chord, half_chord, is_far_wall || hit.t > middle);
+    let is_back = is_far_wall || hit.t > middle;
+    found.from_foot = select(-half_chord, half_chord, is_back);
     let outward = sphere_normal(entered, found);
-    let is_back = dot(outward, ray.direction) > 0.0;
     // Back on the sphere, unless that is so large that its own numbers are coarser than the ray's.
     let on_sphere = sphere.xyz + sphere.w * outward;
     let on_ray = entered.origin + hit.t * ray.direction;

@@ -1,4 +1,5 @@
 //! A device that follows paths between matt spheres and does whatever WGSL leaves it free to do is never accused.
+#![allow(clippy::needless_range_loop, reason = "components of several vectors go together")]
 
 use std::f64::consts::PI;
 
@@ -42,6 +43,7 @@ fn lighting() -> Lighting {
         ground: None,
         background: LinearRgb::BLACK,
         is_transparent: false,
+        is_denoised: false,
     }
 }
 
@@ -164,7 +166,7 @@ impl LegalDevice {
         let (ray, is_inside) = self.enter(&made.uploaded, path.origin, path.direction);
         let mut hit = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         if path.flags & INSIDE != 0 {
-            let middle = self.to_middle(path.left, path.origin, path.direction);
+            let middle = self.middle_along(path.left, path.origin, path.direction);
             hit = Hit { t: self.mul(2.0, middle).max(0.0), id: last.id, distance: 0.0 };
         }
         for (sphere, id) in scene.spheres().iter().zip(0..) {
@@ -179,7 +181,7 @@ impl LegalDevice {
         hit
     }
 
-    fn to_middle(&mut self, sphere: [f32; 4], origin: [f32; 3], direction: [f32; 3]) -> f32 {
+    fn middle_along(&mut self, sphere: [f32; 4], origin: [f32; 3], direction: [f32; 3]) -> f32 {
         let to_center = self.vector(|this, k| this.add(sphere[k], -origin[k]));
         self.dot(&mut [0, 1, 2].map(|k| (to_center[k], direction[k])))
     }
@@ -231,7 +233,7 @@ impl LegalDevice {
         let origin = if hit.distance == 0.0 { path.origin } else { origin };
         let ray = TracedRay { origin, direction: d, distance: hit.distance };
         let triangle = self.triangle(&ray, sphere);
-        let middle = self.to_middle(sphere, origin, d);
+        let middle = self.middle_along(sphere, origin, d);
         let is_far_wall = path.flags & INSIDE != 0 && sphere == path.left;
         let half = if is_far_wall { middle.abs() } else { triangle.from_foot.abs() };
         let from_foot = if is_far_wall || hit.t > middle { half } else { -half };

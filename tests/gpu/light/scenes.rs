@@ -176,12 +176,13 @@ fn through_a_lens() -> LitView {
 }
 
 fn lit(integrator: Integrator, lights: Vec<Light>) -> Lighting {
-    let mut lighting = Lighting::default();
-    lighting.integrator = integrator;
-    lighting.sampling = Sampling { samples: SAMPLES, seed: 7, filter: PixelFilter::default() };
-    lighting.lights = lights;
-    lighting.background = rgb(0.2, 0.3, 0.4);
-    lighting
+    Lighting {
+        integrator,
+        lights,
+        sampling: Sampling { samples: SAMPLES, seed: 7, filter: PixelFilter::default() },
+        background: rgb(0.2, 0.3, 0.4),
+        ..Lighting::default()
+    }
 }
 
 fn studio(studio: Studio) -> Lighting {
