@@ -29,7 +29,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
             on_spheres(view, |spheres| {
                 let [r, g, b] = spheres[3].color.to_array();
                 spheres[3].color = LinearRgb::new([r, g * 0.999, b]).unwrap();
-            })
+            });
         }),
     ),
     (
@@ -37,7 +37,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
         Spoil::Given(|view| {
             on_spheres(view, |spheres| {
                 spheres[6] = spheres[6].with_opacity(0.8);
-            })
+            });
         }),
     ),
     (
@@ -45,7 +45,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
         Spoil::Given(|view| {
             on_spheres(view, |spheres| {
                 spheres[1] = spheres[1].with_material(Material::Conductor { roughness: 0.3003 });
-            })
+            });
         }),
     ),
     (
@@ -53,7 +53,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
         Spoil::Given(|view| {
             on_spheres(view, |spheres| {
                 spheres[0] = spheres[0].with_material(Material::Emissive { strength: 1.001 });
-            })
+            });
         }),
     ),
     ("two_spheres_swapped", Spoil::Given(|view| on_spheres(view, |spheres| spheres.swap(0, 3)))),
