@@ -1,5 +1,4 @@
 //! A device that follows paths between matt spheres and does whatever WGSL leaves it free to do is never accused.
-#![allow(clippy::needless_range_loop, reason = "components of several vectors go together")]
 
 use std::f64::consts::PI;
 
@@ -43,7 +42,7 @@ fn lighting() -> Lighting {
         ground: None,
         background: LinearRgb::BLACK,
         is_transparent: false,
-        is_denoised: false,
+        ..Lighting::default()
     }
 }
 
@@ -166,7 +165,7 @@ impl LegalDevice {
         let (ray, is_inside) = self.enter(&made.uploaded, path.origin, path.direction);
         let mut hit = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         if path.flags & INSIDE != 0 {
-            let middle = self.middle_along(path.left, path.origin, path.direction);
+            let middle = self.middle_of(path.left, path.origin, path.direction);
             hit = Hit { t: self.mul(2.0, middle).max(0.0), id: last.id, distance: 0.0 };
         }
         for (sphere, id) in scene.spheres().iter().zip(0..) {
@@ -181,7 +180,7 @@ impl LegalDevice {
         hit
     }
 
-    fn middle_along(&mut self, sphere: [f32; 4], origin: [f32; 3], direction: [f32; 3]) -> f32 {
+    fn middle_of(&mut self, sphere: [f32; 4], origin: [f32; 3], direction: [f32; 3]) -> f32 {
         let to_center = self.vector(|this, k| this.add(sphere[k], -origin[k]));
         self.dot(&mut [0, 1, 2].map(|k| (to_center[k], direction[k])))
     }
@@ -222,10 +221,11 @@ impl LegalDevice {
             let end = if d[1] >= 0.0 { look.zenith } else { look.nadir };
             let along = d[1].abs();
             let level = self.add(1.0, -along);
-            for k in 0..3 {
-                let light = self.dot(&mut [(look.horizon[k], level), (end[k], along)]);
-                next.radiance[k] = self.mul_add(path.through[k], light, path.radiance[k]);
-            }
+            let light =
+                self.vector(|this, k| this.dot(&mut [(look.horizon[k], level), (end[k], along)]));
+            let [r, g, b] =
+                self.vector(|this, k| this.mul_add(path.through[k], light[k], path.radiance[k]));
+            next.radiance = [r, g, b, path.radiance[3]];
             return Path { origin: [0.0; 3], flags: 0, ..next };
         }
         let sphere = scene.spheres()[hit.id as usize];
@@ -233,7 +233,7 @@ impl LegalDevice {
         let origin = if hit.distance == 0.0 { path.origin } else { origin };
         let ray = TracedRay { origin, direction: d, distance: hit.distance };
         let triangle = self.triangle(&ray, sphere);
-        let middle = self.middle_along(sphere, origin, d);
+        let middle = self.middle_of(sphere, origin, d);
         let is_far_wall = path.flags & INSIDE != 0 && sphere == path.left;
         let half = if is_far_wall { middle.abs() } else { triangle.from_foot.abs() };
         let from_foot = if is_far_wall || hit.t > middle { half } else { -half };
@@ -270,10 +270,8 @@ impl LegalDevice {
         let survival = if surface >= 1 { most.min(0.95) } else { 1.0 };
         let draw = unit(pair(seed, 0, 6 + 8 * surface)[0]) as f32;
         let is_alive = most > 0.0 && draw < survival && surface < DEPTH;
-        for k in 0..3 {
-            next.through[k] = self.divide(carried[k], survival.max(1e-30));
-        }
-        next.through[3] = 0.0;
+        let [r, g, b] = self.vector(|this, k| this.divide(carried[k], survival.max(1e-30)));
+        next.through = [r, g, b, 0.0];
         let side = if is_back { INSIDE } else { 0 };
         next.flags = SCATTERED | side | if is_alive { ALIVE } else { 0 };
         next

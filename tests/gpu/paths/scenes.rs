@@ -112,7 +112,7 @@ fn lighting(lights: Vec<Light>, sky: Sky, light_sampling: LightSampling) -> Ligh
         ground: None,
         background: rgb(0.1, 0.2, 0.3),
         is_transparent: false,
-        is_denoised: false,
+        ..Lighting::default()
     }
 }
 
