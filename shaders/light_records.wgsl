@@ -60,7 +60,6 @@ const LOOK_SKY_SEEN: u32 = 2u;
 const LOOK_SHADOWS: u32 = 4u;
 const LOOK_GROUND: u32 = 8u;
 const LOOK_CATCHER: u32 = 16u;
-const LOOK_IMAGE: u32 = 32u;
 
 const LIGHT_CHANCE: u32 = 0u;
 const LIGHT_DIRECT: u32 = 1u;

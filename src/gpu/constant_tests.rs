@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use naga::{Expression, Handle, Literal, Module};
 
-use super::{records, shaders, tiles};
+use super::{lit, records, shaders, tiles};
 use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_ROOT, word};
 use crate::accel::{self, BinaryChild, BinaryNode, WideNode};
 use crate::image::NO_ID;
@@ -37,6 +37,12 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("BINARY_INNER", accel::BINARY_INNER),
         ("BINARY_NODE_VECTORS", vectors(size_of::<BinaryNode>())),
         ("BINARY_CHILD_VECTORS", vectors(size_of::<BinaryChild>())),
+        ("LOOK_TRANSPARENT", lit::records::TRANSPARENT),
+        ("LOOK_SKY_SEEN", lit::records::SKY_SEEN),
+        ("LOOK_SHADOWS", lit::records::SHADOWS),
+        ("LOOK_GROUND", lit::records::GROUND),
+        ("LOOK_CATCHER", lit::records::CATCHER),
+        ("ENERGIES", crate::lighting::energy::ENTRIES as u32),
     ];
     let floats = [
         // Each has a name of its own for it.
@@ -54,9 +60,52 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         .collect()
 }
 
-/// What kernels alone know, and the shadings, which a test of `records.rs` compares.
-const OF_KERNELS_ALONE: &[&str] =
-    &["NO_PLACE", "SHADING_FLAT", "SHADING_HEADLIGHT", "SMALLEST_SPOT"];
+/// What kernels alone know; the shadings, which a test of `records.rs` compares; and the names for what stands in
+/// tables, of which `tests/gpu/light` and `tests/gpu/paths` compare what becomes.
+const OF_KERNELS_ALONE: &[&str] = &[
+    "NO_PLACE",
+    "SHADING_FLAT",
+    "SHADING_HEADLIGHT",
+    "SMALLEST_SPOT",
+    "LUMINANCE",
+    // Slots of a path's state, and flags in it.
+    "ORIGIN",
+    "DIRECTION",
+    "LEFT",
+    "THROUGHPUT",
+    "RADIANCE",
+    "FIRST",
+    "SHADOW",
+    "PENDING",
+    "TARGET",
+    "MEDIUM",
+    "NORMAL",
+    "PAINT",
+    "LOBE",
+    "PATH_ALIVE",
+    "PATH_INSIDE",
+    "PATH_ON_GROUND",
+    "PATH_LIT",
+    "PATH_BACK",
+    "PATH_FULL",
+    "PATH_SCATTERED",
+    // What is met, and what stands in tables.
+    "NOBODY",
+    "NOTHING_MET",
+    "GROUND_MET",
+    "SPHERE_MET",
+    "LAMBERT",
+    "CONDUCTOR",
+    "DIELECTRIC",
+    "EMISSIVE",
+    "LAMP_HEAD",
+    "LAMP_DIRECTIONAL",
+    "LAMP_POINT",
+    "LAMP_SPHERE",
+    "LIGHT_CHANCE",
+    "LIGHT_DIRECT",
+    "LIGHT_MULTIPLE",
+];
 
 fn bits(module: &Module, expression: Handle<Expression>) -> Bits {
     match &module.global_expressions[expression] {

@@ -48,11 +48,11 @@ pub(in crate::gpu) struct Look {
 }
 
 /// `LOOK_…` in the same file.
-pub(super) const TRANSPARENT: u32 = 1;
-pub(super) const SKY_SEEN: u32 = 2;
-pub(super) const SHADOWS: u32 = 4;
-pub(super) const GROUND: u32 = 8;
-pub(super) const CATCHER: u32 = 16;
+pub(in crate::gpu) const TRANSPARENT: u32 = 1;
+pub(in crate::gpu) const SKY_SEEN: u32 = 2;
+pub(in crate::gpu) const SHADOWS: u32 = 4;
+pub(in crate::gpu) const GROUND: u32 = 8;
+pub(in crate::gpu) const CATCHER: u32 = 16;
 
 /// `vec4f`s that a path's state takes for each pixel: the last slot of `shaders/path_state.wgsl` and one.
 pub(super) const PATH_SLOTS: u64 = 10;
