@@ -6,9 +6,6 @@ use crate::image::{Image, Layer, LayerSet};
 /// How many passes a filter has; each reaches twice as far as the one before.
 pub(crate) const PASSES: u32 = 5;
 
-/// How many pixels away a pixel may be that counts.
-pub(crate) const REACH: u32 = 2 * ((1 << PASSES) - 1);
-
 /// A picture lacks a layer without which it cannot be denoised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(

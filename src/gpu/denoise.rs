@@ -10,7 +10,7 @@ use super::readback::ReadableBuffer;
 use super::renderer::pipeline;
 use super::scene_buffers::binding_limit;
 use super::shaders::{Kernel, part};
-use crate::denoise::{Guided, PASSES, REACH};
+use crate::denoise::{Guided, PASSES};
 use crate::image::Image;
 
 /// What one pass does.
@@ -21,6 +21,9 @@ pub(super) struct Denoise {
     pub(super) step: u32,
     pub(super) zero: u32,
 }
+
+/// How many pixels away a pixel may be that counts.
+const REACH: u32 = 2 * ((1 << PASSES) - 1);
 
 /// The most pixels of a strip that is filtered at once.
 const MOST_PIXELS: u64 = 1 << 21;

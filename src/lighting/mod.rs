@@ -49,7 +49,7 @@ pub struct Lighting {
     pub background: LinearRgb,
     /// Whether there is nothing to be seen where there is nothing: the colour then is multiplied by alpha.
     pub is_transparent: bool,
-    /// Whether noise is filtered, by shapes and colours; see [`denoise`](crate::denoise).
+    /// Whether noise is filtered, by shapes and colours; see [`crate::denoise`].
     pub is_denoised: bool,
 }
 
