@@ -30,7 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
     let edit = ShaderEdit {
-        file: "enter.wgsl".into(),
+        file: "camera_entry.wgsl".into(),
         find: "vec2f(0.5)".into(),
         replace: format!("vec2f({:?}, {:?})", lens[0], lens[1]),
     };

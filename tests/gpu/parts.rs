@@ -204,8 +204,9 @@ fn answer(q: vec4u) -> vec4u {
     let look = [map.width(), map.height(), cosine, sine, u32::from(samples), 0];
     let texels: Vec<u32> =
         map.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.0].map(f32::to_bits)).collect();
-    let [rows, columns] = [map.rows(), map.columns()].map(bytemuck::cast_slice);
-    let tables = [(0, 2, &look[..]), (3, 0, &texels), (3, 1, rows), (3, 2, columns)];
+    let shares: Vec<u32> =
+        map.rows().iter().chain(map.columns()).map(|share| share.to_bits()).collect();
+    let tables = [(0, 2, &look[..]), (3, 0, &texels), (3, 1, &shares[..])];
     let parts = [ENVIRONMENT, TURNS, INVERSE, FENCE, RUNTIME_ZERO, source];
     let answers = compute::answers(headless, &parts, &tables, questions);
     answers.into_iter().map(numbers).collect()
