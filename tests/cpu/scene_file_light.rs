@@ -533,7 +533,8 @@ fn every_example_is_right() {
         let text = std::fs::read_to_string(&path).unwrap();
         let file = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{place}: {error}"));
         let scene = file.scene(&[]).unwrap_or_else(|error| panic!("{place}: {error}"));
-        assert!(!scene.is_empty(), "{place}");
+        // What refers to data that is not here has no spheres of its own.
+        assert!(!scene.is_empty() || file.data().is_some(), "{place}");
         let camera = file.camera(&file.film, &scene);
         let camera = camera.unwrap_or_else(|error| panic!("{place}: {error}"));
         let image = file.sky_image().map(|name| {
