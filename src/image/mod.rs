@@ -206,7 +206,6 @@ impl Image {
 }
 
 /// For renderers that gather several samples for a pixel.
-#[allow(dead_code, reason = "renderers take one sample so far")]
 impl Image {
     /// Drops all layers but these.
     pub(crate) fn keep(&mut self, layers: LayerSet) {
@@ -229,30 +228,17 @@ impl Image {
         self.alpha.as_deref_mut()
     }
 
-    pub(crate) fn depth_mut(&mut self) -> Option<&mut [f32]> {
-        self.depth.as_deref_mut()
-    }
-
-    pub(crate) fn normal_mut(&mut self) -> Option<&mut [[f32; 3]]> {
-        self.normal.as_deref_mut()
-    }
-
-    pub(crate) fn position_mut(&mut self) -> Option<&mut [[f32; 3]]> {
-        self.position.as_deref_mut()
-    }
-
+    #[cfg(feature = "gpu")]
     pub(crate) fn albedo_mut(&mut self) -> Option<&mut [[f32; 3]]> {
         self.albedo.as_deref_mut()
     }
 
-    pub(crate) fn id_mut(&mut self) -> Option<&mut [u32]> {
-        self.id.as_deref_mut()
-    }
-
+    #[cfg(feature = "gpu")]
     pub(crate) fn samples_mut(&mut self) -> Option<&mut [u32]> {
         self.samples.as_deref_mut()
     }
 
+    #[cfg(feature = "gpu")]
     pub(crate) fn variance_mut(&mut self) -> Option<&mut [f32]> {
         self.variance.as_deref_mut()
     }
