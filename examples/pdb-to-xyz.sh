@@ -1,17 +1,18 @@
 #!/bin/sh
 # Turns the atoms of a PDB file into XYZ, without water:  examples/pdb-to-xyz.sh 4hhb.pdb > 4hhb.xyz
-# A line of XYZ is a name, x, y and z; before all atoms are how many there are, and a comment.
+# With --chains before the file, atoms are called by their chain, or by their molecule if they are in none, not by
+# their element; a scene file then gives each its color and radius. Columns are counted from 1, as the format does.
 set -eu
-awk '
+by_chain=0
+if [ "${1-}" = --chains ]; then by_chain=1; shift; fi
+awk -v by_chain="$by_chain" '
     /^(ATOM  |HETATM)/ && substr($0, 18, 3) != "HOH" {
-        element = substr($0, 77, 2)                     # columns of the format, counted from 1
-        gsub(/[^A-Za-z]/, "", element)
-        if (element == "") {                            # old files name the atom alone: " CA " is carbon, "FE  " iron
-            element = substr($0, 13, 2)
-            gsub(/[^A-Za-z]/, "", element)
-        }
-        element = toupper(substr(element, 1, 1)) tolower(substr(element, 2))
-        atoms[++n] = element " " substr($0, 31, 8) " " substr($0, 39, 8) " " substr($0, 47, 8)
+        name = substr($0, 77, 2)
+        if (name ~ /^ *$/) name = substr($0, 13, 2)     # in old files: " C" of " CA " is carbon, "FE" iron
+        if (by_chain) name = /^ATOM/ ? substr($0, 22, 1) : substr($0, 18, 3)
+        gsub(/[^A-Za-z]/, "", name)
+        if (!by_chain) name = toupper(substr(name, 1, 1)) tolower(substr(name, 2))
+        atoms[++n] = name " " substr($0, 31, 8) " " substr($0, 39, 8) " " substr($0, 47, 8)
     }
     /^ENDMDL/ { exit }                                  # the first model is enough
     END {
