@@ -95,6 +95,11 @@ pub enum ColorError {
     },
 }
 
+/// How bright linear light is (ITU-R BT.709).
+pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 /// Encodes linear light as 8-bit sRGB, rounded to the nearest byte; what lies outside [0, 1] is clamped,
 /// NaN becomes 0.
 ///

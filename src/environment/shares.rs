@@ -1,15 +1,14 @@
 //! The tables by which texels are sampled.
 
 use super::solid_angle;
+use crate::color;
 use crate::parallel::for_each;
 
 /// How many shares a table has: f32 holds every multiple of 2⁻²⁴ up to 1, and their differences.
 const SHARES: f64 = (1 << 24) as f64;
 
-/// Rec. 709.
 fn luminance(texel: &[f32; 3]) -> f64 {
-    let [red, green, blue] = texel.map(f64::from);
-    0.2126 * red + 0.7152 * green + 0.0722 * blue
+    color::luminance(texel.map(f64::from))
 }
 
 /// Where rows begin, and where columns do in each.

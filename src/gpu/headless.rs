@@ -194,17 +194,12 @@ impl Headless {
         film: &Film,
         work: impl Fn(&SceneBuffers) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let mut choice = AccelChoice::Auto;
-        loop {
-            let accel = self.plan_once(scene, choice, film).build(scene.spheres());
-            let structure = accel.structure();
+        let plan = |choice| self.plan_once(scene, choice, film);
+        with_structures(scene, plan, |accel| {
             let buffers = self.upload(scene, &accel)?;
             drop(accel);
-            match (work(&buffers), structure.instead()) {
-                (Err(GpuError::Steps), Some(other)) => choice = other,
-                (result, _) => return result,
-            }
-        }
+            work(&buffers)
+        })
     }
 
     /// As [`Headless::render`], of a scene that is on this device already. `watch` is told of progress.
@@ -393,6 +388,24 @@ impl Headless {
             Ok(_) => Ok(()),
             Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: self.timeout }),
             Err(error) => Err(GpuError::Device { message: error.to_string() }),
+        }
+    }
+}
+
+/// Does something with a scene in the structure that is planned; where rays take too many steps in that, once more
+/// with another.
+pub(super) fn with_structures<T>(
+    scene: &Scene,
+    plan: impl Fn(AccelChoice) -> AccelPlan,
+    work: impl Fn(Accel) -> Result<T, GpuError>,
+) -> Result<T, GpuError> {
+    let mut choice = AccelChoice::Auto;
+    loop {
+        let accel = plan(choice).build(scene.spheres());
+        let structure = accel.structure();
+        match (work(accel), structure.instead()) {
+            (Err(GpuError::Steps), Some(other)) => choice = other,
+            (result, _) => return result,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::color::luminance;
 use crate::material::{Finish, Material};
 use crate::scene::Scene;
 
@@ -108,11 +109,10 @@ fn bits(sphere: &[f32; 4]) -> [u32; 4] {
     sphere.map(|x| (x + 0.0).to_bits())
 }
 
-fn brightness([r, g, b]: [f64; 3], finish: &Finish) -> f64 {
+fn brightness(color: [f64; 3], finish: &Finish) -> f64 {
     match finish.material {
         Material::Emissive { strength } => {
-            let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-            luminance * f64::from(strength) * f64::from(finish.opacity)
+            luminance(color) * f64::from(strength) * f64::from(finish.opacity)
         }
         _ => 0.0,
     }

@@ -1,5 +1,6 @@
 //! What has been gathered of a lit picture: sums over samples, in f64.
 
+use crate::color::luminance;
 use crate::film::Film;
 use crate::gpu::tiles::Tile;
 use crate::image::{Image, ImageTooLarge};
@@ -82,7 +83,7 @@ impl Sums {
         }
         let variance: f64 = self.pixels.iter().map(|pixel| self.variance(pixel)).sum();
         let light: f64 =
-            self.pixels.iter().map(|pixel| luminance(pixel) / f64::from(self.samples)).sum();
+            self.pixels.iter().map(|pixel| light_of(pixel) / f64::from(self.samples)).sum();
         let count = self.pixels.len() as f64;
         (light > 0.0).then(|| (variance / count).sqrt() / (light / count))
     }
@@ -93,7 +94,7 @@ impl Sums {
         if count < 2.0 {
             return 0.0;
         }
-        let mean = luminance(pixel) / count;
+        let mean = light_of(pixel) / count;
         ((pixel.squared / count - mean * mean) / (count - 1.0)).max(0.0)
     }
 
@@ -119,7 +120,7 @@ impl Sums {
     }
 }
 
-fn luminance(pixel: &Pixel) -> f64 {
+fn light_of(pixel: &Pixel) -> f64 {
     let [r, g, b, _] = pixel.color;
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    luminance([r, g, b])
 }

@@ -12,7 +12,7 @@ use self::run::Run;
 use self::tile::{FRAMES, TileBuffers, lit_tile_size};
 use super::error::GpuError;
 use super::frame::iteration_limit;
-use super::headless::Headless;
+use super::headless::{Headless, with_structures};
 use super::records::Frame;
 use super::scene_buffers::SceneBuffers;
 use super::seen::Seen;
@@ -123,20 +123,14 @@ impl Headless {
         lighting: &Lighting,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        let mut choice = AccelChoice::Auto;
-        loop {
-            let accel = self.plan(scene, choice).build(scene.spheres());
-            let structure = accel.structure();
+        let plan = |choice| self.plan(scene, choice);
+        let picture = with_structures(scene, plan, |accel| {
             let buffers = self.upload_lit(scene, &accel)?;
             drop(accel);
             let go_on = &mut |_: &LitProgress| LitDecision::GoOn;
-            let picture =
-                self.render_lit_uploaded(scene, &buffers, (camera, film), lighting, layers, go_on);
-            match (picture, structure.instead()) {
-                (Err(GpuError::Steps), Some(other)) => choice = other,
-                (result, _) => return result.map(|picture| picture.image),
-            }
-        }
+            self.render_lit_uploaded(scene, &buffers, (camera, film), lighting, layers, go_on)
+        })?;
+        Ok(picture.image)
     }
 
     /// As [`Headless::render_lit`], of a scene that is on this device already. `watch` is told of progress.

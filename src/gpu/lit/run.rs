@@ -149,8 +149,6 @@ impl<'a> Run<'a> {
         pass.set_bind_group(0, group, &[offset]);
         if let Some(brick) = brick {
             pass.set_bind_group(1, brick, &[]);
-        }
-        if brick.is_some() {
             pass.set_bind_group(2, &tile.look, &[]);
             if let Some(sky) = &tile.sky {
                 pass.set_bind_group(3, sky, &[]);
