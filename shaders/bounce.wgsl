@@ -7,14 +7,14 @@ fn side_of(at: Surface, is_behind: bool) -> u32 {
     return side | select(PATH_ON_GROUND, 0u, is_sphere);
 }
 
-fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, medium: vec3f) -> Onward {
-    let u = sample_pair(seed, stage.sample, 2u + 8u * stage.surface);
+fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, sample: u32, medium: vec3f) -> Onward {
+    let u = sample_pair(seed, sample, 2u + 8u * stage.surface);
     let next = scatter_light(at, to_local(at.axes, out), lobe, u);
     let carried = through * next.weight;
     let most = max(carried.x, max(carried.y, carried.z));
     // Russian roulette.
     let survival = select(1.0, min(most, 0.95), stage.surface >= look.roulette_from);
-    let draw = unit2(sample_pair(seed, stage.sample, 6u + 8u * stage.surface)).x;
+    let draw = unit2(sample_pair(seed, sample, 6u + 8u * stage.surface)).x;
     let is_alive = most > 0.0 && draw < survival;
     let is_behind = next.direction.z < 0.0;
     let is_glass = at.material.kind == DIELECTRIC;

@@ -16,7 +16,9 @@ fn light_from_afar(direction: vec3f, flags: u32, density: f32) -> vec3f {
     }
     let sources = f32(max(look.source_count, 1u));
     var sum = sky_radiance(direction) * chance_weight(flags, density, sky_density(direction) / sources);
-    for (var light = 0u; light < look.light_count; light++) {
+    // If the number came from a uniform alone, Mesa's lavapipe would build the kernel anew for every dispatch.
+    let count = select(look.light_count, 0u, is_seen && is_look(LOOK_TRANSPARENT));
+    for (var light = 0u; light < count; light++) {
         let place = table(3u * light);
         let power = table(3u * light + 1u);
         let k = power.w;

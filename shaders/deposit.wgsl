@@ -1,18 +1,30 @@
-// Adds a sample of every pixel to what the pixel has.
-
-// Colour and opacity; the first surface's colour, and the square of the luminance: sums.
-@group(0) @binding(5) var<storage, read_write> film: array<vec4f>;
+// Adds samples of every pixel to what the pixel has, one after the other, so that a sum does not depend on how many
+// are in flight.
 
 @compute @workgroup_size(64)
 fn deposit(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    if (any(pixel >= frame.tile_size)) {
+    let pixel = path_of(group, lane);
+    if (pixel == NO_PATH) {
         return;
     }
-    let index = hit_index(pixel);
-    let sample = settled(index);
-    let light = dot(sample.rgb, vec3f(0.2126, 0.7152, 0.0722));
-    film[2u * index] += sample;
-    film[2u * index + 1u] += vec4f(load(index, FIRST).rgb, light * light);
+    let pixels = frame.tile_size.x * frame.tile_size.y;
+    let color = film[3u * pixel];
+    let rest = film[3u * pixel + 1u];
+    let others = film[3u * pixel + 2u];
+    var alpha = color.w;
+    var albedo = others.rgb;
+    // Colour, and the square of the luminance.
+    var sum = Sum(vec4f(color.rgb, others.w), rest);
+    for (var turn = 0u; turn < stage.count; turn++) {
+        let index = turn * pixels + pixel;
+        let sample = settled(index);
+        let light = dot(sample.rgb, vec3f(0.2126, 0.7152, 0.0722));
+        sum = plus(sum, vec4f(sample.rgb, light * light));
+        alpha += sample.w;
+        albedo += load(index, FIRST).rgb;
+    }
+    film[3u * pixel] = vec4f(sum.value.rgb, alpha);
+    film[3u * pixel + 1u] = sum.rest;
+    film[3u * pixel + 2u] = vec4f(albedo, sum.value.w);
 }

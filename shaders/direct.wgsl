@@ -39,9 +39,9 @@ fn find_sky(u: vec2u) -> Found {
     return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), vec4f(0.0));
 }
 
-fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, is_end: bool) -> DirectLight {
-    let u = sample_pair(seed, stage.sample, 4u + 8u * stage.surface);
-    let choice = sample_pair(seed, stage.sample, 5u + 8u * stage.surface);
+fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
+    let u = sample_pair(seed, sample, 4u + 8u * stage.surface);
+    let choice = sample_pair(seed, sample, 5u + 8u * stage.surface);
     let source = min(u32(unit2(choice).x * f32(look.source_count)), look.source_count - 1u);
     let position = at.vertex.position;
     var found = find_lamp(min(source, max(look.lamp_sources, 1u) - 1u), position, u);

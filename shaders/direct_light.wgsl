@@ -24,3 +24,7 @@ fn forget_light(index: u32) {
     store(index, SHADOW, vec4f(0.0, 0.0, 1.0, 0.0));
     store(index, PENDING, vec4f(0.0));
 }
+
+fn is_looking(light: DirectLight) -> bool {
+    return light.shadow.w > 0.0;
+}

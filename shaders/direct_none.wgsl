@@ -8,10 +8,14 @@ fn no_light() -> DirectLight {
     return DirectLight(1u);
 }
 
-fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, is_end: bool) -> DirectLight {
+fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
     return no_light();
 }
 
 fn store_light(index: u32, light: DirectLight) {}
 
 fn forget_light(index: u32) {}
+
+fn is_looking(light: DirectLight) -> bool {
+    return false;
+}

@@ -4,12 +4,11 @@
 @compute @workgroup_size(64)
 fn gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    let index = hit_index(pixel);
-    let start = load_start(index);
-    if (any(pixel >= frame.tile_size) || !has(start.flags, PATH_LIT)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
+    let start = load_start(index);
     let hidden = f32(countOneBits(paths[slot(index, NORMAL)].w));
     let share = 1.0 / f32(look.occlusion_samples);
     let paint = load(index, PAINT);

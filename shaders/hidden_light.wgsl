@@ -10,7 +10,7 @@ fn look_for(index: u32, start: Start, direction: vec3f, distance: f32, bit: u32)
     let entry = enter_scene(CameraRay(ray, 0.0, true));
     let rest = distance - entry.distance;
     var is_hidden = is_in_own || is_below;
-    if (has(start.flags, PATH_LIT) && !is_hidden && rest > 0.0 && entry.is_inside) {
+    if (!is_hidden && rest > 0.0 && entry.is_inside) {
         is_hidden = find_any(entry.ray, entry.inverse, rest);
     }
     if (is_hidden) {

@@ -14,12 +14,11 @@ fn lobe_light(lobe: vec3f, normal: vec3f, out: vec3f, toward: vec3f) -> f32 {
 @compute @workgroup_size(64)
 fn illuminate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    let index = hit_index(pixel);
-    let start = load_start(index);
-    if (any(pixel >= frame.tile_size) || !has(start.flags, PATH_LIT)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
+    let start = load_start(index);
     let normal = load(index, NORMAL).xyz;
     let hidden = paths[slot(index, NORMAL)].w;
     let out = -load(index, DIRECTION).xyz;
@@ -28,10 +27,11 @@ fn illuminate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     let weight = load(index, THROUGHPUT).y;
     let is_caught = paint.w > 0.0;
     let total = light_to_catch(is_caught, start.position);
-    let address = pixel_seed(frame.tile_origin + pixel, look.seed);
+    let address = address_of(index);
+    let seed = pixel_seed(address.pixel, look.seed);
     var sum = vec4f(0.0);
     for (var light = stage.light; light < stage.light + stage.count; light++) {
-        let u = sample_pair(address, stage.sample, 2u + 4096u * stage.surface + light);
+        let u = sample_pair(seed, address.sample, 2u + 4096u * stage.surface + light);
         var lamp = sample_lamp(light, start.position, u);
         if (lamp_kind(light) == LAMP_HEAD) {
             lamp = Lamp(out, 0.0, table(3u * light + 1u).rgb, 0.0);

@@ -11,8 +11,16 @@ struct Stage {
     is_last: u32,
     // The light, or the direction of ambient light, that is looked for; or the first of some.
     light: u32,
-    // How many.
+    // How many of them; how many samples are in flight; or how many workgroups a slice of a list has.
     count: u32,
+    // The list of paths that is worked on.
+    list: u32,
+    // Whether lists that are filled next are to be emptied.
+    is_new: u32,
+    // How many paths there is room for.
+    paths: u32,
+    // The first workgroup.
+    first: vec2u,
 }
 
 struct Look {

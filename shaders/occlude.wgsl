@@ -3,11 +3,10 @@
 @compute @workgroup_size(64)
 fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    if (any(pixel >= frame.tile_size)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
-    let index = hit_index(pixel);
     let shadow = load(index, SHADOW);
     left = load(index, LEFT);
     target_sphere = load(index, TARGET);

@@ -1,6 +1,7 @@
 // What is known of every pixel's path between two dispatches.
 
-// Slot by slot, and in each row by row of the tile. Bits, because there are whole numbers among them.
+// Slot by slot, and in each sample by sample and row by row of the tile. Bits, because there are whole numbers among
+// them.
 @group(0) @binding(3) var<storage, read_write> paths: array<vec4u>;
 @group(0) @binding(4) var<uniform> stage: Stage;
 
@@ -16,20 +17,22 @@ const THROUGHPUT: u32 = 3u;
 const RADIANCE: u32 = 4u;
 // The colour of the first surface, and how long the ray is so far.
 const FIRST: u32 = 5u;
-// Of a path: the direction in which a light is looked for from the origin, and how far; 0 for no light.
-const SHADOW: u32 = 6u;
-// What its light adds, and 1 unless something has been found in between.
-const PENDING: u32 = 7u;
+// What the ray has hit: the bits of t, id, place and distance.
+const HIT: u32 = 6u;
+// Of a path that looks for light: the direction in which, from the origin, and how far; 0 for no light.
+const SHADOW: u32 = 7u;
+// What that light adds, and 1 unless something has been found in between.
+const PENDING: u32 = 8u;
 // The sphere that is looked for, which hides itself from nobody.
-const TARGET: u32 = 8u;
-// What absorbs light on the way.
-const MEDIUM: u32 = 9u;
+const TARGET: u32 = 9u;
+// Of a path where there is glass: what absorbs light on the way.
+const MEDIUM: u32 = 10u;
 // In a studio: the normal of the surface, and a bit for each of 32 lights that are hidden.
-const NORMAL: u32 = 6u;
+const NORMAL: u32 = 7u;
 // The surface's colour by what it counts, and what is left for what is behind a ground that catches shadows.
-const PAINT: u32 = 7u;
+const PAINT: u32 = 8u;
 // The surface's lobe: its share, the square of its roughness, and where its energies are.
-const LOBE: u32 = 8u;
+const LOBE: u32 = 9u;
 
 // There is a ray to be traced.
 const PATH_ALIVE: u32 = 1u;
@@ -37,8 +40,6 @@ const PATH_ALIVE: u32 = 1u;
 const PATH_INSIDE: u32 = 2u;
 // It starts on the ground.
 const PATH_ON_GROUND: u32 = 4u;
-// In a studio: there is a surface to be lit.
-const PATH_LIT: u32 = 8u;
 // The surface is seen from inside of its sphere, which is opaque.
 const PATH_BACK: u32 = 16u;
 // No light that the ray meets has been looked for directly.
@@ -47,7 +48,7 @@ const PATH_FULL: u32 = 32u;
 const PATH_SCATTERED: u32 = 64u;
 
 fn slot(index: u32, which: u32) -> u32 {
-    return which * frame.tile_size.x * frame.tile_size.y + index;
+    return which * stage.paths + index;
 }
 
 fn load(index: u32, which: u32) -> vec4f {
@@ -56,6 +57,15 @@ fn load(index: u32, which: u32) -> vec4f {
 
 fn store(index: u32, which: u32, value: vec4f) {
     paths[slot(index, which)] = bitcast<vec4u>(value);
+}
+
+fn load_hit(index: u32) -> Hit {
+    let bits = paths[slot(index, HIT)];
+    return Hit(bitcast<f32>(bits.x), bits.y, bits.z, bitcast<f32>(bits.w));
+}
+
+fn store_hit(index: u32, hit: Hit) {
+    paths[slot(index, HIT)] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, bitcast<u32>(hit.distance));
 }
 
 struct Start {

@@ -15,10 +15,12 @@ struct Onward {
 @compute @workgroup_size(64)
 fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    let index = hit_index(pixel);
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
+        return;
+    }
     let start = load_start(index);
-    if (any(pixel >= frame.tile_size) || !has(start.flags, PATH_ALIVE)) {
+    if (!has(start.flags, PATH_ALIVE)) {
         return;
     }
     let direction = load(index, DIRECTION);
@@ -43,8 +45,9 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let at = Surface(vertex, material_of(vertex), axes_around(vertex.normal));
     let medium = load_medium(index);
     let arriving = through * kept_by(medium, vertex.distance);
-    let seed = pixel_seed(frame.tile_origin + pixel, look.seed);
-    let chance = unit2(sample_pair(seed, stage.sample, 3u + 8u * stage.surface));
+    let address = address_of(index);
+    let seed = pixel_seed(address.pixel, look.seed);
+    let chance = unit2(sample_pair(seed, address.sample, 3u + 8u * stage.surface));
     let scattered = start.flags & PATH_SCATTERED;
     let is_passed = chance.y >= vertex.opacity;
     let is_emitter = at.material.kind == EMISSIVE;
@@ -58,8 +61,8 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     radiance = select(vec4f(radiance.rgb + arriving * light, 1.0), radiance, is_passed);
     let is_first = !is_passed && scattered == 0u && first.w >= 0.0;
     let is_end = stage.is_last != 0u || (is_emitter && !is_passed);
-    var next = bounce(at, out, chance.x, arriving, seed, medium);
-    next.light = look_for_light(at, out, arriving, seed, is_end || is_passed);
+    var next = bounce(at, out, chance.x, arriving, seed, address.sample, medium);
+    next.light = look_for_light(at, out, arriving, seed, address.sample, is_end || is_passed);
     // Glass ends at its wall, also where that lets light pass.
     let beyond = select(medium, vec3f(0.0), at.material.kind == DIELECTRIC && vertex.is_back);
     let passed = Onward(vertex.position, PATH_FULL | PATH_ALIVE | scattered | side_of(at, true), ray.direction, 0.0,
@@ -70,10 +73,17 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     store(index, RADIANCE, radiance);
     // A length below zero says that there has been a first surface.
     store(index, FIRST, select(first, vec4f(min(vertex.color, vec3f(1.0)), -1.0), is_first));
-    store_start(index, next.position, select(next.flags, next.flags & ~PATH_ALIVE, is_end));
+    let flags = select(next.flags, next.flags & ~PATH_ALIVE, is_end);
+    store_start(index, next.position, flags);
     store(index, DIRECTION, vec4f(next.direction, next.density));
     store(index, LEFT, vertex.sphere);
     store(index, THROUGHPUT, vec4f(next.through, 0.0));
     store_medium(index, next.medium);
     store_light(index, next.light);
+    if (has(flags, PATH_ALIVE)) {
+        append(next_list(), index);
+    }
+    if (is_looking(next.light)) {
+        append(LIST_OF_LIGHT, index);
+    }
 }

@@ -19,6 +19,13 @@ fn remainder(a: u32, b: u32) -> u32 {
     return u32(select(raised, raised - i32(b), raised >= i32(b)));
 }
 
+// a / b, for a below 2^24.
+fn quotient(a: u32, b: u32) -> u32 {
+    let near = i32(f32(a) / f32(b));
+    let rest = i32(a) - near * i32(b);
+    return u32(near + select(0, 1, rest >= i32(b)) - select(0, 1, rest < 0));
+}
+
 fn every_second_bit(lane: u32) -> u32 {
     return (lane & 1u) | ((lane >> 1u) & 2u) | ((lane >> 2u) & 4u);
 }

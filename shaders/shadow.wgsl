@@ -4,14 +4,14 @@
 @compute @workgroup_size(64)
 fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    if (any(pixel >= frame.tile_size)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
-    let index = hit_index(pixel);
     let start = load_start(index);
-    let address = pixel_seed(frame.tile_origin + pixel, look.seed);
-    let u = sample_pair(address, stage.sample, 2u + 4096u * stage.surface + stage.light);
+    let address = address_of(index);
+    let seed = pixel_seed(address.pixel, look.seed);
+    let u = sample_pair(seed, address.sample, 2u + 4096u * stage.surface + stage.light);
     let lamp = sample_lamp(stage.light, start.position, u);
     // What is behind the surface needs no search, and is no shadow.
     let is_before = dot(load(index, NORMAL).xyz, lamp.direction) > 0.0;

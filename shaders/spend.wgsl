@@ -1,8 +1,5 @@
 // How long an invocation has looped, and what it reports.
 
-// Not 0 if an invocation ran into the limit of iterations; not 0 if there is a path that goes on.
-@group(0) @binding(2) var<storage, read_write> status: array<atomic<u32>, 2>;
-
 // Iterations of all loops of this invocation.
 var<private> spent: u32;
 
@@ -15,6 +12,6 @@ fn spend(iterations: u32) -> bool {
 
 fn report_spent() {
     if (spent > frame.iteration_limit) {
-        atomicOr(&status[0], 1u);
+        give_up();
     }
 }

@@ -1,18 +1,17 @@
-// The ray of a sample of every pixel. Twin: src/cpu/light/sample.rs.
+// The rays of samples of every pixel. Twin: src/cpu/light/sample.rs.
 
 @compute @workgroup_size(64)
 fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    if (any(pixel >= frame.tile_size)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
-    let index = hit_index(pixel);
-    let in_film = frame.tile_origin + pixel;
-    let address = pixel_seed(in_film, look.seed);
-    let offset = filter_offset(sample_pair(address, stage.sample, 0u));
-    let lens = unit2(sample_pair(address, stage.sample, 1u));
-    let made = camera_ray(sample_location(in_film, offset), lens);
+    let address = address_of(index);
+    let seed = pixel_seed(address.pixel, look.seed);
+    let offset = filter_offset(sample_pair(seed, address.sample, 0u));
+    let lens = unit2(sample_pair(seed, address.sample, 1u));
+    let made = camera_ray(sample_location(address.pixel, offset), lens);
     let is_shown = !made.is_seen && !is_look(LOOK_TRANSPARENT);
     store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
     store_start(index, made.ray.origin, select(0u, PATH_ALIVE, made.is_seen) | PATH_FULL);
@@ -22,4 +21,5 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     store(index, RADIANCE, vec4f(select(vec3f(0.0), look.background, is_shown), 0.0));
     store(index, FIRST, vec4f(0.0, 0.0, 0.0, made.distance));
     start_light(index);
+    start_medium(index);
 }

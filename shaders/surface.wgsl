@@ -8,15 +8,12 @@ fn faded(distance: f32) -> f32 {
 @compute @workgroup_size(64)
 fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
-    let pixel = pixel_in_tile(group.xy, lane);
-    let index = hit_index(pixel);
-    let start = load_start(index);
-    if (any(pixel >= frame.tile_size)) {
+    let index = path_of(group, lane);
+    if (index == NO_PATH) {
         return;
     }
+    let start = load_start(index);
     if (!has(start.flags, PATH_ALIVE)) {
-        // The surface before this was its last.
-        store_start(index, vec3f(0.0), 0u);
         return;
     }
     let ray = Ray(start.position, load(index, DIRECTION).xyz);
@@ -62,7 +59,13 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let goes_on = select(PATH_ALIVE, 0u, is_last) | select(PATH_INSIDE, 0u, vertex.is_back || met == GROUND_MET);
     // What lets light through hides none.
     let is_closed = vertex.is_back && vertex.opacity >= 1.0;
-    let is_lit = select(PATH_LIT, 0u, is_emitter) | select(0u, PATH_BACK, is_closed);
+    let is_back = select(0u, PATH_BACK, is_closed);
     let on_ground = select(0u, PATH_ON_GROUND, met == GROUND_MET);
-    store_start(index, vertex.position, goes_on | is_lit | on_ground);
+    store_start(index, vertex.position, goes_on | is_back | on_ground);
+    if (has(goes_on, PATH_ALIVE)) {
+        append(next_list(), index);
+    }
+    if (!is_emitter) {
+        append(LIST_OF_LIGHT, index);
+    }
 }

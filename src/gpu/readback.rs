@@ -117,7 +117,7 @@ impl ReadableBuffer {
         &self.buffer
     }
 
-    /// Records the copy of a buffer of the same size.
+    /// Records the copy of a buffer of the same size, or of the start of a larger one.
     pub(super) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, written: &Buffer) {
         encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
     }

@@ -307,7 +307,7 @@ mod tests {
             }),
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
-            layout!(Stage { sample, surface, is_last, light, count }),
+            layout!(Stage { sample, surface, is_last, light, count, list, is_new, paths, first }),
             layout!(Look {
                 background,
                 flags,

@@ -94,7 +94,12 @@ pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Tu
 
 fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part> {
     let mut parts = common_parts(camera);
-    parts.extend([part!("schedule.wgsl"), part!("spend.wgsl"), part!("brick.wgsl")]);
+    parts.extend([
+        part!("schedule.wgsl"),
+        part!("status.wgsl"),
+        part!("spend.wgsl"),
+        part!("brick.wgsl"),
+    ]);
     parts.push(match turn {
         Turn::First => part!("first_brick.wgsl"),
         Turn::Later => part!("later_brick.wgsl"),
@@ -166,6 +171,7 @@ fn common_parts(camera: CameraKind) -> Vec<Part> {
     let mut parts = vec![
         part!("records.wgsl"),
         part!("frame.wgsl"),
+        part!("hits.wgsl"),
         part!("fence.wgsl"),
         part!("film.wgsl"),
         part!("ray.wgsl"),
@@ -208,6 +214,7 @@ impl Kernel {
             "binary_tree",
             "entry_re",
             "entry_path",
+            "schedule_",
             "direct",
             "scatter_",
             "medium_",

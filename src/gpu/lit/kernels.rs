@@ -32,50 +32,70 @@ pub(in crate::gpu) enum SkyKind {
     Image,
 }
 
-/// Makes the ray of a sample.
-pub(super) fn start_kernel(camera: CameraKind, is_studio: bool) -> Kernel {
-    let mut parts = base();
+/// Which paths a dispatch works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Schedule {
+    /// One for each pixel and each sample in flight.
+    Pixels,
+    /// Those of a list.
+    Queue,
+}
+
+impl Schedule {
+    fn part(self) -> Part {
+        match self {
+            Self::Pixels => part!("schedule_pixels.wgsl"),
+            Self::Queue => part!("schedule_queue.wgsl"),
+        }
+    }
+}
+
+/// Makes the rays of samples.
+pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
     parts.extend([
         part!("origin_none.wgsl"),
-        part!("schedule.wgsl"),
+        part!("path_address.wgsl"),
         part!("look.wgsl"),
         part!("sampling.wgsl"),
         part!("filter.wgsl"),
         part!("film_sample.wgsl"),
     ]);
     parts.extend(camera_parts(camera));
-    parts.push(if is_studio { part!("start_studio.wgsl") } else { part!("start_path.wgsl") });
+    parts.extend(match mode {
+        Mode::Path(surfaces, sources, _) => [
+            match sources {
+                Sources::None => part!("start_no_light.wgsl"),
+                Sources::Any => part!("start_light.wgsl"),
+            },
+            match surfaces {
+                Surfaces::Matt => part!("start_no_medium.wgsl"),
+                Surfaces::Any => part!("start_medium.wgsl"),
+            },
+        ],
+        Mode::Studio => [part!("start_no_light.wgsl"), part!("start_no_medium.wgsl")],
+    });
     parts.push(part!("start.wgsl"));
     Kernel { entry_point: "start", parts }
 }
 
 /// Finds the nearest sphere of every path's ray.
-pub(super) fn extend_kernel(structure: Structure, turn: Turn) -> Kernel {
-    let mut parts = base();
-    parts.extend([
-        part!("origin_sphere.wgsl"),
-        part!("schedule.wgsl"),
-        part!("spend.wgsl"),
-        part!("brick.wgsl"),
-    ]);
+pub(super) fn extend_kernel(structure: Structure, turn: Turn, schedule: Schedule) -> Kernel {
+    let mut parts = base(schedule);
+    parts.extend([part!("origin_sphere.wgsl"), part!("spend.wgsl"), part!("brick.wgsl")]);
     parts.push(match turn {
         Turn::First => part!("first_segment.wgsl"),
         Turn::Later => part!("later_brick.wgsl"),
     });
     parts.extend(structure_parts(structure));
-    parts.extend([part!("entry_path.wgsl"), part!("trace.wgsl")]);
-    Kernel { entry_point: "trace", parts }
+    parts.extend([part!("entry_path.wgsl"), part!("extend.wgsl")]);
+    Kernel { entry_point: "extend", parts }
 }
 
 /// Finds whether anything is between paths' surfaces and lights.
 pub(super) fn occlude_kernel(structure: Structure) -> Kernel {
-    let mut parts = base();
-    parts.extend([
-        part!("schedule.wgsl"),
-        part!("spend.wgsl"),
-        part!("brick.wgsl"),
-        part!("origin_and_target.wgsl"),
-    ]);
+    let mut parts = base(Schedule::Queue);
+    parts.extend([part!("spend.wgsl"), part!("brick.wgsl"), part!("origin_and_target.wgsl")]);
     parts.extend(structure_parts(structure));
     parts.push(part!("occlude.wgsl"));
     Kernel { entry_point: "occlude", parts }
@@ -96,10 +116,10 @@ pub(super) fn ambient_kernel(structure: Structure) -> Kernel {
 }
 
 fn hidden_light(structure: Structure) -> Vec<Part> {
-    let mut parts = base();
+    let mut parts = base(Schedule::Queue);
     parts.extend([
         part!("origin_sphere.wgsl"),
-        part!("schedule.wgsl"),
+        part!("path_address.wgsl"),
         part!("spend.wgsl"),
         part!("brick.wgsl"),
         part!("trigonometry.wgsl"),
@@ -114,8 +134,8 @@ fn hidden_light(structure: Structure) -> Vec<Part> {
 }
 
 /// In a studio, turns hits into surfaces.
-pub(super) fn surface_kernel() -> Kernel {
-    let mut parts = shading();
+pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
+    let mut parts = shading(schedule);
     parts.extend([part!("vertex.wgsl"), part!("material.wgsl"), part!("surface.wgsl")]);
     Kernel { entry_point: "surface", parts }
 }
@@ -140,8 +160,13 @@ pub(super) fn gather_kernel() -> Kernel {
 }
 
 /// Scatters paths.
-pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind) -> Kernel {
-    let mut parts = shading();
+pub(super) fn scatter_kernel(
+    schedule: Schedule,
+    surfaces: Surfaces,
+    sources: Sources,
+    sky: SkyKind,
+) -> Kernel {
+    let mut parts = shading(schedule);
     parts.extend([
         part!("sampling.wgsl"),
         part!("disk.wgsl"),
@@ -153,7 +178,6 @@ pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind)
         part!("lamp.wgsl"),
         part!("by_chance.wgsl"),
         part!("bounce.wgsl"),
-        part!("settle_path.wgsl"),
         part!("scatter.wgsl"),
     ]);
     match surfaces {
@@ -169,8 +193,14 @@ pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind)
         ]),
     }
     match sources {
-        Sources::None => parts.push(part!("direct_none.wgsl")),
-        Sources::Any => parts.extend([part!("direct_light.wgsl"), part!("direct.wgsl")]),
+        Sources::None => {
+            parts.extend([part!("settle_plain.wgsl"), part!("direct_none.wgsl")]);
+        }
+        Sources::Any => parts.extend([
+            part!("settle_light.wgsl"),
+            part!("direct_light.wgsl"),
+            part!("direct.wgsl"),
+        ]),
     }
     match sky {
         SkyKind::Plain => parts.push(part!("sky_plain.wgsl")),
@@ -180,12 +210,29 @@ pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind)
 }
 
 /// Adds samples to pixels.
-pub(super) fn deposit_kernel(is_studio: bool) -> Kernel {
-    let mut parts = base();
-    parts.extend([part!("origin_none.wgsl"), part!("schedule.wgsl")]);
-    parts.push(if is_studio { part!("settle_studio.wgsl") } else { part!("settle_path.wgsl") });
-    parts.push(part!("deposit.wgsl"));
+pub(super) fn deposit_kernel(mode: Mode) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.push(part!("origin_none.wgsl"));
+    parts.push(match mode {
+        Mode::Path(_, Sources::Any, _) => part!("settle_light.wgsl"),
+        Mode::Path(..) | Mode::Studio => part!("settle_plain.wgsl"),
+    });
+    parts.extend([part!("film_sums.wgsl"), part!("deposit.wgsl")]);
     Kernel { entry_point: "deposit", parts }
+}
+
+/// Says how many workgroups the next dispatches need.
+pub(super) fn advance_kernel() -> Kernel {
+    let mut parts = base(Schedule::Queue);
+    parts.extend([part!("origin_none.wgsl"), part!("advance.wgsl")]);
+    Kernel { entry_point: "advance", parts }
+}
+
+/// Sums up how much samples vary.
+pub(super) fn noise_kernel() -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend([part!("origin_none.wgsl"), part!("film_sums.wgsl"), part!("noise.wgsl")]);
+    Kernel { entry_point: "noise", parts }
 }
 
 fn sky_image() -> Vec<Part> {
@@ -197,7 +244,7 @@ fn sky_image() -> Vec<Part> {
     ]
 }
 
-fn base() -> Vec<Part> {
+fn base(schedule: Schedule) -> Vec<Part> {
     vec![
         part!("records.wgsl"),
         part!("light_records.wgsl"),
@@ -207,14 +254,17 @@ fn base() -> Vec<Part> {
         part!("enter.wgsl"),
         part!("sphere.wgsl"),
         part!("path_state.wgsl"),
+        part!("queue.wgsl"),
+        part!("schedule.wgsl"),
+        schedule.part(),
     ]
 }
 
-fn shading() -> Vec<Part> {
-    let mut parts = base();
+fn shading(schedule: Schedule) -> Vec<Part> {
+    let mut parts = base(schedule);
     parts.extend([
         part!("origin_none.wgsl"),
-        part!("schedule.wgsl"),
+        part!("path_address.wgsl"),
         part!("trigonometry.wgsl"),
         part!("look.wgsl"),
     ]);
@@ -222,7 +272,7 @@ fn shading() -> Vec<Part> {
 }
 
 fn studio_light() -> Vec<Part> {
-    let mut parts = shading();
+    let mut parts = shading(Schedule::Queue);
     parts.extend([
         part!("sampling.wgsl"),
         part!("disk.wgsl"),
@@ -236,22 +286,30 @@ fn studio_light() -> Vec<Part> {
 /// Every kernel of lit pictures that can be composed.
 #[cfg(test)]
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
-    let mut kernels = Vec::new();
-    for &camera in CameraKind::ALL {
-        kernels.extend([true, false].map(|is_studio| start_kernel(camera, is_studio)));
-    }
-    for &structure in Structure::ALL {
-        kernels.extend([Turn::First, Turn::Later].map(|turn| extend_kernel(structure, turn)));
-        kernels.extend([occlude_kernel, shadow_kernel, ambient_kernel].map(|of| of(structure)));
-    }
+    const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
+    let mut modes = vec![Mode::Studio];
     for surfaces in [Surfaces::Matt, Surfaces::Any] {
         for sources in [Sources::None, Sources::Any] {
             for sky in [SkyKind::Plain, SkyKind::Image] {
-                kernels.push(scatter_kernel(surfaces, sources, sky));
+                modes.push(Mode::Path(surfaces, sources, sky));
             }
         }
     }
-    kernels.extend([surface_kernel(), illuminate_kernel(), gather_kernel()]);
-    kernels.extend([true, false].map(deposit_kernel));
+    let mut kernels = vec![advance_kernel(), noise_kernel(), illuminate_kernel(), gather_kernel()];
+    for &mode in &modes {
+        kernels.push(deposit_kernel(mode));
+        if let Mode::Path(surfaces, sources, sky) = mode {
+            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, surfaces, sources, sky)));
+        }
+        let cameras = CameraKind::ALL.iter();
+        kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
+    }
+    for &structure in Structure::ALL {
+        for turn in [Turn::First, Turn::Later] {
+            kernels.extend(SCHEDULES.map(|by| extend_kernel(structure, turn, by)));
+        }
+        kernels.extend([occlude_kernel, shadow_kernel, ambient_kernel].map(|of| of(structure)));
+    }
+    kernels.extend(SCHEDULES.map(surface_kernel));
     kernels
 }

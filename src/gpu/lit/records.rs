@@ -12,7 +12,27 @@ pub(in crate::gpu) struct Stage {
     pub(in crate::gpu) is_last: u32,
     pub(in crate::gpu) light: u32,
     pub(in crate::gpu) count: u32,
+    pub(in crate::gpu) list: u32,
+    pub(in crate::gpu) is_new: u32,
+    pub(in crate::gpu) paths: u32,
+    pub(in crate::gpu) _pad: u32,
+    pub(in crate::gpu) first: [u32; 2],
 }
+
+/// `LIST_OF_LIGHT` in `shaders/queue.wgsl`: the paths that look for light, or surfaces that are to be lit.
+pub(super) const LIST_OF_LIGHT: u32 = 2;
+
+/// How many lists of paths there are.
+pub(super) const LISTS: u64 = 3;
+
+/// Bytes before the lists in `shaders/queue.wgsl`: whether an invocation gave up, and how long each list is.
+pub(super) const QUEUE_HEAD: u64 = 4 * (1 + LISTS);
+
+/// Bytes of the numbers of workgroups that `shaders/advance.wgsl` writes: of a list, and of a slice of it.
+pub(super) const GROUPS_NEEDED: u64 = 2 * GROUPS_OF_ONE;
+
+/// Bytes of one of these.
+pub(super) const GROUPS_OF_ONE: u64 = 12;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -54,8 +74,17 @@ pub(in crate::gpu) const SHADOWS: u32 = 4;
 pub(in crate::gpu) const GROUND: u32 = 8;
 pub(in crate::gpu) const CATCHER: u32 = 16;
 
-/// `vec4f`s that a path's state takes for each pixel: the last slot of `shaders/path_state.wgsl` and one.
-pub(super) const PATH_SLOTS: u64 = 10;
+/// `vec4f`s of a path's state that every path and every studio has: slots up to the hit in `shaders/path_state.wgsl`.
+pub(super) const COMMON_SLOTS: u64 = 7;
 
-/// `vec4f`s that a pixel's sums take: `shaders/deposit.wgsl`.
-pub(super) const FILM_SLOTS: u64 = 2;
+/// With what a path that looks for light, or a studio, keeps.
+pub(super) const LIGHT_SLOTS: u64 = 10;
+
+/// With what absorbs light on the way.
+pub(super) const MEDIUM_SLOTS: u64 = 11;
+
+/// `vec4f`s of a pixel's sums: `shaders/film_sums.wgsl`.
+pub(super) const FILM_SLOTS: u64 = 3;
+
+/// How many pixels one number of `shaders/noise.wgsl` sums up.
+pub(super) const PIXELS_PER_VARIATION: u64 = 64;

@@ -1,8 +1,7 @@
-// Of a path: no light is looked for, and nothing absorbs it.
+// Of a path: no light is looked for yet.
 
 fn start_light(index: u32) {
     store(index, SHADOW, vec4f(0.0, 0.0, 1.0, 0.0));
     store(index, PENDING, vec4f(0.0));
     store(index, TARGET, vec4f(0.0));
-    store(index, MEDIUM, vec4f(0.0));
 }

@@ -1,4 +1,4 @@
-// In a studio light is added at once.
+// Where light is added at once, or none is looked for.
 
 fn settled(index: u32) -> vec4f {
     return load(index, RADIANCE);

@@ -1,0 +1,20 @@
+// How many workgroups the next dispatches need: for all of a list, and for a slice of it. Lists that are filled
+// next are emptied.
+
+// Two times three numbers of workgroups, as indirect dispatches read them.
+@group(0) @binding(5) var<storage, read_write> groups_needed: array<u32, 6>;
+
+@compute @workgroup_size(64)
+fn advance(@builtin(local_invocation_index) lane: u32) {
+    zero_bits = frame.zero;
+    if (lane != 0u) {
+        return;
+    }
+    let groups = (atomicLoad(&queue.counts[stage.list]) + 63u) / 64u;
+    let slice = min(groups - min(groups, stage.first.x), stage.count);
+    groups_needed = array<u32, 6>(groups, 1u, 1u, slice, 1u, 1u);
+    if (stage.is_new != 0u) {
+        atomicStore(&queue.counts[next_list()], 0u);
+        atomicStore(&queue.counts[LIST_OF_LIGHT], 0u);
+    }
+}

@@ -1,0 +1,3 @@
+// Where there is no glass, nothing absorbs light.
+
+fn start_medium(index: u32) {}

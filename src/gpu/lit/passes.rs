@@ -1,0 +1,168 @@
+//! All passes that a lit picture needs.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+
+use wgpu::{BindGroupLayout, BindingType, Device};
+
+use super::kernels::{self, Mode, Schedule, SkyKind};
+use super::pass::Pass;
+use super::records::{GROUPS_NEEDED, Look, QUEUE_HEAD, Stage};
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::layouts::{Layouts, layout_of, storage, uniform};
+use crate::gpu::records;
+use crate::gpu::renderer::RendererOptions;
+use crate::gpu::shaders::{Kernel, ShaderEdit, Turn};
+
+/// What sets of passes differ in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) struct LitKey {
+    pub(in crate::gpu) camera: CameraKind,
+    pub(in crate::gpu) mode: Mode,
+    pub(in crate::gpu) structure: Structure,
+    /// Of what casts shadows.
+    pub(in crate::gpu) occluders: Structure,
+    /// Whether the scene has several bricks.
+    pub(in crate::gpu) several_bricks: bool,
+}
+
+/// Group 0 of most passes, of `advance`, and of those that work on sums; groups 2 and 3.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitLayouts {
+    pub(super) frame: BindGroupLayout,
+    pub(super) advance: BindGroupLayout,
+    pub(super) film: BindGroupLayout,
+    pub(super) look: BindGroupLayout,
+    pub(super) sky: BindGroupLayout,
+}
+
+/// A pass for the rays that start at the camera, and one for the lists of those that go on.
+#[derive(Debug)]
+pub(super) struct BySchedule {
+    pub(super) pixels: Pass,
+    pub(super) queue: Pass,
+}
+
+/// Passes. Long-lived: one set per device, camera, kind of lighting and structure.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitPasses {
+    pub(super) layouts: LitLayouts,
+    pub(super) start: Pass,
+    /// For the first brick, and for those behind it.
+    pub(super) extend: (BySchedule, Option<BySchedule>),
+    pub(super) shade: ShadePasses,
+    pub(super) advance: Pass,
+    pub(super) deposit: Pass,
+    pub(super) noise: Pass,
+}
+
+#[derive(Debug)]
+pub(super) enum ShadePasses {
+    Studio { surface: BySchedule, shadow: Pass, illuminate: Pass, ambient: Pass, gather: Pass },
+    Path { scatter: BySchedule, occlude: Pass },
+}
+
+impl LitLayouts {
+    fn new(device: &Device) -> Self {
+        let frame = uniform::<records::Frame>();
+        let queue = storage_of(QUEUE_HEAD + 4);
+        let paths = storage::<[f32; 4]>(false);
+        let film = storage::<[f32; 4]>(false);
+        let stage = BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: true,
+            min_binding_size: NonZeroU64::new(size_of::<Stage>() as u64),
+        };
+        let read = storage::<[f32; 4]>(true);
+        let layout = |label, kinds: &[(u32, BindingType)]| layout_of(device, label, kinds);
+        let common = [(0, frame), (2, queue), (3, paths), (4, stage)];
+        let with = |more: &[(u32, BindingType)]| [&common, more].concat();
+        Self {
+            frame: layout("pinhole frame", &common),
+            advance: layout("pinhole advance", &with(&[(5, storage_of(GROUPS_NEEDED))])),
+            film: layout("pinhole film", &with(&[(5, film), (6, storage::<[f32; 2]>(false))])),
+            look: layout("pinhole look", &[(0, uniform::<Look>()), (1, read)]),
+            sky: layout("pinhole sky", &[(0, read), (1, storage::<f32>(true))]),
+        }
+    }
+}
+
+/// A buffer that is read and written, of at least so many bytes.
+fn storage_of(bytes: u64) -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(bytes),
+    }
+}
+
+impl LitPasses {
+    /// Builds all pipelines.
+    pub(in crate::gpu) fn new(
+        device: &Device,
+        key: LitKey,
+        edits: &[ShaderEdit],
+    ) -> Result<Self, GpuError> {
+        let options = RendererOptions {
+            cameras: Vec::new(),
+            structures: vec![key.structure, key.occluders],
+            ..RendererOptions::default()
+        };
+        let scene = scoped(device, || Layouts::new(device, &options))?;
+        let layouts = scoped(device, || LitLayouts::new(device))?;
+        let build = |kernel: Kernel, groups: &[&BindGroupLayout]| {
+            Pass::new(device, kernel, groups, edits)
+        };
+        let both = |kernel: &dyn Fn(Schedule) -> Kernel, groups: &[&BindGroupLayout]| {
+            Ok::<_, GpuError>(BySchedule {
+                pixels: build(kernel(Schedule::Pixels), groups)?,
+                queue: build(kernel(Schedule::Queue), groups)?,
+            })
+        };
+        let brick = |index: usize| &scene.brick[index].1;
+        let surfaces = &scene.surface;
+        let LitLayouts { frame, advance, film, look, sky } = &layouts;
+        let extend = |turn| {
+            let kernel = |by| kernels::extend_kernel(key.structure, turn, by);
+            both(&kernel, &[frame, brick(0)])
+        };
+        let shade = match key.mode {
+            Mode::Studio => ShadePasses::Studio {
+                surface: both(&kernels::surface_kernel, &[frame, surfaces, look])?,
+                shadow: build(kernels::shadow_kernel(key.occluders), &[frame, brick(1), look])?,
+                illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, look])?,
+                ambient: build(kernels::ambient_kernel(key.occluders), &[frame, brick(1), look])?,
+                gather: build(kernels::gather_kernel(), &[frame, surfaces, look])?,
+            },
+            Mode::Path(surface, sources, kind) => {
+                let kernel = |by| kernels::scatter_kernel(by, surface, sources, kind);
+                let mut groups = vec![frame, surfaces, look];
+                if kind == SkyKind::Image {
+                    groups.push(sky);
+                }
+                ShadePasses::Path {
+                    scatter: both(&kernel, &groups)?,
+                    occlude: build(kernels::occlude_kernel(key.occluders), &[frame, brick(1)])?,
+                }
+            }
+        };
+        let start = kernels::start_kernel(key.camera, key.mode);
+        Ok(Self {
+            start: build(start, &[frame, surfaces, look])?,
+            extend: (
+                extend(Turn::First)?,
+                key.several_bricks.then(|| extend(Turn::Later)).transpose()?,
+            ),
+            shade,
+            advance: build(kernels::advance_kernel(), &[advance])?,
+            deposit: build(kernels::deposit_kernel(key.mode), &[film])?,
+            noise: build(kernels::noise_kernel(), &[film])?,
+            layouts,
+        })
+    }
+}
+
+/// The passes of a device, each set built when it is first wanted.
+pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;

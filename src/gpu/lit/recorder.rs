@@ -1,0 +1,125 @@
+//! Writes dispatches into an encoder, and remembers the records that they read.
+
+use wgpu::CommandEncoder;
+
+use super::frame::{Area, LitFrame};
+use super::pass::{Bound, Extent, Pass};
+use super::records::{GROUPS_OF_ONE, Stage};
+use super::round::{Step, Work};
+use crate::gpu::records::WORKGROUP_SIZE;
+use crate::gpu::tiles::Groups;
+
+/// Of one submission: what is recorded holds once [`Recorder::take_stages`] has been queued.
+#[derive(Debug)]
+pub(in crate::gpu) struct Recorder<'a> {
+    frame: &'a LitFrame,
+    /// Which of the frame's tiles.
+    pub(in crate::gpu) tile: usize,
+    advance: &'a Pass,
+    /// Whether the device can be told by a buffer how many workgroups a dispatch has.
+    is_indirect: bool,
+    stages: Vec<Stage>,
+}
+
+impl<'a> Recorder<'a> {
+    pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
+        Self { frame, tile: 0, advance, is_indirect, stages: Vec::new() }
+    }
+
+    /// How many dispatches there are since the last [`Recorder::take_stages`].
+    pub(in crate::gpu) fn dispatches(&self) -> usize {
+        self.stages.len()
+    }
+
+    /// What the dispatches read, in their order.
+    pub(in crate::gpu) fn take_stages(&mut self) -> Vec<Stage> {
+        std::mem::take(&mut self.stages)
+    }
+
+    /// The most workgroups that a dispatch may have, for each sample in flight if they are of pixels.
+    pub(in crate::gpu) fn groups(&self, step: &Step<'_>) -> Groups {
+        let tile = &self.frame.tiles[self.tile];
+        match step.work {
+            Work::Pixels(area) => {
+                Groups { first: [0, 0], size: tile.frames[area as usize].traced_size }
+            }
+            Work::List(_) => {
+                let pixels = u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1]);
+                let paths = pixels * u64::from(self.frame.sizes.in_flight);
+                // No more than there is room for, so it fits.
+                Groups { first: [0, 0], size: [paths.div_ceil(WORKGROUP_SIZE) as u32, 1] }
+            }
+            Work::Advance => Groups { first: [0, 0], size: [1, 1] },
+            Work::Sums => Groups {
+                first: [0, 0],
+                size: tile.frames[Area::Whole as usize].traced_size,
+            },
+        }
+    }
+
+    /// Records a dispatch, or only some of its workgroups.
+    pub(in crate::gpu) fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        step: &Step<'a>,
+        slice: Option<Groups>,
+    ) {
+        let groups = slice.unwrap_or_else(|| self.groups(step));
+        if groups.count() == 0 {
+            return;
+        }
+        let tile = &self.frame.tiles[self.tile];
+        let stage = Stage { first: groups.first, ..step.stage };
+        let [x, y] = groups.size;
+        let (group, extent) = match step.work {
+            Work::Pixels(area) => {
+                (&tile.groups[area as usize], Extent::Groups([x, y, stage.count]))
+            }
+            Work::List(area) => {
+                let group = &tile.groups[area as usize];
+                let needed = &self.frame.groups_needed;
+                match (self.is_indirect, slice) {
+                    (false, _) => (group, Extent::Groups([x, y, 1])),
+                    (true, None) => (group, Extent::Indirect(needed, 0)),
+                    (true, Some(_)) => {
+                        let slice = Stage { count: x, is_new: 0, ..stage };
+                        let extent = Extent::Groups([1, 1, 1]);
+                        self.dispatch(encoder, self.advance, slice, &tile.advance, None, extent);
+                        (group, Extent::Indirect(needed, GROUPS_OF_ONE))
+                    }
+                }
+            }
+            Work::Advance if !self.is_indirect && stage.is_new == 0 => return,
+            Work::Advance => (&tile.advance, Extent::Groups([1, 1, 1])),
+            Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
+        };
+        self.dispatch(encoder, step.pass, stage, group, step.brick, extent);
+    }
+
+    /// Records the sums of how much the samples of a tile vary.
+    pub(in crate::gpu) fn record_noise(&mut self, encoder: &mut CommandEncoder, noise: &Pass) {
+        let tile = &self.frame.tiles[self.tile];
+        let pixels = u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1]);
+        let groups = pixels.div_ceil(WORKGROUP_SIZE * super::records::PIXELS_PER_VARIATION);
+        let stage = Stage { sample: tile.samples, ..bytemuck::Zeroable::zeroed() };
+        // Fewer than there are pixels, so it fits.
+        let extent = Extent::Groups([groups as u32, 1, 1]);
+        self.dispatch(encoder, noise, stage, &tile.sums, None, extent);
+    }
+
+    fn dispatch(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        pass: &Pass,
+        stage: Stage,
+        group: &wgpu::BindGroup,
+        brick: Option<&wgpu::BindGroup>,
+        extent: Extent<'_>,
+    ) {
+        let number = self.frame.stage_offset(self.stages.len());
+        self.stages.push(stage);
+        let LitFrame { look, sky, .. } = self.frame;
+        let bound = Bound { frame: group, stage: number, brick, look, sky: sky.as_ref() };
+        pass.record(encoder, bound, extent);
+    }
+}

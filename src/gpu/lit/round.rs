@@ -1,0 +1,235 @@
+//! The dispatches of some samples of every pixel of a tile, in their order.
+
+use std::ops::Range;
+
+use wgpu::BindGroup;
+
+use super::frame::Area;
+use super::look::Lit;
+use super::pass::Pass;
+use super::passes::{BySchedule, LitPasses, ShadePasses};
+use super::records::{LIST_OF_LIGHT, Stage};
+use crate::gpu::error::GpuError;
+use crate::gpu::scene_buffers::SceneBuffers;
+
+/// How many lights are searched before they are added: each has a bit.
+const BITS: usize = 32;
+
+/// One dispatch.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct Step<'a> {
+    pub(super) pass: &'a Pass,
+    pub(super) stage: Stage,
+    /// Group 1, if the pass works on a brick.
+    pub(super) brick: Option<&'a BindGroup>,
+    pub(super) work: Work,
+    /// Whether it searches, and so may take long.
+    pub(super) is_search: bool,
+    /// What has happened once it is done, and it is the last of its kind.
+    pub(in crate::gpu) moment: Option<Moment>,
+}
+
+/// What a dispatch works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Work {
+    /// One path for each pixel of an area and each sample.
+    Pixels(Area),
+    /// A list of paths; the area says by which box rays are moved.
+    List(Area),
+    /// One workgroup, which says how long a list is.
+    Advance,
+    /// The sums of all pixels.
+    Sums,
+}
+
+/// After which passes of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum Moment {
+    Started,
+    Extended,
+    Scattered,
+    Occluded,
+    Deposited,
+}
+
+/// What a round is made of.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct Round<'a> {
+    pub(in crate::gpu) passes: &'a LitPasses,
+    pub(in crate::gpu) lit: &'a Lit,
+    pub(in crate::gpu) scene: &'a SceneBuffers,
+    pub(in crate::gpu) occluders: &'a SceneBuffers,
+    /// How many paths the buffers have room for.
+    pub(in crate::gpu) room: u32,
+}
+
+impl<'a> Round<'a> {
+    /// The dispatches of some samples, which are followed together.
+    pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
+        let count = samples.end.saturating_sub(samples.start);
+        let stage = Stage {
+            sample: samples.start,
+            count,
+            paths: self.room,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let mut steps = Steps { round: *self, steps: Vec::new() };
+        let first = &self.scene.bricks()[0].surface_group;
+        steps.push(&self.passes.start, stage, Some(first), Work::Pixels(Area::Whole));
+        steps.mark(Moment::Started);
+        match &self.passes.shade {
+            ShadePasses::Studio { surface, shadow, illuminate, ambient, gather } => {
+                let passes = StudioPasses { surface, shadow, illuminate, ambient, gather };
+                steps.studio(stage, &passes)?;
+            }
+            ShadePasses::Path { scatter, occlude } => steps.path(stage, scatter, occlude)?,
+        }
+        steps.push(&self.passes.deposit, stage, None, Work::Sums);
+        steps.mark(Moment::Deposited);
+        Ok(steps.steps)
+    }
+}
+
+struct StudioPasses<'a> {
+    surface: &'a BySchedule,
+    shadow: &'a Pass,
+    illuminate: &'a Pass,
+    ambient: &'a Pass,
+    gather: &'a Pass,
+}
+
+struct Steps<'a> {
+    round: Round<'a>,
+    steps: Vec<Step<'a>>,
+}
+
+impl<'a> Steps<'a> {
+    fn push(&mut self, pass: &'a Pass, stage: Stage, brick: Option<&'a BindGroup>, work: Work) {
+        self.steps.push(Step { pass, stage, brick, work, is_search: false, moment: None });
+    }
+
+    fn push_search(&mut self, pass: &'a Pass, stage: Stage, brick: &'a BindGroup, work: Work) {
+        let brick = Some(brick);
+        self.steps.push(Step { pass, stage, brick, work, is_search: true, moment: None });
+    }
+
+    fn mark(&mut self, moment: Moment) {
+        if let Some(last) = self.steps.last_mut() {
+            last.moment = Some(moment);
+        }
+    }
+
+    /// What the rays meet at a surface: the camera's by pixels, others by lists.
+    fn extend(&mut self, stage: Stage) -> Result<(), GpuError> {
+        let (first, later) = &self.round.passes.extend;
+        for (turn, brick) in self.round.scene.bricks().iter().enumerate() {
+            let by = match (turn, later) {
+                (0, _) => first,
+                (_, Some(later)) => later,
+                (_, None) => return Err(GpuError::OtherRenderer),
+            };
+            let (pass, work) = by_surface(by, stage, Area::Seen);
+            self.push_search(pass, stage, &brick.trace_group, work);
+        }
+        Ok(())
+    }
+
+    /// A dispatch for every brick: each shades what it holds.
+    fn shade(&mut self, by: &'a BySchedule, stage: Stage) {
+        for brick in self.round.scene.bricks() {
+            // What the camera sees beside the scene is background.
+            let (pass, work) = by_surface(by, stage, Area::Whole);
+            self.push(pass, stage, Some(&brick.surface_group), work);
+        }
+    }
+
+    /// The stage of a surface; from the second on, the list of paths that go on is counted first.
+    fn surface(&mut self, stage: Stage, surface: u32, is_last: bool) -> Stage {
+        let list = surface.wrapping_sub(1) & 1;
+        let stage = Stage { surface, is_last: is_last.into(), list, ..stage };
+        if surface > 0 {
+            self.advance(Stage { is_new: 1, ..stage });
+        }
+        stage
+    }
+
+    fn advance(&mut self, stage: Stage) {
+        let stage = Stage { count: 0, first: [0, 0], ..stage };
+        self.push(&self.round.passes.advance, stage, None, Work::Advance);
+    }
+
+    /// Searches what casts shadows for all that look for light.
+    fn search_occluders(&mut self, pass: &'a Pass, stage: Stage, area: Area) {
+        for brick in self.round.occluders.bricks() {
+            self.push_search(pass, stage, &brick.trace_group, Work::List(area));
+        }
+    }
+
+    fn path(
+        &mut self,
+        stage: Stage,
+        scatter: &'a BySchedule,
+        occlude: &'a Pass,
+    ) -> Result<(), GpuError> {
+        let lit = self.round.lit;
+        for surface in 0..=lit.most_surfaces {
+            let stage = self.surface(stage, surface, surface == lit.most_surfaces);
+            self.extend(stage)?;
+            self.mark(Moment::Extended);
+            self.shade(scatter, stage);
+            self.mark(Moment::Scattered);
+            if lit.look.source_count > 0 && surface < lit.most_surfaces {
+                let stage = Stage { list: LIST_OF_LIGHT, ..stage };
+                self.advance(stage);
+                self.search_occluders(occlude, stage, Area::Seen);
+                self.mark(Moment::Occluded);
+            }
+        }
+        Ok(())
+    }
+
+    fn studio(&mut self, stage: Stage, passes: &StudioPasses<'a>) -> Result<(), GpuError> {
+        let lit = self.round.lit;
+        let first = &self.round.scene.bricks()[0].surface_group;
+        let lights = lit.casts_shadow.len() as u32;
+        let directions = lit.look.occlusion_samples;
+        for surface in 0..lit.most_surfaces {
+            let stage = self.surface(stage, surface, surface + 1 == lit.most_surfaces);
+            self.extend(stage)?;
+            self.shade(passes.surface, stage);
+            if lights == 0 && directions == 0 {
+                continue;
+            }
+            let stage = Stage { list: LIST_OF_LIGHT, ..stage };
+            self.advance(stage);
+            for light in (0..lights).step_by(BITS) {
+                let count = (lights - light).min(BITS as u32);
+                let casts = |light: &u32| lit.has_shadows && lit.casts_shadow[*light as usize];
+                for light in (light..light + count).filter(casts) {
+                    self.search_occluders(passes.shadow, Stage { light, ..stage }, Area::Occluders);
+                }
+                let stage = Stage { light, count, ..stage };
+                self.push(passes.illuminate, stage, Some(first), Work::List(Area::Whole));
+            }
+            for light in (0..directions).step_by(BITS) {
+                let count = (directions - light).min(BITS as u32);
+                for light in light..light + count {
+                    let stage = Stage { light, ..stage };
+                    self.search_occluders(passes.ambient, stage, Area::Occluders);
+                }
+                let stage = Stage { light, count, ..stage };
+                self.push(passes.gather, stage, Some(first), Work::List(Area::Whole));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The camera's rays are taken by pixels, those that surfaces send by lists.
+fn by_surface(by: &BySchedule, stage: Stage, area: Area) -> (&Pass, Work) {
+    if stage.surface == 0 {
+        (&by.pixels, Work::Pixels(area))
+    } else {
+        (&by.queue, Work::List(Area::Seen))
+    }
+}
