@@ -12,7 +12,8 @@ use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::records::{Frame, Hit, Status};
 use crate::gpu::scene_buffers::part;
 use crate::gpu::tiles::WORKGROUP_SIDE;
-use crate::lighting::{Lighting, SkyLight};
+use crate::lighting::SkyLight;
+use crate::render::{Integrator, RenderSettings};
 
 /// How many dispatches one submission has at most.
 pub(super) const MOST_STAGES: usize = 1024;
@@ -58,9 +59,9 @@ pub(super) fn lit_tile_size(limits: &wgpu::Limits, film: &Film) -> [u32; 2] {
 }
 
 /// The image that paths are lit by.
-pub(super) fn sky_image(lighting: &Lighting) -> Option<&Environment> {
-    match (&lighting.sky.light, lighting.studio()) {
-        (SkyLight::Image { environment, .. }, None) => Some(environment),
+pub(super) fn sky_image(lighting: &RenderSettings) -> Option<&Environment> {
+    match (&lighting.sky.light, &lighting.integrator) {
+        (SkyLight::Image { environment, .. }, Integrator::Path(_)) => Some(environment),
         _ => None,
     }
 }
@@ -72,7 +73,7 @@ impl TileBuffers {
         renderer: &LitRenderer,
         size: [u32; 2],
         lit: &Lit,
-        lighting: &Lighting,
+        lighting: &RenderSettings,
     ) -> Result<Self, GpuError> {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let bytes_of = |vectors: u64| pixels * 16 * vectors;

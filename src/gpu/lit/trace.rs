@@ -11,7 +11,7 @@ use super::renderer::Shaders;
 use super::run::Run;
 use crate::gpu::error::GpuError;
 use crate::gpu::tiles::Tile;
-use crate::lighting::{Integrator, Lighting, Studio};
+use crate::render::{Integrator, RenderSettings, Studio};
 
 /// How many lights are searched before they are added: each has a bit.
 const BITS: usize = 32;
@@ -22,7 +22,7 @@ impl Run<'_> {
         &mut self,
         samples: Range<u32>,
         lit: &Lit,
-        lighting: &Lighting,
+        lighting: &RenderSettings,
         tile: Tile,
     ) -> Result<Vec<[f32; 4]>, GpuError> {
         let buffers = self.tile;
@@ -44,7 +44,7 @@ impl Run<'_> {
         &mut self,
         sample: u32,
         lit: &Lit,
-        lighting: &Lighting,
+        lighting: &RenderSettings,
     ) -> Result<(), GpuError> {
         let stage = Stage { sample, surface: 0, is_last: 0, light: 0, count: 0 };
         let renderer = self.renderer;
@@ -52,6 +52,8 @@ impl Run<'_> {
         self.shade(&renderer.start, true, surface, stage)?;
         self.keep(Moment::Started)?;
         match &lighting.integrator {
+            // No sample of a lit picture.
+            Integrator::Primary(_) => {}
             Integrator::Studio(studio) => self.studio(stage, lit, studio)?,
             Integrator::Path(path) => self.path(stage, lit, path.max_depth)?,
         }
