@@ -14,7 +14,7 @@ use pinhole::accel::{
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
 use pinhole::gpu::{Headless, HeadlessOptions, Query};
-use pinhole::{Film, LinearRgb, Scene};
+use pinhole::{Film, LinearRgb, Scene, View};
 
 const CHOICES: [AccelChoice; 3] = [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];
 
@@ -108,12 +108,12 @@ fn on_adapter(
 ) {
     group.throughput(Throughput::Elements(film.pixel_count()));
     for choice in [AccelChoice::Grid, AccelChoice::Tree] {
-        let accel = headless.plan(scene, choice).build(scene.spheres());
-        let buffers = headless.upload(scene, &accel).unwrap();
+        let accel = headless.plan_accel(scene, choice).build(scene.spheres());
+        let buffers = headless.upload(scene, &accel.into()).unwrap();
         for (query, asked) in [(Query::Nearest, "nearest"), (Query::Any, "any")] {
             let name = format!("{}, {choice}, {asked}", headless.adapter_info().name);
             group.bench_function(name, |b| {
-                b.iter(|| headless.measure(&buffers, camera, &film, query).unwrap());
+                b.iter(|| headless.measure(&buffers, &View::new(camera, film), query).unwrap());
             });
         }
     }

@@ -7,16 +7,14 @@
 //! Times of one kind of ray are differences of pictures that differ in nothing else, over the number of such rays.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use pinhole::accel::AccelChoice;
 use pinhole::generate::Standard;
-use pinhole::gpu::{Headless, HeadlessOptions, LitDecision, LitPicture, LitScene, Progress, Query};
-use pinhole::lighting::{
-    Integrator, Light, LightSampling, Occlusion, PathTracing, Sampling, Sky, SkyLight, Studio,
-};
-use pinhole::{Film, LayerSet, Lighting, LinearRgb, PixelFilter, Scene, Settings, Shading};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, Query, SceneBuffers};
+use pinhole::lighting::{Light, Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
+use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
 
 /// How often everything is measured; the best counts.
 const TURNS: usize = 5;
@@ -37,37 +35,34 @@ fn main() {
 
 struct Subject<'a> {
     headless: &'a Headless,
-    scene: Scene,
-    lit: LitScene,
-    camera: pinhole::camera::PinholeCamera,
-    film: Film,
+    scene: SceneBuffers,
+    view: View<'a>,
 }
 
 impl Subject<'_> {
-    fn picture(&self, lighting: &Lighting) -> (f64, LitPicture) {
+    fn picture(&self, settings: &RenderSettings) -> (f64, Picture) {
         let started = Instant::now();
-        let view = (&self.camera as &dyn pinhole::camera::Camera, &self.film);
-        let go_on = &mut |_: &_| LitDecision::GoOn;
+        let go_on = &mut |_: &_| Decision::GoOn;
         let picture = self
             .headless
-            .render_lit_uploaded(&self.scene, &self.lit, view, lighting, LayerSet::COLOR, go_on)
+            .render_uploaded(&self.scene, &self.view, settings, LayerSet::COLOR, go_on)
             .unwrap();
         (started.elapsed().as_secs_f64(), picture)
     }
 }
 
-fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Lighting {
+fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> RenderSettings {
     let studio = Studio { occlusion, ..Studio::default() };
-    Lighting {
+    RenderSettings {
         integrator: Integrator::Studio(studio),
         lights,
         sampling: Sampling { samples, seed: 0, filter: PixelFilter::Box },
-        ..Lighting::default()
+        ..RenderSettings::studio()
     }
 }
 
 /// Grey spheres under a white sky, without direct light: one ray a bounce.
-fn path(samples: u32, max_depth: u32) -> Lighting {
+fn path(samples: u32, max_depth: u32) -> RenderSettings {
     let light_sampling = LightSampling::Chance;
     let mut lighting = studio(samples, None, Vec::new());
     lighting.integrator =
@@ -80,10 +75,10 @@ fn measure(headless: &Headless, standard: Standard) {
     let grey = LinearRgb::from_srgb8([128, 128, 128]);
     let scene = Scene::from_f32(standard.spheres().unwrap(), grey).unwrap();
     let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
-    let accel = headless.plan(&scene, AccelChoice::Auto).build(scene.spheres());
-    let uploaded = headless.upload(&scene, &accel).unwrap();
-    let lit = headless.upload_lit(&scene, &accel).unwrap();
-    let subject = Subject { headless, scene, lit, camera, film };
+    let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = headless.upload(&scene, &accel.into()).unwrap();
+    let view = View::new(&camera, film);
+    let subject = Subject { headless, scene: buffers, view };
     const RAYS: u32 = 4;
     let near = Occlusion { radius: Some(0.02), samples: RAYS };
     let far = Occlusion { radius: None, samples: RAYS };
@@ -105,31 +100,18 @@ fn measure(headless: &Headless, standard: Standard) {
     let mut bare = f64::INFINITY;
     let (mut plain, mut traced) = ([f64::INFINITY; 2], 0);
     for _ in 0..TURNS {
-        let time = headless.measure(&uploaded, &subject.camera, &film, Query::Nearest).unwrap();
+        let time = headless.measure(&subject.scene, &view, Query::Nearest).unwrap();
+        traced = time.pixels;
         bare = bare.min(time.wall.as_secs_f64());
         for (best, shading) in plain.iter_mut().zip([Shading::Flat, Shading::Headlight]) {
-            let settings = Settings::default().with_shading(shading);
-            let watch = &mut |progress: Progress| {
-                traced = progress.total;
-                ControlFlow::Continue(())
-            };
-            let started = Instant::now();
-            headless
-                .render_uploaded(
-                    &uploaded,
-                    &subject.camera,
-                    &film,
-                    &settings,
-                    LayerSet::COLOR,
-                    watch,
-                )
-                .unwrap();
-            *best = best.min(started.elapsed().as_secs_f64());
+            let integrator = Integrator::Primary(shading);
+            let settings = RenderSettings { integrator, ..RenderSettings::default() };
+            *best = best.min(subject.picture(&settings).0);
         }
-        for (index, (_, lighting)) in pictures.iter().enumerate() {
-            let (seconds, picture) = subject.picture(lighting);
+        for (index, (_, settings)) in pictures.iter().enumerate() {
+            let (seconds, picture) = subject.picture(settings);
             best[index] = best[index].min(seconds);
-            hits[index] = picture.hits / f64::from(picture.samples);
+            hits[index] = picture.hits.unwrap() / f64::from(picture.samples);
         }
     }
     let pixels = film.pixel_count() as f64;

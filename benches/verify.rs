@@ -8,7 +8,6 @@
 //! ```
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
-use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use pinhole::accel::AccelChoice;
@@ -16,9 +15,9 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::DVec3;
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{Headless, HeadlessOptions, Query, ShaderEdit};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, ShaderEdit, Structures};
 use pinhole::verify::{Certificate, Checker, Recording, Verdict};
-use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, cpu};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 #[path = "../tests/support/spheres.rs"]
 #[allow(dead_code, reason = "tests use all of them")]
@@ -50,10 +49,11 @@ fn grey(spheres: Vec<[f32; 4]>) -> Scene {
 }
 
 fn record(headless: &Headless, scene: &Scene, camera: &dyn Camera, film: &Film) -> Recording {
-    let accel = headless.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
-    let buffers = headless.upload(scene, &accel).unwrap();
-    let go_on = |_| ControlFlow::Continue(());
-    headless.record(&buffers, camera, film, &Settings::default(), &mut { go_on }).unwrap()
+    let (view, settings) = (View::new(camera, *film), RenderSettings::default());
+    let plan = headless.plan(scene, &view, &settings, LayerSet::DATA, AccelChoice::Auto, 0);
+    let buffers = headless.upload(scene, &plan.build(scene)).unwrap();
+    let go_on = |_: &_| Decision::GoOn;
+    headless.record(&buffers, &view, &settings, &mut { go_on }).unwrap()
 }
 
 /// One row of a table.
@@ -126,7 +126,13 @@ fn cost(headless: &Headless) {
         let (mut reference, mut check) = (Duration::MAX, Duration::MAX);
         for _ in 0..5 {
             let started = Instant::now();
-            cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::DATA).unwrap();
+            cpu::render(
+                &scene,
+                &View::new(&camera, film),
+                &RenderSettings::default(),
+                LayerSet::DATA,
+            )
+            .unwrap();
             reference = reference.min(started.elapsed());
             let started = Instant::now();
             let certificate = Checker::new(&scene).unwrap().certify(&recording);
@@ -161,14 +167,16 @@ fn fences(fenced: &Headless) {
         let scene = grey(standard.spheres().unwrap());
         let (camera, film) = (standard.camera().unwrap(), standard.film().unwrap());
         for choice in [AccelChoice::Auto, AccelChoice::Tree] {
-            let accel = fenced.plan(&scene, choice).build(scene.spheres());
+            let structures: Structures =
+                fenced.plan_accel(&scene, choice).build(scene.spheres()).into();
             let devices = [fenced, &bare];
-            let buffers = devices.map(|headless| headless.upload(&scene, &accel).unwrap());
+            let buffers = devices.map(|headless| headless.upload(&scene, &structures).unwrap());
             let mut best = [Duration::MAX; 2];
             for round in 0..=ROUNDS {
                 for (which, headless) in devices.into_iter().enumerate() {
-                    let time =
-                        headless.measure(&buffers[which], &camera, &film, Query::Nearest).unwrap();
+                    let time = headless
+                        .measure(&buffers[which], &View::new(&camera, film), Query::Nearest)
+                        .unwrap();
                     // A software device's own clock counts only what it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
@@ -182,7 +190,7 @@ fn fences(fenced: &Headless) {
             println!(
                 "{}, {}: {with:.2} ms with fences, {without:.2} without, {:+.1} %",
                 standard.name(),
-                accel.structure().name(),
+                structures.accel.structure().name(),
                 100.0 * (with / without - 1.0)
             );
         }

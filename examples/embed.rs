@@ -12,7 +12,7 @@ use std::error::Error;
 
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets, adapter, wgpu};
-use pinhole::{Film, LinearRgb, Scene, Settings, Sphere};
+use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let film = Film::new(WIDTH, HEIGHT)?;
     let pose = Pose::looking_at([7.0, 5.0, 10.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     let camera = PinholeCamera::with_vertical_fov(pose, 40_f64.to_radians(), film.aspect())?;
-    frame.set_view(&queue, &scene, &camera, &film, &Settings::default())?;
+    frame.set_view(&queue, &scene, &View::new(&camera, film), &RenderSettings::default())?;
 
     // Every frame: the host's encoder, with the host's own work before and after.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -1,24 +1,29 @@
 //! Ray traces spheres with WGSL compute shaders, without a display, and checks its pictures against a
 //! CPU reference.
 //!
-//! A [`Scene`] holds spheres that have been checked. A [`Camera`](camera::Camera) answers which ray
-//! belongs to a place in the picture, a [`Film`] has the picture's size, and
-//! [`Settings`] say how hits become colours. From these four, [`cpu::render`] makes
+//! A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which answers which ray
+//! belongs to a place in the picture, with a [`Film`], which has the picture's size.
+//! [`RenderSettings`] say how rays become colours: by what they meet first, by the lights of a studio, or
+//! along paths. From these three, [`cpu::render`] makes
 //! an [`Image`] in f64, slowly and simply, and the module `gpu` makes the same image with
 //! compute shaders: [`gpu::Headless`] on a device of its own, [`gpu::Renderer`] inside the frame of a
 //! program that already uses wgpu.
 //!
 //! ```
 //! use pinhole::camera::{PinholeCamera, Pose};
-//! use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Sphere, cpu};
+//! use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 //!
 //! let scene = Scene::new(&[Sphere::new([0.0, 0.0, 0.0], 1.0, LinearRgb::from_srgb8([255, 0, 0]))])?;
 //! let film = Film::new(64, 48)?;
 //! let pose = Pose::looking_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
 //! let camera = PinholeCamera::with_vertical_fov(pose, 0.5, film.aspect())?;
-//! let image = cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::DATA)?;
+//! let view = View::new(&camera, film);
+//! let image = cpu::render(&scene, &view, &RenderSettings::default(), LayerSet::DATA)?;
 //! assert_eq!(image.id().unwrap()[24 * 64 + 32], 0);
 //! assert!((image.depth().unwrap()[24 * 64 + 32] - 4.0).abs() < 1e-3);
+//! // The same with lights, shadows and soft ambient light; `RenderSettings::path()` follows light along paths.
+//! let lit = cpu::render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
+//! assert_eq!(lit.color().len(), 64 * 48);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -65,27 +70,27 @@ mod parallel;
 pub mod points;
 pub mod range;
 pub mod ray;
+pub mod render;
 pub mod sampling;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
-pub mod settings;
 pub mod sphere;
 mod text;
 pub mod tone;
 pub mod verify;
 
+pub use camera::View;
 pub use color::LinearRgb;
 pub use encoding::Encoding;
 pub use environment::Environment;
 pub use film::Film;
 pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
-pub use lighting::Lighting;
 pub use material::{Finish, Material};
 pub use points::Points;
+pub use render::{Integrator, RenderSettings, Shading};
 pub use scene::Scene;
-pub use settings::{Settings, Shading};
 pub use sphere::Sphere;
 pub use tone::ToneCurve;
 

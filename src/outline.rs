@@ -1,7 +1,7 @@
 //! Lines around shapes, drawn into a picture by its data layers.
 
 use crate::image::{Image, Layer, LayerSet, NO_ID};
-use crate::lighting::Outline;
+use crate::render::Outline;
 
 /// The layers that lines are found by.
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);

@@ -38,8 +38,20 @@ pub(crate) struct SceneColors {
 
 impl SceneColors {
     /// All spheres have one.
-    fn one(color: LinearRgb) -> Self {
+    pub(crate) fn one(color: LinearRgb) -> Self {
         Self { palette: vec![color], finishes: vec![Finish::default()], indices: None }
+    }
+
+    pub(crate) fn palette(&self) -> &[LinearRgb] {
+        &self.palette
+    }
+
+    pub(crate) fn finishes(&self) -> &[Finish] {
+        &self.finishes
+    }
+
+    pub(crate) fn indices(&self) -> Option<&[u32]> {
+        self.indices.as_deref()
     }
 
     /// The colour of a sphere, by its index in input order; `None` if there is no such sphere, but where all
@@ -260,7 +272,6 @@ impl Scene {
         self.colors.indices.as_deref()
     }
 
-    #[cfg(feature = "gpu")]
     pub(crate) fn colors(&self) -> &Arc<SceneColors> {
         &self.colors
     }

@@ -19,6 +19,7 @@ mod pose;
 #[cfg(feature = "scene-file")]
 mod stereo;
 mod thin_lens;
+mod view;
 
 pub use fisheye::FisheyeCamera;
 #[cfg(feature = "scene-file")]
@@ -40,6 +41,7 @@ pub use stereo::StereoParameters;
 pub use thin_lens::ThinLensCamera;
 #[cfg(feature = "scene-file")]
 pub use thin_lens::ThinLensParameters;
+pub use view::View;
 
 /// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
 ///

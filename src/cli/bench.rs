@@ -14,9 +14,12 @@ use super::input::parse_size;
 use super::speak::{answer, tell};
 use super::{interrupt, memory, process, progress, threads};
 use crate::accel::{AccelChoice, Structure};
-use crate::gpu::{GpuError, Headless, Query, SceneBuffers, TraceTime};
+use crate::camera::View;
+use crate::gpu::{
+    GpuError, Headless, PictureRequest, Query, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
+};
 use crate::image::LayerSet;
-use crate::settings::Settings;
+use crate::render::RenderSettings;
 
 pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let size = args.size.as_deref().map(parse_size).transpose()?;
@@ -65,7 +68,7 @@ fn measure_scene(
 ) -> Result<SceneReport, Failure> {
     let mut choices: Vec<AccelChoice> = args.accel.iter().map(|accel| (*accel).into()).collect();
     if choices.is_empty() {
-        let planned = headless.plan(&scene.scene, AccelChoice::Auto).structure;
+        let planned = headless.plan_accel(&scene.scene, AccelChoice::Auto).structure;
         let other = match planned {
             Structure::WideTree => AccelChoice::Grid,
             _ => AccelChoice::Tree,
@@ -90,9 +93,18 @@ fn measure(
     let failed = |error: GpuError| explained(headless, &error);
     progress::stage(format!("{name}: building, {choice}"));
     let started = Instant::now();
-    let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-    let accel = headless.plan(spheres, choice);
-    let plan = headless.plan_render(spheres, accel, film, LayerSet::COLOR, encoding);
+    let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
+    let request = PictureRequest {
+        scene: spheres,
+        view,
+        settings: &settings,
+        layers: LayerSet::COLOR,
+        host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
+    };
+    // For many pictures, not for this one.
+    let accel = headless.plan_accel(spheres, choice);
+    let structures = StructurePlans { accel, occluders: None };
+    let plan = RenderPlan::new(&request, structures, &headless.device_limits());
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
     tell(format_args!(
         "{name}: {}, at most {} on the device, and {} of the host's memory beside the scene and the driver",
@@ -100,26 +112,26 @@ fn measure(
         memory::readable(plan.device_bytes),
         memory::readable(plan.host_bytes),
     ));
-    let accel = plan.accel.build(spheres.spheres());
+    let structures = plan.build(spheres);
     let build = started.elapsed();
-    let structure = accel.structure();
+    let structure = structures.accel.structure();
 
     let started = Instant::now();
-    let buffers = interrupt::on_device(|| headless.upload(spheres, &accel))?.map_err(failed)?;
-    drop(accel);
+    let buffers =
+        interrupt::on_device(|| headless.upload(spheres, &structures))?.map_err(failed)?;
+    drop(structures);
     let upload = started.elapsed();
 
     progress::stage(format!("{name}: first render, {}", structure.name()));
     let started = Instant::now();
     let first = interrupt::on_device(|| {
-        let mut watch = |_| interrupt::decide();
-        let (camera, settings) = (camera.as_ref(), &Settings::default());
-        headless.render_uploaded(&buffers, camera, film, settings, LayerSet::COLOR, &mut watch)
+        let watch = &mut |_: &_| interrupt::decide();
+        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch)
     })?;
     first.map(drop).map_err(failed)?;
     let first_render = started.elapsed();
 
-    let repeat = |query| repeat(headless, &buffers, scene, query, reps);
+    let repeat = |query| repeat(headless, &buffers, name, &view, query, reps);
     let (nearest, any) = (repeat(Query::Nearest)?, repeat(Query::Any)?);
     let longest = nearest.iter().map(|time| time.longest).max().unwrap_or_default();
     // The scene as it was built; the frame as it was planned.
@@ -163,16 +175,15 @@ fn measure(
 fn repeat(
     headless: &Headless,
     buffers: &SceneBuffers,
-    scene: &BenchScene,
+    name: &str,
+    view: &View<'_>,
     query: Query,
     reps: u32,
 ) -> Result<Vec<TraceTime>, Failure> {
-    let BenchScene { name, camera, film, .. } = scene;
     (0..reps)
         .map(|rep| {
             progress::stage(format!("{name}: {query:?} hit, {} of {reps}", rep + 1));
-            let time =
-                interrupt::on_device(|| headless.measure(buffers, camera.as_ref(), film, query))?;
+            let time = interrupt::on_device(|| headless.measure(buffers, view, query))?;
             time.map_err(|error| explained(headless, &error))
         })
         .collect()

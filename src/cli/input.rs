@@ -13,16 +13,15 @@ use super::failure::Failure;
 use super::light::{self, LightFlags};
 use super::memory;
 use super::progress;
-use crate::camera::{Camera, CameraError, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters, View};
 use crate::color::LinearRgb;
 use crate::encoding::Encoding;
 use crate::environment::Environment;
 use crate::film::Film;
 use crate::io::{environment, xyz};
-use crate::lighting::Lighting;
+use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::scene_file::{DEFAULT_COLOR, IntegratorKind, SceneFile};
-use crate::settings::Settings;
 
 /// Everything that a render needs.
 pub(super) struct Input {
@@ -32,16 +31,22 @@ pub(super) struct Input {
     /// Left and right, if there are two.
     pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(super) film: Film,
-    pub(super) settings: Settings,
+    /// How the picture is made.
+    pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
-    /// How the picture is lit, if it is.
-    pub(super) lighting: Option<Lighting>,
     /// What says how large the picture is: a flag or a file.
     pub(super) size_from: String,
     /// What the user should know although it is no error.
     pub(super) notes: Vec<String>,
     /// The files that were read.
     pub(super) files: Vec<PathBuf>,
+}
+
+impl Input {
+    /// What the camera, or the one between two eyes, sees.
+    pub(super) fn view(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
 }
 
 /// What a file is.
@@ -182,22 +187,10 @@ impl Source {
         }
         let parameters = self.camera.unwrap_or_default();
         let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(place)?;
-        let (settings, encoding) = (Settings::default(), Encoding::default());
+        let settings = self.light.over(light::plain(self.light.integrator(None)))?;
+        let encoding = Encoding::default();
         let files = vec![path.clone()];
-        let lighting = self.light.integrator(None).map(light::plain);
-        let lighting = lighting.map(|lighting| self.light.over(lighting)).transpose()?;
-        Ok(Input {
-            scene,
-            camera,
-            eyes,
-            film,
-            settings,
-            encoding,
-            lighting,
-            size_from,
-            notes,
-            files,
-        })
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
@@ -206,7 +199,7 @@ impl Source {
         let file = SceneFile::parse(text).with_context(place)?;
         let (data, color, notes) = self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator());
-        let sky_file = file.sky_image().filter(|_| kind == Some(IntegratorKind::Path));
+        let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_file = sky_file.map(|file| self.beside(file));
         let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.beside(&data.file));
@@ -226,22 +219,10 @@ impl Source {
                 file.stereo_pair(&film, &scene).with_context(place)?,
             ),
         };
-        let lighting = kind.map(|kind| file.lighting(kind, &scene, camera.as_ref(), image));
-        let lighting = lighting.transpose().with_context(place)?;
-        let lighting = lighting.map(|lighting| self.light.over(lighting)).transpose()?;
-        let SceneFile { settings, encoding, .. } = file;
-        Ok(Input {
-            scene,
-            camera,
-            eyes,
-            film,
-            settings,
-            encoding,
-            lighting,
-            size_from,
-            notes,
-            files,
-        })
+        let settings = file.settings(kind, &scene, camera.as_ref(), image).with_context(place)?;
+        let settings = self.light.over(settings)?;
+        let encoding = file.encoding;
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
     /// The image of a sky.

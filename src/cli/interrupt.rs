@@ -4,8 +4,6 @@
 //! second signal exits. What is being written has no name yet and is removed; files get their names under
 //! the lock that a signal needs, so that there are all of them or none.
 
-#[cfg(feature = "gpu")]
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -16,6 +14,8 @@ use super::failure::{Failure, NOTHING_WRITTEN, STOPPED};
 use super::process::ignores_hang_up;
 use super::progress;
 use super::speak::tell;
+#[cfg(feature = "gpu")]
+use crate::gpu::Decision;
 
 static STATE: Mutex<State> = Mutex::new(State {
     phase: Phase::Free,
@@ -108,10 +108,16 @@ pub(super) fn on_device_keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     (result, std::mem::take(&mut state.is_requested))
 }
 
+/// Whether the program was asked to end, so that work on the device should stop.
+#[cfg(feature = "gpu")]
+pub(super) fn is_requested() -> bool {
+    state().is_requested
+}
+
 /// Whether the work on the device should go on.
 #[cfg(feature = "gpu")]
-pub(super) fn decide() -> ControlFlow<()> {
-    if state().is_requested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+pub(super) fn decide() -> Decision {
+    if is_requested() { Decision::Stop } else { Decision::GoOn }
 }
 
 /// Creates a file that is removed if the program is stopped.

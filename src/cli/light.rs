@@ -1,15 +1,11 @@
-//! Light on the command line: flags that take the place of a scene file's keys, and what to say of a lighting.
+//! Light on the command line: flags that take the place of a scene file's keys.
 
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
 use crate::filter::PixelFilter;
-use crate::lighting::{
-    Integrator, LightKind, Lighting, Occlusion, Outline, PathTracing, Sampling, SkyLight, Studio,
-};
-use crate::material::Material;
 use crate::range::RangeError;
-use crate::scene::Scene;
+use crate::render::{Integrator, Occlusion, Outline, RenderSettings, Sampling, Studio};
 use crate::scene_file::IntegratorKind;
 
 /// Of each flag, because clap puts whatever follows below a heading that is set once.
@@ -18,7 +14,7 @@ const HEADING: &str =
 
 #[derive(Debug, Args)]
 pub(super) struct LightArgs {
-    /// How light is followed [default: the scene's, or studio]
+    /// How light is followed [default: the scene's; studio if another flag asks for light, or primary]
     #[arg(long, help_heading = HEADING, value_enum)]
     integrator: Option<IntegratorArg>,
     /// Samples of each pixel, up to 16777216 [default: the scene's, or 16]
@@ -50,6 +46,8 @@ pub(super) struct LightArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum IntegratorArg {
+    /// Not at all: the color of what the ray through a pixel's center meets first
+    Primary,
     /// Directly from lights to surfaces: shadows, ambient occlusion, opacity, outlines
     Studio,
     /// As it is scattered: path tracing
@@ -103,6 +101,7 @@ impl LightFlags {
         add_to_studio(&mut studio, None, outline);
         studio.check().map_err(|error| refused("outline", &error))?;
         let integrator = args.integrator.map(|integrator| match integrator {
+            IntegratorArg::Primary => IntegratorKind::Primary,
             IntegratorArg::Studio => IntegratorKind::Studio,
             IntegratorArg::Path => IntegratorKind::Path,
         });
@@ -115,40 +114,52 @@ impl LightFlags {
         Self { is_open_ended: true, ..self }
     }
 
-    /// How light is followed, if there is to be any.
-    pub(super) fn integrator(&self, scene: Option<IntegratorKind>) -> Option<IntegratorKind> {
+    /// How the picture is made, of a scene that may say so as well.
+    pub(super) fn integrator(&self, scene: Option<IntegratorKind>) -> IntegratorKind {
+        let by_flags = self.for_light().next().map(|_| IntegratorKind::Studio);
+        self.integrator.or(scene).or(by_flags).unwrap_or_default()
+    }
+
+    /// The flags that were given and ask for light.
+    fn for_light(&self) -> impl Iterator<Item = &'static str> {
         let given = [
-            self.samples.is_some(),
-            self.seed.is_some(),
-            self.filter.is_some(),
-            self.ao.is_some(),
-            self.outline.is_some(),
-            self.denoise,
-            self.is_open_ended,
+            ("--samples", self.samples.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--filter", self.filter.is_some()),
+            ("--ao", self.ao.is_some()),
+            ("--outline", self.outline.is_some()),
+            ("--denoise", self.denoise),
+            ("--time or --noise", self.is_open_ended),
         ];
-        let by_flags = given.contains(&true).then_some(IntegratorKind::Studio);
-        self.integrator.or(scene).or(by_flags)
+        given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag)
     }
 
     /// Flags come before what a scene says.
-    pub(super) fn over(&self, mut lighting: Lighting) -> Result<Lighting, Failure> {
-        let sampling = &mut lighting.sampling;
+    pub(super) fn over(&self, mut settings: RenderSettings) -> Result<RenderSettings, Failure> {
+        if let (Integrator::Primary(_), Some(flag)) =
+            (&settings.integrator, self.for_light().next())
+        {
+            return Err(Failure::usage(format!(
+                "{flag} concerns the integrators `studio` and `path`, and this picture is made by `primary`; drop one"
+            )));
+        }
+        let sampling = &mut settings.sampling;
         let most = if self.is_open_ended { Sampling::MAX_SAMPLES } else { sampling.samples };
         sampling.samples = self.samples.unwrap_or(most);
         sampling.seed = self.seed.unwrap_or(sampling.seed);
         sampling.filter = self.filter.unwrap_or(sampling.filter);
-        lighting.is_denoised |= self.denoise;
+        settings.is_denoised |= self.denoise;
         let flag = if self.ao.is_some() { "--ao" } else { "--outline" };
-        match &mut lighting.integrator {
+        match &mut settings.integrator {
             Integrator::Studio(studio) => add_to_studio(studio, self.ao, self.outline),
             Integrator::Path(_) if self.ao.is_some() || self.outline.is_some() => {
                 return Err(Failure::usage(format!(
                     "{flag} concerns the integrator `studio`, and this picture is made by `path`; drop one"
                 )));
             }
-            Integrator::Path(_) => {}
+            Integrator::Primary(_) | Integrator::Path(_) => {}
         }
-        Ok(lighting)
+        Ok(settings)
     }
 }
 
@@ -161,62 +172,11 @@ fn add_to_studio(studio: &mut Studio, ao: Option<u32>, outline: Option<f32>) {
     }
 }
 
-/// The lighting of a scene that says nothing of it.
-pub(super) fn plain(kind: IntegratorKind) -> Lighting {
-    let integrator = match kind {
-        IntegratorKind::Studio => Integrator::Studio(Studio::default()),
-        IntegratorKind::Path => Integrator::Path(PathTracing::default()),
-    };
-    Lighting { integrator, ..Lighting::default() }
-}
-
-/// What the user should know of a lighting although it is no error.
-pub(super) fn notes(lighting: &Lighting, scene: &Scene) -> Vec<String> {
-    let mut notes = Vec::new();
-    if is_dark(lighting, scene) {
-        notes.push(
-            "no light: nothing shines on this scene, and its spheres will be black; add \
-             [[lights]], or give something that is there a color and a strength"
-                .to_owned(),
-        );
+/// The settings of a scene that says nothing of light.
+pub(super) fn plain(kind: IntegratorKind) -> RenderSettings {
+    match kind {
+        IntegratorKind::Primary => RenderSettings::default(),
+        IntegratorKind::Studio => RenderSettings::studio(),
+        IntegratorKind::Path => RenderSettings::path(),
     }
-    let needs_paths = |material: &Material| {
-        matches!(material, Material::Conductor { .. } | Material::Dielectric { .. })
-    };
-    if lighting.studio().is_some()
-        && scene.finishes().iter().any(|finish| needs_paths(&finish.material))
-    {
-        notes.push(
-            "metal and glass are matt in a studio; the integrator `path` shows what they are"
-                .to_owned(),
-        );
-    }
-    notes
-}
-
-/// Whether nothing shines at all.
-fn is_dark(lighting: &Lighting, scene: &Scene) -> bool {
-    let is_black = |color: &crate::LinearRgb| *color == crate::LinearRgb::BLACK;
-    let is_lit = lighting.lights.iter().any(|light| {
-        !is_black(match &light.kind {
-            LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
-            LightKind::Point { intensity, .. } => intensity,
-            LightKind::Sphere { radiance, .. } => radiance,
-        })
-    });
-    let from_around = match (&lighting.integrator, &lighting.sky.light) {
-        (Integrator::Studio(studio), _) => !is_black(&studio.ambient),
-        (Integrator::Path(_), SkyLight::Constant(color)) => !is_black(color),
-        (Integrator::Path(_), SkyLight::Gradient { zenith, horizon, nadir }) => {
-            [zenith, horizon, nadir].into_iter().any(|color| !is_black(color))
-        }
-        (Integrator::Path(_), SkyLight::Image { environment, strength, .. }) => {
-            environment.has_light() && *strength > 0.0
-        }
-    };
-    let shines = |(color, finish): (&crate::LinearRgb, &crate::Finish)| match finish.material {
-        Material::Emissive { strength } => strength > 0.0 && !is_black(color),
-        _ => false,
-    };
-    !is_lit && !from_around && !scene.palette().iter().zip(scene.finishes()).any(shines)
 }

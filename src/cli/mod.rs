@@ -35,7 +35,6 @@ mod plan;
 mod process;
 mod progress;
 mod render;
-mod render_lit;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;

@@ -1,4 +1,4 @@
-//! How long a lit picture is worked on: for a time, until little noise is left, or until a signal.
+//! How long a picture is worked on: for a time, until little noise is left, or until a signal.
 
 use std::time::Duration;
 #[cfg(feature = "gpu")]
@@ -10,7 +10,7 @@ use super::failure::Failure;
 #[cfg(feature = "gpu")]
 use super::{interrupt, progress};
 #[cfg(feature = "gpu")]
-use crate::gpu::{LitDecision, LitProgress};
+use crate::gpu::{Decision, Progress};
 
 /// As of [`super::light::LightArgs`].
 const HEADING: &str =
@@ -117,6 +117,9 @@ fn parse_time(text: &str) -> Result<Duration, Failure> {
 pub(super) struct Watching {
     patience: Patience,
     time: Option<Duration>,
+    /// Of a lit picture; others have no noise.
+    measures_noise: bool,
+    is_lit: bool,
     pixels: u64,
     started: Instant,
 }
@@ -124,30 +127,40 @@ pub(super) struct Watching {
 #[cfg(feature = "gpu")]
 impl Watching {
     /// From now on; all pictures share the time.
-    pub(super) fn new(patience: Patience, pictures: usize, pixels: u64) -> Self {
+    pub(super) fn new(patience: Patience, pictures: usize, pixels: u64, is_lit: bool) -> Self {
         let time = patience.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
-        Self { patience, time, pixels, started: Instant::now() }
+        let measures_noise = is_lit && (patience.noise.is_some() || progress::is_seen());
+        Self { patience, time, measures_noise, is_lit, pixels, started: Instant::now() }
     }
 
     /// Shows how far it is, and decides how it goes on.
-    pub(super) fn decide(&self, progress: &LitProgress) -> LitDecision {
+    pub(super) fn decide(&self, progress: &Progress) -> Decision {
         let elapsed = self.started.elapsed();
         self.show(progress, elapsed);
         let has_any = progress.samples > 0;
-        if interrupt::decide().is_break() {
+        if interrupt::is_requested() {
             return match (self.patience.keep_partial, has_any) {
-                (false, _) => LitDecision::Stop,
-                (true, false) => LitDecision::GoOn,
-                (true, true) => LitDecision::Finish,
+                (false, _) => Decision::Stop,
+                (true, false) => Decision::GoOn,
+                (true, true) => Decision::Finish,
             };
         }
         let is_late = self.time.is_some_and(|time| elapsed >= time);
         let is_smooth = progress.samples >= LEAST_SAMPLES
             && self.patience.noise.zip(progress.noise).is_some_and(|(most, noise)| noise <= most);
-        if has_any && (is_late || is_smooth) { LitDecision::Finish } else { LitDecision::GoOn }
+        if has_any && (is_late || is_smooth) {
+            Decision::Finish
+        } else if self.measures_noise {
+            Decision::MeasureNoise
+        } else {
+            Decision::GoOn
+        }
     }
 
-    fn show(&self, progress: &LitProgress, elapsed: Duration) {
+    fn show(&self, progress: &Progress, elapsed: Duration) {
+        if !self.is_lit {
+            return progress::tracing(progress.part);
+        }
         let seconds = elapsed.as_secs_f64();
         let by_time = self.time.map_or(0.0, |time| seconds / time.as_secs_f64());
         // Noise falls with the root of the samples.

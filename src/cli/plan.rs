@@ -11,7 +11,7 @@ use super::input::{Input, Source};
 use super::light::LightFlags;
 use super::memory;
 use super::progress;
-use super::render_lit;
+use super::render;
 use super::speak::{answer, tell};
 use super::table::table;
 use super::threads;
@@ -102,17 +102,8 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
     progress::stage("planning");
-    let beside = Views::of(&input).bytes_beside(layers);
     let choice = choice(args.accel.accel);
-    let plan = match &input.lighting {
-        Some(lighting) => {
-            render_lit::plan(&headless, &input, lighting, &Views::of(&input), layers, choice)
-        }
-        None => {
-            let accel = headless.plan_once(&input.scene, choice, &input.film);
-            headless.plan_render(&input.scene, accel, &input.film, layers, beside)
-        }
-    };
+    let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
     let available = memory::available();
     let verdict = plan
         .check(&headless.device().limits(), available)

@@ -51,36 +51,42 @@ pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     }
 }
 
-/// Shows how much is traced.
+/// Whether there is somebody to show progress to.
 #[cfg(feature = "gpu")]
-pub(super) fn tracing(done: u64, total: u64) {
-    let mut line = line();
-    if !line.is_seen() {
-        return;
-    }
-    if line.total != Some(total) {
-        let template = "tracing [{bar:40}] {percent}%, {eta} left";
-        line.show(ProgressBar::new(total), template, Some(total));
-    }
-    if let Some(bar) = &line.bar {
-        bar.set_position(done);
-    }
+pub(super) fn is_seen() -> bool {
+    line().is_seen()
+}
+
+/// Into how many steps a bar is divided.
+#[cfg(feature = "gpu")]
+const STEPS: u64 = 10_000;
+
+/// Shows how much is traced, from 0 to 1.
+#[cfg(feature = "gpu")]
+pub(super) fn tracing(part: f64) {
+    show_part(part, "tracing [{bar:40}] {percent}%, {eta} left", None);
 }
 
 /// Shows how far a lit picture is, from 0 to 1, and what else there is to say.
 #[cfg(feature = "gpu")]
 pub(super) fn rendering(part: f64, message: String) {
-    const STEPS: u64 = 10_000;
+    let template = "rendering [{bar:20}] {percent}%, {eta} left; {wide_msg}";
+    show_part(part, template, Some(message));
+}
+
+#[cfg(feature = "gpu")]
+fn show_part(part: f64, template: &str, message: Option<String>) {
     let mut line = line();
     if !line.is_seen() {
         return;
     }
     if line.total != Some(STEPS) {
-        let template = "rendering [{bar:20}] {percent}%, {eta} left; {wide_msg}";
         line.show(ProgressBar::new(STEPS), template, Some(STEPS));
     }
     if let Some(bar) = &line.bar {
-        bar.set_message(message);
+        if let Some(message) = message {
+            bar.set_message(message);
+        }
         bar.set_position((part * STEPS as f64) as u64);
     }
 }

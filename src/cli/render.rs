@@ -9,24 +9,26 @@ use super::device::{Device, Opened};
 use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::input::{Input, Source};
-use super::light::{self, LightFlags};
+#[cfg(feature = "gpu")]
+use super::interrupt;
+use super::light::LightFlags;
 use super::memory;
 use super::patience::Patience;
+#[cfg(feature = "gpu")]
+use super::patience::Watching;
 use super::picture::Outputs;
 use super::progress;
-use super::render_lit;
 use super::speak::tell;
 use super::threads;
 use super::views::Views;
 #[cfg(feature = "gpu")]
-use super::with_scene::with_scene;
+use super::with_scene::with_structures;
 #[cfg(feature = "gpu")]
 use crate::accel::AccelChoice;
-use crate::camera::Camera;
-use crate::color::LinearRgb;
+use crate::camera::View;
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::Headless;
+use crate::gpu::{Headless, RenderPlan};
 use crate::image::{Image, LayerSet};
 
 /// A render, checked as far as it can be before the input is read.
@@ -66,17 +68,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         tell(format_args!("note: {note}"));
     }
     let encoding = job.encoding.over(input.encoding);
-    if encoding.transparent() {
-        input.settings = input.settings.with_background(LinearRgb::BLACK);
+    input.settings.is_transparent = encoding.transparent();
+    if input.settings.integrator.is_primary() {
+        job.patience.check_without_light()?;
     }
-    match &mut input.lighting {
-        Some(lighting) => {
-            lighting.is_transparent = encoding.transparent();
-            for note in light::notes(lighting, &input.scene) {
-                tell(format_args!("note: {note}"));
-            }
-        }
-        None => job.patience.check_without_light()?,
+    for note in input.settings.notes(&input.scene) {
+        tell(format_args!("note: {note}"));
     }
     let layers = job.outputs.layers(&encoding);
     let views = Views::of(&input);
@@ -103,7 +100,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 /// Renders what the camera, or the one between two eyes, sees.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
-    let view = Views::One(input.camera.as_ref());
+    let view = Views::One(input.view());
     match render_views(input, &Patience::default(), &view, layers, opened)? {
         Views::One(image) | Views::Two([image, _]) => Ok(image),
     }
@@ -113,7 +110,7 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
 fn render_views(
     input: &Input,
     patience: &Patience,
-    views: &Views<&dyn Camera>,
+    views: &Views<View<'_>>,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
@@ -121,10 +118,7 @@ fn render_views(
         Opened::Cpu => on_cpu(input, patience, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
-            if input.lighting.is_some() {
-                patience.check_on_cpu()?;
-            }
-            memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))?;
+            check_on_cpu(input, patience, views, layers)?;
             tell(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
                  rendering on the CPU reference, which is slower",
@@ -134,30 +128,34 @@ fn render_views(
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, doubt } => {
             doubt.iter().for_each(tell);
-            match &input.lighting {
-                Some(lighting) => {
-                    let light = (lighting, patience);
-                    render_lit::on_gpu(headless, input, light, views, layers, *choice)
-                }
-                None => on_gpu(headless, input, views, layers, *choice),
-            }
+            on_gpu(headless, input, patience, views, layers, *choice)
         }
     }
+}
+
+/// Refuses what the CPU reference has not, and what does not fit.
+fn check_on_cpu(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+) -> Result<(), Failure> {
+    if !input.settings.integrator.is_primary() {
+        patience.check_on_cpu()?;
+    }
+    memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))
 }
 
 fn on_cpu(
     input: &Input,
     patience: &Patience,
-    views: &Views<&dyn Camera>,
+    views: &Views<View<'_>>,
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
-    if let Some(lighting) = &input.lighting {
-        return render_lit::on_cpu(input, lighting, patience, views, layers);
-    }
-    let Input { scene, film, settings, size_from, .. } = input;
-    memory::check(film, size_from, layers, views.bytes_beside(layers))?;
+    check_on_cpu(input, patience, views, layers)?;
     progress::stage("rendering on the CPU reference");
-    let images = views.try_each(|camera| cpu::render(scene, *camera, film, settings, layers));
+    let Input { scene, settings, .. } = input;
+    let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
     Ok(images.context("the CPU reference")?)
 }
 
@@ -165,17 +163,51 @@ fn on_cpu(
 fn on_gpu(
     headless: &Headless,
     input: &Input,
-    views: &Views<&dyn Camera>,
+    patience: &Patience,
+    views: &Views<View<'_>>,
     layers: LayerSet,
     choice: AccelChoice,
 ) -> Result<Views<Image>, Failure> {
     let Input { scene, film, settings, .. } = input;
-    let beside = views.bytes_beside(layers);
-    let plan = |accel| headless.plan_render(scene, accel, film, layers, beside);
-    let rendered = with_scene(headless, input, choice, plan, |buffers, watch| {
-        views.try_each(|camera| {
-            headless.render_uploaded(buffers, *camera, film, settings, layers, watch)
-        })
+    let is_lit = !settings.integrator.is_primary();
+    let plan = |choice| plan(headless, input, views, layers, choice);
+    let rendered = with_structures(headless, scene, choice, plan, |structures| {
+        let (done, is_stopped) = interrupt::on_device_keeping(|| {
+            let buffers = headless.upload(scene, &structures)?;
+            drop(structures);
+            progress::stage("preparing");
+            views.try_each(|view| {
+                let pixels = film.pixel_count();
+                let watching = Watching::new(*patience, views.count(), pixels, is_lit);
+                let watch = &mut |progress: &_| watching.decide(progress);
+                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch)?;
+                Ok((picture, watching))
+            })
+        });
+        if is_stopped && !patience.keeps_partial() {
+            return Err(Failure::Stopped);
+        }
+        Ok(done.map(|pictures| (pictures, is_stopped)))
     })?;
-    Ok(rendered.map_err(|error| explained(headless, &error))?.0)
+    let ((pictures, is_stopped), _) = rendered.map_err(|error| explained(headless, &error))?;
+    let total = settings.sampling.samples;
+    for (picture, watching) in pictures.as_slice() {
+        let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
+        verdict.iter().for_each(tell);
+    }
+    Ok(pictures.map(|(picture, _)| picture.image))
+}
+
+/// What the pictures of an input will take.
+#[cfg(feature = "gpu")]
+pub(super) fn plan(
+    headless: &Headless,
+    input: &Input,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    choice: AccelChoice,
+) -> RenderPlan {
+    let Input { scene, settings, .. } = input;
+    let beside = views.bytes_beside(layers);
+    headless.plan(scene, &input.view(), settings, layers, choice, beside)
 }

@@ -97,9 +97,10 @@ mod recorded {
     use crate::cli::input::Source;
     use crate::cli::speak::tell;
     use crate::cli::verify_report::command_line;
-    use crate::cli::with_scene::with_scene;
-    use crate::cli::{memory, self_test, verify_paths};
-    use crate::gpu::Headless;
+    use crate::cli::with_scene::with_structures;
+    use crate::cli::{interrupt, memory, progress, self_test, verify_paths};
+    use crate::gpu::{Headless, Progress};
+    use crate::render::Integrator;
     use crate::verify::run_file::Provenance;
 
     /// What an adapter makes of a scene now.
@@ -116,35 +117,43 @@ mod recorded {
         if input.eyes.is_some() {
             tell("note: the camera has two eyes; what is checked is the picture from between them");
         }
-        let followed = input.lighting.as_ref().filter(|lighting| lighting.studio().is_none());
-        if followed.is_none() && args.paths.is_some() {
+        let is_lit = !input.settings.integrator.is_primary();
+        let has_paths = matches!(input.settings.integrator, Integrator::Path(_));
+        if !has_paths && args.paths.is_some() {
             return Err(Failure::usage("--paths needs a scene whose integrator is `path`"));
         }
-        if input.lighting.is_some() && followed.is_none() {
+        if is_lit && !has_paths {
             tell(
                 "note: the scene asks for light; what is checked is its picture without, by one ray a pixel",
             );
         }
-        if followed.is_some() && args.save.is_some() {
+        if has_paths && args.save.is_some() {
             tell("note: what --save keeps is the picture by one ray a pixel, and no paths");
         }
         let headless = wanted.open_any()?;
         self_test::check(&headless)?;
-        let (scene, film, settings) = (&input.scene, &input.film, &input.settings);
-        let camera = input.camera.as_ref();
+        let (scene, view) = (&input.scene, &input.view());
+        let settings = &input.settings.by_primary_rays();
+        let choice = choice(args.accel.accel);
         let encoding = memory::ENCODING_BYTES_PER_PIXEL;
-        let plan = |accel| headless.plan_record(scene, accel, film, encoding);
-        let done =
-            with_scene(&headless, &input, choice(args.accel.accel), plan, |buffers, watch| {
-                headless.record(buffers, camera, film, settings, watch)
-            })?;
+        let plan = |choice| headless.plan_record(scene, view, choice, encoding);
+        let done = with_structures(&headless, scene, choice, plan, |structures| {
+            interrupt::on_device(|| {
+                let buffers = headless.upload(scene, &structures)?;
+                drop(structures);
+                progress::stage("preparing");
+                let watch = &mut |progress: &Progress| {
+                    progress::tracing(progress.part);
+                    interrupt::decide()
+                };
+                headless.record(&buffers, view, settings, watch)
+            })
+        })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
         let samples = args.paths.unwrap_or(1);
-        let certify = |lighting| {
-            verify_paths::certify(&headless, &input, lighting, samples, choice(args.accel.accel))
-        };
-        let paths = followed.map(certify).transpose()?;
+        let certify = || verify_paths::certify(&headless, &input, samples, choice);
+        let paths = has_paths.then(certify).transpose()?;
         Ok((Run { scene: input.scene, recording, provenance }, outputs, paths))
     }
 

@@ -87,28 +87,25 @@ mod recorded {
     use crate::cli::failure::Failure;
     use crate::cli::input::Input;
     use crate::cli::views::Views;
-    use crate::cli::with_scene::with_accel;
-    use crate::cli::{interrupt, progress, render_lit};
-    use crate::gpu::{Headless, LitDecision};
+    use crate::cli::with_scene::with_structures;
+    use crate::cli::{interrupt, progress, render};
+    use crate::gpu::Headless;
     use crate::image::LayerSet;
-    use crate::lighting::Lighting;
     use crate::verify::Checker;
 
     /// Follows so many samples on an adapter, one after the other, and judges them.
     pub(in crate::cli) fn certify(
         headless: &Headless,
         input: &Input,
-        lighting: &Lighting,
         samples: u32,
         choice: AccelChoice,
     ) -> Result<PathCertificate, Failure> {
-        let Input { scene, camera, film, .. } = input;
-        let views = Views::of(input);
-        let plan =
-            |choice| render_lit::plan(headless, input, lighting, &views, LayerSet::COLOR, choice);
-        let done = with_accel(headless, scene, choice, plan, |accel| {
-            let uploaded = interrupt::on_device(|| headless.upload_lit(scene, &accel))?;
-            drop(accel);
+        let Input { scene, settings, .. } = input;
+        let (view, views) = (input.view(), Views::of(input));
+        let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+        let done = with_structures(headless, scene, choice, plan, |structures| {
+            let uploaded = interrupt::on_device(|| headless.upload(scene, &structures))?;
+            drop(structures);
             let buffers = match uploaded {
                 Ok(buffers) => buffers,
                 Err(error) => return Ok(Err(error)),
@@ -118,13 +115,9 @@ mod recorded {
             for sample in 0..samples {
                 progress::stage(format!("following paths: sample {sample}"));
                 let recording = interrupt::on_device(|| {
-                    let watch = &mut |_: &_| match interrupt::decide() {
-                        std::ops::ControlFlow::Continue(()) => LitDecision::GoOn,
-                        std::ops::ControlFlow::Break(()) => LitDecision::Stop,
-                    };
-                    let view = (camera.as_ref(), film);
+                    let watch = &mut |_: &_| interrupt::decide();
                     let range = sample..sample + 1;
-                    headless.record_paths(scene, &buffers, view, lighting, range, watch)
+                    headless.record_paths(&buffers, &view, settings, range, watch)
                 })?;
                 match recording {
                     Ok(recording) => {

@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use super::memory;
-use crate::camera::Camera;
+use crate::camera::View;
 use crate::image::LayerSet;
 
 /// Something for one picture, or for the left eye's and the right eye's.
@@ -44,11 +44,14 @@ impl<T> Views<T> {
     }
 }
 
-impl<'a> Views<&'a dyn Camera> {
+impl<'a> Views<View<'a>> {
     pub(super) fn of(input: &'a Input) -> Self {
         match &input.eyes {
-            None => Self::One(input.camera.as_ref()),
-            Some([left, right]) => Self::Two([left.as_ref(), right.as_ref()]),
+            None => Self::One(input.view()),
+            Some(eyes) => {
+                let [left, right] = eyes.each_ref();
+                Self::Two([left, right].map(|eye| View::new(eye.as_ref(), input.film)))
+            }
         }
     }
 

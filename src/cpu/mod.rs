@@ -3,11 +3,10 @@
 //! It is what the GPU is judged by. It shares scene, camera and film with the GPU path and nothing
 //! else; where a choice is between clear and fast, it is clear.
 
-use crate::camera::Camera;
-use crate::film::Film;
-use crate::image::{Image, ImageTooLarge, LayerSet, RowMut};
+use crate::camera::View;
+use crate::image::{Image, ImageTooLarge, LayerSet, Pixel, RowMut};
+use crate::render::{PrimaryLook, RenderSettings, SettingsError};
 use crate::scene::Scene;
-use crate::settings::Settings;
 
 mod denoise;
 mod light;
@@ -16,42 +15,85 @@ mod sphere;
 mod trace;
 
 pub use denoise::denoise;
-pub use light::{LitError, LitPicture, Sample, radiance, render_lit};
+pub use light::{Sample, SampledPicture, radiance};
 pub use shade::shade;
 pub use trace::trace;
 
 /// How many rows are handed out together, to all cores.
 const ROWS_AT_ONCE: usize = 4096;
 
-/// Renders a picture with one ray through the centre of every pixel.
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The settings, or the scene's materials, are refused.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The image does not fit into memory.
+    #[error(transparent)]
+    Image(#[from] ImageTooLarge),
+}
+
+/// Renders a picture.
+///
+/// By primary rays, each pixel is what the ray through its centre meets. Of a lit picture colour, alpha and albedo are
+/// means of samples; depth, normal, position and id are those of the ray through the pixel's centre: of spheres alone,
+/// whatever they are made of. The variance is that of the mean of luminances.
 ///
 /// Rows run in parallel with the feature `parallel`; the picture does not depend on it.
 ///
 /// # Errors
-/// If the image does not fit into memory.
+/// What [`RenderSettings::check`] refuses; if the image does not fit into memory.
 pub fn render(
     scene: &Scene,
-    camera: &dyn Camera,
-    film: &Film,
-    settings: &Settings,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    layers: LayerSet,
+) -> Result<Image, RenderError> {
+    match settings.primary() {
+        Some(look) => {
+            settings.check(scene)?;
+            Ok(render_primary(scene, view, &look, layers)?)
+        }
+        None => Ok(SampledPicture::new(scene, view, settings)?.render(layers)?),
+    }
+}
+
+fn render_primary(
+    scene: &Scene,
+    view: &View<'_>,
+    look: &PrimaryLook,
     layers: LayerSet,
 ) -> Result<Image, ImageTooLarge> {
-    let mut image = Image::new(film.width(), film.height(), layers)?;
-    let height = film.height() as usize;
+    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
+    for_each_pixel(&mut image, |pixel, i, row| {
+        row.set(i, &primary_pixel(scene, view, look, pixel));
+    });
+    Ok(image)
+}
+
+/// What the ray through a pixel's centre says.
+fn primary_pixel(scene: &Scene, view: &View<'_>, look: &PrimaryLook, pixel: [u32; 2]) -> Pixel {
+    let ray = view.ray_through_center(pixel);
+    let hit = ray.as_ref().and_then(|ray| trace(scene, ray));
+    match (&ray, &hit) {
+        (Some(ray), Some(hit)) => shade(scene, look, ray, hit),
+        _ => Pixel::miss(look.background.to_array()),
+    }
+}
+
+/// Does something for each pixel, which is column and row, in its row of the image and at its place there.
+fn for_each_pixel(image: &mut Image, work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync) {
+    let (width, height) = (image.width(), image.height() as usize);
     // In parts, because what a row's layers are borrowed with may be larger than a narrow row.
     for start in (0..height).step_by(ROWS_AT_ONCE) {
         let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
         for_each_row(rows, |j, row| {
-            for i in 0..film.width() {
-                let (column, line) = (f64::from(i) + 0.5, (start + j) as f64 + 0.5);
-                let location = film.relative_location(column, line);
-                let ray = camera.ray_in_world(location);
-                let hit = camera.sees(location).then(|| trace(scene, &ray)).flatten();
-                row.set(i as usize, &shade(scene, settings, &ray, hit.as_ref()));
+            for i in 0..width {
+                work([i, (start + j) as u32], i as usize, row);
             }
         });
     }
-    Ok(image)
 }
 
 #[cfg(feature = "parallel")]

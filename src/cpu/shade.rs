@@ -2,17 +2,14 @@
 
 use crate::image::Pixel;
 use crate::ray::{Hit, Ray};
+use crate::render::{PrimaryLook, Shading};
 use crate::scene::Scene;
-use crate::settings::{Settings, Shading};
 
-/// The pixel of a ray that hit, or missed.
+/// The pixel of a primary ray that hit a sphere.
 #[must_use]
-pub fn shade(scene: &Scene, settings: &Settings, ray: &Ray, hit: Option<&Hit>) -> Pixel {
-    let Some(hit) = hit else {
-        return Pixel::miss(settings.background().to_array());
-    };
+pub fn shade(scene: &Scene, look: &PrimaryLook, ray: &Ray, hit: &Hit) -> Pixel {
     let surface = scene.color(hit.id).to_array();
-    let color = match settings.shading() {
+    let color = match look.shading {
         Shading::Flat => surface,
         Shading::Headlight => {
             let cosine = hit.normal.dot(ray.direction).abs();

@@ -3,16 +3,14 @@
 use std::ops::Range;
 
 use super::records::NO_HIT;
-use crate::camera::Camera;
+use crate::camera::View;
 use crate::color::LinearRgb;
-use crate::film::Film;
 use crate::image::{NO_ID, RowMut};
 use crate::scene::SceneColors;
 
 /// What they follow from beside a tile's pixels.
 pub(super) struct Derived<'a> {
-    pub(super) camera: &'a dyn Camera,
-    pub(super) film: &'a Film,
+    pub(super) view: View<'a>,
     pub(super) colors: &'a SceneColors,
 }
 
@@ -54,8 +52,8 @@ impl Derived<'_> {
 
     /// The point of a pixel's ray at a distance, in the world.
     fn point(&self, [i, j]: [usize; 2], t: f32) -> [f32; 3] {
-        let location = self.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
-        self.camera.ray_in_world(location).at(f64::from(t)).as_vec3().to_array()
+        let location = self.view.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
+        self.view.camera.ray_in_world(location).at(f64::from(t)).as_vec3().to_array()
     }
 
     fn albedo(&self, id: u32) -> [f32; 3] {

@@ -7,7 +7,7 @@ use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::denoise::MissingGuide;
 use crate::image::ImageTooLarge;
-use crate::lighting::LightingError;
+use crate::render::SettingsError;
 use crate::scene::SceneError;
 
 /// Why the GPU path cannot do what it was asked.
@@ -106,6 +106,21 @@ pub enum GpuError {
     /// Only paths can be recorded.
     #[error("a studio has no paths that could be recorded; choose the integrator `path`")]
     NotPaths,
+    /// Only primary rays can be recorded here.
+    #[error(
+        "frames and recordings have primary rays only, for now, and not those of the integrator `{integrator}`; choose \
+         `primary`, or render with `Headless::render`"
+    )]
+    NotPrimary {
+        /// The integrator that was asked for.
+        integrator: &'static str,
+    },
+    /// A studio needs a structure of its own for shadows, and the scene has none.
+    #[error(
+        "some spheres of this scene are not opaque, and it was uploaded without the structure of those that cast shadows \
+         in a studio; upload what `RenderPlan::build` gives of a plan for these settings"
+    )]
+    NoOccluders,
     /// `record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
@@ -151,9 +166,9 @@ pub enum GpuError {
     /// A picture lacks a layer by which it could be denoised.
     #[error(transparent)]
     Guide(#[from] MissingGuide),
-    /// A lighting, or a material, is out of range.
+    /// Settings, or a material, are refused.
     #[error(transparent)]
-    Lighting(#[from] LightingError),
+    Settings(#[from] SettingsError),
 }
 
 fn list(available: &[String]) -> String {

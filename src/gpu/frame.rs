@@ -1,17 +1,18 @@
-//! What changes from picture to picture: targets, camera, film, settings.
+//! What changes from picture to picture: targets, view, settings.
 
 use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
+use super::bands::{BandBuffers, rows_per_band};
 use super::error::{GpuError, check_storage_size, scoped};
 use super::order::nearest_first;
 use super::records;
 use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
-use super::scene_buffers::{SceneBuffers, SceneId, binding_limit, part};
+use super::scene_buffers::{SceneBuffers, SceneId, part};
 use super::seen::Seen;
 use super::tiles::{self, Groups, Tile};
-use crate::camera::{Camera, CameraKind};
-use crate::film::Film;
-use crate::settings::Settings;
+use crate::camera::{CameraKind, View};
+use crate::render::{PrimaryLook, RenderSettings};
+use crate::verify::RequestedCamera;
 
 /// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +51,7 @@ pub struct Frame {
     band_groups: Vec<BindGroup>,
     target_group: BindGroup,
     size: [u32; 2],
-    view: Option<View>,
+    view: Option<SetView>,
     /// Not 0 once a kernel ran into its limit of iterations.
     status: Buffer,
     iteration_limit: u32,
@@ -59,7 +60,7 @@ pub struct Frame {
 
 /// What recording needs to know of the view.
 #[derive(Debug)]
-pub(super) struct View {
+pub(super) struct SetView {
     pub(super) camera: CameraKind,
     pub(super) scene: SceneId,
     /// The sizes of the bands that are rendered, in their order.
@@ -99,9 +100,9 @@ impl Frame {
         let limits = device.limits();
         let keeps_rays = renderer.keeps_rays;
         let rows_per_band = rows_per_band(&limits, size, keeps_rays);
-        let [hit_bytes, ray_bytes] = band_bytes(&limits, size, keeps_rays);
-        check_storage_size(device, "the buffer of hits", hit_bytes)?;
-        check_storage_size(device, "the buffer of rays", ray_bytes)?;
+        let band = BandBuffers::new(&limits, size, keeps_rays);
+        check_storage_size(device, "the buffer of hits", band.hits)?;
+        check_storage_size(device, "the buffer of rays", band.rays.unwrap_or(0))?;
         let record_size = size_of::<records::Frame>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
@@ -131,8 +132,8 @@ impl Frame {
                     mapped_at_creation: false,
                 })
             };
-            let hits = of_pixels("pinhole hits", hit_bytes);
-            let rays = keeps_rays.then(|| of_pixels("pinhole rays", ray_bytes));
+            let hits = of_pixels("pinhole hits", band.hits);
+            let rays = band.rays.map(|bytes| of_pixels("pinhole rays", bytes));
             let band_group = |band| {
                 let buffers = [&hits, &status].into_iter().chain(&rays);
                 let resources = std::iter::once(part(&records, band * stride, record_size))
@@ -177,7 +178,7 @@ impl Frame {
             view: None,
             status,
             iteration_limit: iteration_limit(device),
-            bytes: hit_bytes + ray_bytes + (bands * stride) as u64,
+            bytes: band.bytes() + (bands * stride) as u64,
         })
     }
 
@@ -186,16 +187,17 @@ impl Frame {
     /// The new values are queued on `queue`; they hold from its next submission on.
     ///
     /// # Errors
-    /// If the film and the targets differ in size.
+    /// If the film and the targets differ in size; [`GpuError::NotPrimary`] if the picture is to be lit, because frames
+    /// have primary rays only for now; what [`RenderSettings::check`] refuses.
     pub fn set_view(
         &mut self,
         queue: &Queue,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
-        settings: &Settings,
+        view: &View<'_>,
+        settings: &RenderSettings,
     ) -> Result<(), GpuError> {
-        let film_size = [film.width(), film.height()];
+        let look = scene.primary_look(settings)?;
+        let film_size = [view.film.width(), view.film.height()];
         if film_size != self.size {
             return Err(GpuError::Target {
                 layer: "color",
@@ -204,7 +206,7 @@ impl Frame {
             });
         }
         let tile = Tile { origin: [0, 0], size: film_size, in_target: [0, 0] };
-        self.set_tile(queue, scene, camera, film, tile, settings);
+        self.set_tile(queue, scene, view, tile, &look);
         Ok(())
     }
 
@@ -213,20 +215,19 @@ impl Frame {
         &mut self,
         queue: &Queue,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
+        view: &View<'_>,
         tile: Tile,
-        settings: &Settings,
+        look: &PrimaryLook,
     ) {
-        let (vectors, space) = ((camera.kind(), &camera.vectors()), scene.space());
-        let seen = Seen::of(camera, space, film);
+        let (camera, space) = (RequestedCamera::of(view.camera), scene.space());
+        let seen = Seen::of(view, space);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
         let limit = self.iteration_limit;
         let records: Vec<_> = bands
             .iter()
             .map(|band| {
                 let traced = seen.groups_of(*band);
-                records::Frame::new(vectors, space, film, *band, traced, settings, limit)
+                records::Frame::new(&camera, space, &view.film, *band, traced, look, limit)
             })
             .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];
@@ -235,12 +236,12 @@ impl Frame {
         }
         queue.write_buffer(&self.records, 0, &bytes);
         let boxes = scene.bricks().iter().map(|brick| brick.center_box);
-        self.view = Some(View {
-            camera: camera.kind(),
+        self.view = Some(SetView {
+            camera: camera.kind,
             scene: scene.id(),
             bands: bands.into_iter().map(|band| band.size).collect(),
             records,
-            order: nearest_first(boxes, camera, space),
+            order: nearest_first(boxes, view.camera, space),
         });
     }
 
@@ -312,7 +313,7 @@ impl Frame {
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
-    ) -> Result<&View, GpuError> {
+    ) -> Result<&SetView, GpuError> {
         let view = self.view.as_ref().ok_or(GpuError::NoView)?;
         let made_for = (self.color, self.data_layers, self.rays.is_some());
         if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
@@ -333,32 +334,6 @@ impl Frame {
     pub(super) fn target_group(&self) -> &BindGroup {
         &self.target_group
     }
-}
-
-const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
-const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
-
-/// How many rows of targets of a size are traced before they are shaded: their hits, and their rays if they are
-/// kept, fit into one binding.
-fn rows_per_band(limits: &wgpu::Limits, [width, height]: [u32; 2], keeps_rays: bool) -> u32 {
-    let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
-    let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_PIXELS);
-    // At most MAX_PIXELS, so it fits.
-    ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
-}
-
-/// The size of the tiles of a headless render. Where rays are kept, a tile is no more than a band, because what
-/// is kept is that of a frame's last band.
-pub(super) fn tile_size(limits: &wgpu::Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
-    let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
-    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
-    [width, rows]
-}
-
-/// Bytes of the hits of targets of a size, and of their rays if they are kept.
-pub(super) fn band_bytes(limits: &wgpu::Limits, size: [u32; 2], keeps_rays: bool) -> [u64; 2] {
-    let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
-    [pixels * HIT_BYTES, if keeps_rays { pixels * RAY_BYTES } else { 0 }]
 }
 
 /// How many iterations of loops an invocation may take.

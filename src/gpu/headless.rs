@@ -2,36 +2,31 @@
 //!
 //! The only file of the library that submits, polls, or waits for a device's work.
 
-use std::ops::ControlFlow;
+use std::convert::Infallible;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use wgpu::{Adapter, AdapterInfo, CommandEncoder, ComputePassDescriptor, Device, Queue};
+use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 
 use super::adapter;
-use super::derived::Derived;
-use super::error::{GpuError, scoped};
+use super::error::GpuError;
 use super::faults::Faults;
-use super::frame::{Frame, Part, tile_size};
 use super::lit::{LitKey, LitRenderer};
-use super::options::{HeadlessOptions, Progress, Watch, required_limits, wanted_features};
-use super::quirks;
-use super::readback::ReadableTexture;
-use super::recording::ReadableTrace;
+use super::options::{HeadlessOptions, required_limits, wanted_features};
+use super::plan::RenderPlan;
+use super::progress::{Picture, Watch, go_on};
 use super::renderer::{Renderer, RendererOptions};
 use super::renderers::{RendererKey, Renderers};
-use super::scene_buffers::{SceneBuffers, binding_limit};
-use super::seen::traced_pixels;
+use super::scene_buffers::SceneBuffers;
+use super::scene_summary::SceneSummary;
 use super::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
-use super::tile_textures::TileTextures;
-use super::tiles::{Groups, tiles};
-use crate::accel::{Accel, AccelChoice, AccelPlan};
-use crate::camera::Camera;
-use crate::film::Film;
+use super::structures::{Structures, with_retries};
+use super::tiles::Groups;
+use crate::accel::{Accel, AccelChoice};
+use crate::camera::View;
 use crate::image::{Image, LayerSet};
+use crate::render::RenderSettings;
 use crate::scene::Scene;
-use crate::settings::Settings;
-use crate::verify::TracedPixel;
 
 /// A device for rendering without a display.
 #[derive(Debug)]
@@ -112,24 +107,6 @@ impl Headless {
         &self.queue
     }
 
-    /// What to build of a scene for this device, and for many pictures.
-    #[must_use]
-    pub fn plan(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
-        let binding = binding_limit(&self.device.limits());
-        quirks::plan(&self.info, scene, choice, |choice| {
-            AccelPlan::new(scene.spheres(), choice, binding)
-        })
-    }
-
-    /// What to build of a scene for this device, and for one picture.
-    #[must_use]
-    pub fn plan_once(&self, scene: &Scene, choice: AccelChoice, film: &Film) -> AccelPlan {
-        let binding = binding_limit(&self.device.limits());
-        quirks::plan(&self.info, scene, choice, |choice| {
-            AccelPlan::for_rays(scene.spheres(), choice, binding, film.pixel_count())
-        })
-    }
-
     /// Tests whether the device computes as bounds of errors assume.
     ///
     /// # Errors
@@ -144,156 +121,102 @@ impl Headless {
         })
     }
 
-    /// Copies a scene to the device, brick by brick.
+    /// Copies a scene to the device, brick by brick, with structures that were built of it: by
+    /// [`RenderPlan::build`](super::RenderPlan::build), or from one that was built alone.
     ///
     /// # Errors
     /// If it does not fit the device, or if the device fails.
-    pub fn upload(&self, scene: &Scene, accel: &Accel) -> Result<SceneBuffers, GpuError> {
+    pub fn upload(&self, scene: &Scene, structures: &Structures) -> Result<SceneBuffers, GpuError> {
+        let Structures { accel, occluders } = structures;
         // Layouts are all that is needed, and those of one device are the same wherever they are made.
         let options = RendererOptions {
             cameras: Vec::new(),
-            structures: vec![accel.structure()],
+            structures: [accel].into_iter().chain(occluders).map(Accel::structure).collect(),
             ..RendererOptions::default()
         };
         self.alone(|_| {
             let renderer = Renderer::new(&self.device, &options)?;
-            SceneBuffers::upload(&renderer, &self.device, &self.queue, scene, accel, || {
-                let submission = self.queue.submit([]);
-                self.wait(&[], submission)
-            })
+            let upload = |summary, accel| {
+                SceneBuffers::upload(&renderer, &self.device, &self.queue, summary, accel, || {
+                    let submission = self.queue.submit([]);
+                    self.wait(&[], submission)
+                })
+            };
+            let all = upload(SceneSummary::of(scene), accel)?;
+            let of_occluders = |accel| upload(SceneSummary::of_occluders(scene), accel);
+            Ok(all.with_occluders(occluders.as_ref().map(of_occluders).transpose()?))
         })
     }
 
-    /// Renders a picture with one ray through the centre of every pixel.
+    /// Renders a picture.
     ///
     /// A picture beyond the device's limits is rendered in tiles, and a scene beyond them in bricks; the
     /// picture does not depend on them. Where rays take too many steps in the structure that suits the data,
     /// another is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
-    /// If scene or picture do not fit the device or the host's memory, or if the device fails.
+    /// What [`RenderSettings::check`] refuses; if scene or picture do not fit the device or the host's memory, or if
+    /// the device fails.
     pub fn render(
         &self,
         scene: &Scene,
-        camera: &dyn Camera,
-        film: &Film,
-        settings: &Settings,
+        view: &View<'_>,
+        settings: &RenderSettings,
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
-        self.with_uploaded(scene, film, |buffers| {
-            let go_on = &mut |_| ControlFlow::Continue(());
-            self.render_uploaded(buffers, camera, film, settings, layers, go_on)
-        })
+        settings.check(scene)?;
+        let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
+        let picture = self.with_uploaded(scene, plan, |buffers| {
+            self.render_uploaded(buffers, view, settings, layers, &mut go_on)
+        })?;
+        Ok(picture.image)
     }
 
-    /// Does something with a scene in the structure that suits it for one picture; where rays take too many
-    /// steps in that, once more with another.
+    /// Does something with a scene in the structures that suit it; where rays take too many steps in those, once
+    /// more with others.
     pub(super) fn with_uploaded<T>(
         &self,
         scene: &Scene,
-        film: &Film,
+        plan: impl Fn(AccelChoice) -> RenderPlan,
         work: impl Fn(&SceneBuffers) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let plan = |choice| self.plan_once(scene, choice, film);
-        with_structures(scene, plan, |accel| {
-            let buffers = self.upload(scene, &accel)?;
-            drop(accel);
-            work(&buffers)
-        })
+        let done: Result<_, Infallible> = with_retries(
+            AccelChoice::Auto,
+            plan,
+            |_| {},
+            |plan| {
+                let structures = plan.build(scene);
+                let buffers = self.upload(scene, &structures);
+                drop(structures);
+                Ok(buffers.and_then(|buffers| work(&buffers)))
+            },
+        );
+        match done {
+            Ok(done) => done,
+            Err(never) => match never {},
+        }
     }
 
     /// As [`Headless::render`], of a scene that is on this device already. `watch` is told of progress.
     ///
     /// # Errors
-    /// As [`Headless::render`]; [`GpuError::Stopped`] if `watch` says so.
+    /// As [`Headless::render`]; [`GpuError::Stopped`] if `watch` says so; [`GpuError::NoOccluders`] if the settings are
+    /// of a studio, some spheres are not opaque, and the scene was uploaded without what such a studio needs.
     pub fn render_uploaded(
         &self,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
-        settings: &Settings,
+        view: &View<'_>,
+        settings: &RenderSettings,
         layers: LayerSet,
         watch: &mut Watch<'_>,
-    ) -> Result<Image, GpuError> {
-        let data_layers = layers != LayerSet::COLOR;
-        let key = RendererKey { data_layers, ..RendererKey::new(scene, camera) };
-        self.with_renderer(key, |renderer| {
-            let mut image = Image::new(film.width(), film.height(), layers)?;
-            let view = (camera, film, settings);
-            self.render_tiles(renderer, scene, view, &mut image, None, watch)?;
-            Ok(image)
-        })
-    }
-
-    pub(super) fn render_tiles(
-        &self,
-        renderer: &Renderer,
-        scene: &SceneBuffers,
-        (camera, film, settings): (&dyn Camera, &Film, &Settings),
-        image: &mut Image,
-        mut pixels: Option<&mut Vec<TracedPixel>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<(), GpuError> {
-        let tile_size = tile_size(&self.device.limits(), film, renderer.keeps_rays);
-        let textures = scoped(&self.device, || {
-            TileTextures::new(&self.device, tile_size, renderer.data_layers)
-        })?;
-        let mut frame = Frame::new(renderer, &self.device, &textures.targets())?;
-        let traced = scoped(&self.device, || ReadableTrace::new(&self.device, &frame))?;
-        let total = traced_pixels(scene, camera, film, tile_size);
-        let derived = Derived { camera, film, colors: scene.colors() };
-        let mut progress = Progress { done: 0, total };
-        for tile in tiles(film, tile_size) {
-            frame.set_tile(&self.queue, scene, camera, film, tile, settings);
-            let mut encoder = self.encoder();
-            if renderer.keeps_rays {
-                // Those that are not traced are known by having none.
-                frame.record_clear(&mut encoder);
-            }
-            let mut unfinished = Groups::NONE;
-            for part in frame.parts() {
-                let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
-                    frame.set_first_group(&self.queue, part.band, groups.first);
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                    let slice = Part { groups, ..part };
-                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
-                    drop(pass);
-                    if left.is_empty() && part.is_last {
-                        // Shaded and copied in the same submission.
-                        unfinished = groups;
-                        break;
-                    }
-                    self.submit_slice(encoder, groups, scene, &[])?;
-                    progress.add(groups, watch)?;
-                    encoder = self.encoder();
-                }
-                if part.is_last_of_band {
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                    renderer.record_shade(&mut pass, scene, &frame, part.band)?;
-                }
-            }
-            for texture in textures.all() {
-                texture.record_copy(&mut encoder, tile.size);
-            }
-            textures.status().record_copy(&mut encoder, frame.status());
-            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
-            mapped.push(textures.status().buffer());
-            if let Some(traced) = &traced {
-                traced.record_copy(&mut encoder, &frame);
-                mapped.extend(traced.buffers());
-            }
-            self.submit_slice(encoder, unfinished, scene, &mapped)?;
-            if textures.status().read(|words: &[u32]| words[0])? != 0 {
-                return Err(GpuError::Steps);
-            }
-            textures.read_into(image, tile, &derived)?;
-            if let (Some(traced), Some(pixels)) = (&traced, &mut pixels) {
-                traced.read_into(pixels, film, tile)?;
-            }
-            progress.add(unfinished, watch)?;
+    ) -> Result<Picture, GpuError> {
+        if settings.integrator.is_primary() {
+            let look = scene.primary_look(settings)?;
+            let image = self.render_primary(scene, view, &look, layers, watch)?;
+            Ok(Picture { image, samples: 1, noise: None, hits: None })
+        } else {
+            self.render_lit(scene, view, settings, layers, watch)
         }
-        Ok(())
     }
 
     /// Submits the tracing of some workgroups, and what comes with it, waits until it is done and the buffers
@@ -388,24 +311,6 @@ impl Headless {
             Ok(_) => Ok(()),
             Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: self.timeout }),
             Err(error) => Err(GpuError::Device { message: error.to_string() }),
-        }
-    }
-}
-
-/// Does something with a scene in the structure that is planned; where rays take too many steps in that, once more
-/// with another.
-pub(super) fn with_structures<T>(
-    scene: &Scene,
-    plan: impl Fn(AccelChoice) -> AccelPlan,
-    work: impl Fn(Accel) -> Result<T, GpuError>,
-) -> Result<T, GpuError> {
-    let mut choice = AccelChoice::Auto;
-    loop {
-        let accel = plan(choice).build(scene.spheres());
-        let structure = accel.structure();
-        match (work(accel), structure.instead()) {
-            (Err(GpuError::Steps), Some(other)) => choice = other,
-            (result, _) => return result,
         }
     }
 }

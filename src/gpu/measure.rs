@@ -2,8 +2,9 @@
 
 use wgpu::ComputePassDescriptor;
 
+use super::bands::tile_size;
 use super::error::{GpuError, scoped};
-use super::frame::{Frame, Part, tile_size};
+use super::frame::{Frame, Part};
 use super::headless::Headless;
 use super::renderer::{Query, Renderer};
 use super::renderers::RendererKey;
@@ -11,9 +12,8 @@ use super::scene_buffers::SceneBuffers;
 use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tiles};
 use super::timer::{PassTimer, TraceTime};
-use crate::camera::Camera;
-use crate::film::Film;
-use crate::settings::Settings;
+use crate::camera::View;
+use crate::render::PrimaryLook;
 
 impl Headless {
     /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
@@ -23,22 +23,20 @@ impl Headless {
     pub fn measure(
         &self,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
+        view: &View<'_>,
         query: Query,
     ) -> Result<TraceTime, GpuError> {
-        let key = RendererKey { query, ..RendererKey::new(scene, camera) };
-        self.with_renderer(key, |renderer| self.measure_with(renderer, scene, camera, film))
+        let key = RendererKey { query, ..RendererKey::new(scene, view.camera) };
+        self.with_renderer(key, |renderer| self.measure_with(renderer, scene, view))
     }
 
     fn measure_with(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
+        view: &View<'_>,
     ) -> Result<TraceTime, GpuError> {
-        let tile_size = tile_size(&self.device().limits(), film, renderer.keeps_rays);
+        let tile_size = tile_size(&self.device().limits(), &view.film, renderer.keeps_rays);
         let textures =
             scoped(self.device(), || TileTextures::new(self.device(), tile_size, false))?;
         let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;
@@ -49,8 +47,8 @@ impl Headless {
         frame.record_clear(&mut encoder);
         self.run(encoder, &[])?;
         let mut time = TraceTime::default();
-        for tile in tiles(film, tile_size) {
-            frame.set_tile(self.queue(), scene, camera, film, tile, &Settings::default());
+        for tile in tiles(&view.film, tile_size) {
+            frame.set_tile(self.queue(), scene, view, tile, &PrimaryLook::default());
             for part in frame.parts() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
@@ -67,6 +65,7 @@ impl Headless {
                         timer.record_copy(&mut encoder);
                     }
                     let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
+                    time.pixels += groups.pixels();
                     time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
                 }
             }

@@ -1,13 +1,10 @@
-//! How a headless device is opened, and how it tells of progress.
+//! How a headless device is opened.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use wgpu::Limits;
 
-use super::error::GpuError;
 use super::shaders::ShaderEdit;
-use super::tiles::Groups;
 
 /// How a device is opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,29 +37,6 @@ impl Default for HeadlessOptions {
         Self { adapter: None, limits: LimitChoice::Adapter, timeout, edits: Vec::new() }
     }
 }
-
-/// What a render is doing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Pixels that were traced, in whole workgroups; a pixel counts once for every brick.
-    pub done: u64,
-    /// How many are to be traced: those in which the scene's box may be seen.
-    pub total: u64,
-}
-
-impl Progress {
-    /// Tells `watch` that some more are done.
-    pub(super) fn add(&mut self, groups: Groups, watch: &mut Watch<'_>) -> Result<(), GpuError> {
-        self.done = (self.done + groups.pixels()).min(self.total);
-        match watch(*self) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(GpuError::Stopped),
-        }
-    }
-}
-
-/// Told of progress after every submission; decides whether the render goes on.
-pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// What is used where it exists: a clock and, where the device's memory is the host's, writing into it.
 pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {

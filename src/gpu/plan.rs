@@ -2,24 +2,28 @@
 
 use wgpu::{DeviceType, Limits};
 
+use super::bands::{BandBuffers, tile_size};
 use super::error::GpuError;
-use super::frame::{band_bytes, tile_size};
-use super::headless::Headless;
 use super::records;
 use super::tile_textures;
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
+use crate::camera::View;
 use crate::film::Film;
 use crate::image::LayerSet;
+use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::{Checker, TracedPixel, Verdict};
 
-/// What a render by [`Headless`] takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
+/// What a render by [`Headless`](super::Headless) takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
 /// records for each brick come on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
     /// The structure, and why.
     pub accel: AccelPlan,
-    /// Buffers of the scene: those of the structure, and the colours.
+    /// Of the spheres that cast shadows, where a studio needs a structure of its own for them: where some spheres are
+    /// not opaque.
+    pub occluders: Option<AccelPlan>,
+    /// Buffers of the scene: those of the structures, and the colours.
     pub scene_buffers: Vec<PlannedBuffer>,
     /// Buffers that kernels write for one tile.
     pub tile_buffers: Vec<PlannedBuffer>,
@@ -50,58 +54,83 @@ pub enum HostPeak {
     Checking,
 }
 
+/// What a plan is made for.
+#[derive(Clone, Copy, Debug)]
+pub struct PictureRequest<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// How it is seen.
+    pub view: View<'a>,
+    /// How the picture is made.
+    pub settings: &'a RenderSettings,
+    /// The layers that are wanted.
+    pub layers: LayerSet,
+    /// What the caller will take of the host's memory for each pixel beside the image itself, such as for encoding it.
+    pub host_bytes_per_pixel: u64,
+}
+
+/// What will be built of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructurePlans {
+    /// Of all spheres.
+    pub accel: AccelPlan,
+    /// Of the spheres that cast shadows in a studio, where some do not.
+    pub occluders: Option<AccelPlan>,
+}
+
+/// What bounds pictures and scenes on a device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceLimits {
+    /// wgpu's limits.
+    pub limits: Limits,
+    /// A software device takes its memory from the host's.
+    pub device_type: DeviceType,
+}
+
+impl DeviceLimits {
+    /// How much of so many bytes on the device is the host's memory.
+    pub(super) fn in_host(&self, bytes: u64) -> u64 {
+        if self.device_type == DeviceType::Cpu { bytes } else { 0 }
+    }
+}
+
 impl RenderPlan {
-    /// Plans a picture of a scene on a device with such limits. A software device takes its memory from the
-    /// host's. `host_bytes_per_pixel` is what the caller will take for the picture beside the image itself,
-    /// such as for encoding it.
-    #[must_use]
-    pub fn new(
-        scene: &Scene,
-        film: &Film,
-        layers: LayerSet,
+    /// Plans a picture of primary rays.
+    pub(super) fn of_primary(
+        request: &PictureRequest<'_>,
         accel: AccelPlan,
-        (limits, device_type): (&Limits, DeviceType),
-        host_bytes_per_pixel: u64,
+        device: &DeviceLimits,
     ) -> Self {
-        let device = (limits, device_type);
-        Self::planned(scene, film, layers, accel, device, host_bytes_per_pixel, false)
+        Self::planned(request, accel, device, false)
     }
 
-    /// As [`RenderPlan::new`], of all layers and with every ray and hit, and of checking them.
-    #[must_use]
-    pub fn of_recording(
-        scene: &Scene,
-        film: &Film,
+    /// As [`RenderPlan::of_primary`], of all layers and with every ray and hit, and of checking them.
+    pub(super) fn of_recording(
+        request: &PictureRequest<'_>,
         accel: AccelPlan,
-        device: (&Limits, DeviceType),
-        host_bytes_per_pixel: u64,
+        device: &DeviceLimits,
     ) -> Self {
-        Self::planned(scene, film, LayerSet::DATA, accel, device, host_bytes_per_pixel, true)
+        let request = PictureRequest { layers: LayerSet::DATA, ..*request };
+        Self::planned(&request, accel, device, true)
     }
 
     fn planned(
-        scene: &Scene,
-        film: &Film,
-        layers: LayerSet,
+        request: &PictureRequest<'_>,
         accel: AccelPlan,
-        (limits, device_type): (&Limits, DeviceType),
-        host_bytes_per_pixel: u64,
+        device: &DeviceLimits,
         keeps_rays: bool,
     ) -> Self {
+        let PictureRequest { scene, layers, host_bytes_per_pixel, .. } = *request;
+        let (limits, film) = (&device.limits, &request.view.film);
         let scene_buffers = scene_buffers(scene, &accel);
         let tile_size = tile_size(limits, film, keeps_rays);
-        let mut tile_textures = Vec::new();
-        let [hits, rays] = band_bytes(limits, tile_size, keeps_rays);
-        let mut tile_buffers = vec![PlannedBuffer::one("hits", hits)];
-        if keeps_rays {
-            tile_buffers.push(PlannedBuffer::one("rays", rays));
-            tile_textures.push(PlannedBuffer::one("hits read-back", hits));
-            tile_textures.push(PlannedBuffer::one("rays read-back", rays));
-        }
+        let band = BandBuffers::new(limits, tile_size, keeps_rays);
+        let tile_buffers = band.planned();
+        let mut tile_textures = band.planned_read_back();
         tile_textures.extend(tile_textures::planned(tile_size, layers != LayerSet::COLOR));
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
-        let in_host = |bytes| if device_type == DeviceType::Cpu { bytes } else { 0 };
+        let in_host = |bytes| device.in_host(bytes);
         // One brick's copy is waiting for the device at a time.
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
         // Rays, hits, and verdicts, which are gathered from parts.
@@ -123,6 +152,7 @@ impl RenderPlan {
         let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
         Self {
             accel,
+            occluders: None,
             scene_buffers,
             tile_buffers,
             tile_textures,
@@ -176,38 +206,6 @@ impl RenderPlan {
             }),
             _ => Ok(()),
         }
-    }
-}
-
-impl Headless {
-    /// What a picture of a scene will take on this device, with what [`Headless::plan`] or
-    /// [`Headless::plan_once`] planned. `host_bytes_per_pixel` is as in [`RenderPlan::new`].
-    #[must_use]
-    pub fn plan_render(
-        &self,
-        scene: &Scene,
-        accel: AccelPlan,
-        film: &Film,
-        layers: LayerSet,
-        host_bytes_per_pixel: u64,
-    ) -> RenderPlan {
-        let limits = self.device().limits();
-        let device = (&limits, self.adapter_info().device_type);
-        RenderPlan::new(scene, film, layers, accel, device, host_bytes_per_pixel)
-    }
-
-    /// What [`Headless::record`] will take, and checking what it gives; otherwise as [`Headless::plan_render`].
-    #[must_use]
-    pub fn plan_record(
-        &self,
-        scene: &Scene,
-        accel: AccelPlan,
-        film: &Film,
-        host_bytes_per_pixel: u64,
-    ) -> RenderPlan {
-        let limits = self.device().limits();
-        let device = (&limits, self.adapter_info().device_type);
-        RenderPlan::of_recording(scene, film, accel, device, host_bytes_per_pixel)
     }
 }
 
@@ -275,18 +273,41 @@ pub(super) fn total(buffers: &[PlannedBuffer]) -> u64 {
 mod tests {
     use super::*;
     use crate::accel::AccelChoice;
+    use crate::camera::PinholeCamera;
     use crate::color::LinearRgb;
     use crate::image::Layer;
-    use crate::sphere::Sphere;
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
-        let red = LinearRgb::from_srgb8([255, 0, 0]);
-        let spheres: Vec<Sphere> =
-            (0..1000).map(|i| Sphere::new([f64::from(i), 0.0, 0.0], 0.5, red)).collect();
-        let scene = Scene::new(&spheres).unwrap();
+        planned(size, layers, device_type, false)
+    }
+
+    fn planned(
+        size: u32,
+        layers: LayerSet,
+        device_type: DeviceType,
+        keeps_rays: bool,
+    ) -> RenderPlan {
+        let scene = Scene::from_f32(
+            (0..1000).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect(),
+            LinearRgb::from_srgb8([255, 0, 0]),
+        )
+        .unwrap();
         let accel = AccelPlan::new(scene.spheres(), AccelChoice::List, 1 << 27);
         let film = Film::new(size, size).unwrap();
-        RenderPlan::new(&scene, &film, layers, accel, (&Limits::default(), device_type), 16)
+        let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+        let request = PictureRequest {
+            scene: &scene,
+            view: View::new(&camera, film),
+            settings: &RenderSettings::default(),
+            layers,
+            host_bytes_per_pixel: 16,
+        };
+        let device = DeviceLimits { limits: Limits::default(), device_type };
+        if keeps_rays {
+            RenderPlan::of_recording(&request, accel, &device)
+        } else {
+            RenderPlan::of_primary(&request, accel, &device)
+        }
     }
 
     #[test]
@@ -332,10 +353,7 @@ mod tests {
     #[test]
     fn a_recording_keeps_rays_and_hits() {
         let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
-        let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]; 1000], LinearRgb::WHITE).unwrap();
-        let film = Film::new(1024, 1024).unwrap();
-        let device = (&Limits::default(), DeviceType::DiscreteGpu);
-        let recording = RenderPlan::of_recording(&scene, &film, plan.accel.clone(), device, 16);
+        let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
         assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
         // A ray, and both read back.
         assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));

@@ -1,24 +1,24 @@
 //! What a device did, for the checker: rays and hits on their way back to the host, and the numbers that the
 //! device was given.
 
-use std::ops::ControlFlow;
-
 use wgpu::{Buffer, Device};
 
 use super::error::GpuError;
 use super::frame::Frame;
 use super::headless::Headless;
-use super::options::Watch;
+use super::primary::Output;
+use super::progress::{Watch, go_on};
 use super::readback::ReadableBuffer;
 use super::records::{self, SceneSpace};
 use super::renderers::RendererKey;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Tile;
-use crate::camera::Camera;
+use crate::accel::AccelChoice;
+use crate::camera::{Camera, View};
 use crate::film::Film;
 use crate::image::{Image, LayerSet, NO_ID};
+use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::Scene;
-use crate::settings::Settings;
 use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
 };
@@ -28,9 +28,9 @@ pub(super) fn requested_view(
     space: &SceneSpace,
     camera: &dyn Camera,
 ) -> (RequestedCamera, UploadedView) {
-    let vectors = camera.vectors();
+    let requested = RequestedCamera::of(camera);
     let records::Camera { origin, advance, right, up, forward, first, second, third } =
-        records::Camera::new(camera.kind(), &vectors, space);
+        records::Camera::new(&requested, space);
     let uploaded = UploadedView {
         origin,
         advance,
@@ -41,69 +41,75 @@ pub(super) fn requested_view(
         scene_min: space.min.to_array(),
         scene_max: space.max.to_array(),
     };
-    (RequestedCamera { kind: camera.kind(), vectors }, uploaded)
+    (requested, uploaded)
 }
 
 /// A recording in which nothing is traced yet.
 fn new_recording(
     space: &SceneSpace,
-    camera: &dyn Camera,
-    film: &Film,
-    settings: &Settings,
+    view: &View<'_>,
+    look: PrimaryLook,
 ) -> Result<Recording, GpuError> {
-    let (requested, uploaded) = requested_view(space, camera);
+    let (requested, uploaded) = requested_view(space, view.camera);
+    let film = view.film;
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
     let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
     Ok(Recording {
         camera: requested,
         uploaded,
-        film: *film,
-        settings: *settings,
+        film,
+        look,
         pixels: vec![untraced; image.color().len()],
         image,
     })
 }
 
 impl Headless {
-    /// As [`Headless::render_uploaded`], with all layers, and with the ray and the hit of every pixel:
+    /// As [`Headless::render_uploaded`] of primary rays, with all layers, and with the ray and the hit of every pixel:
     /// everything by which [`Checker::certify`] judges the device.
     ///
     /// # Errors
-    /// As [`Headless::render_uploaded`].
+    /// As [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are of a lit picture, whose paths
+    /// [`Headless::record_paths`] records.
     pub fn record(
         &self,
         scene: &SceneBuffers,
-        camera: &dyn Camera,
-        film: &Film,
-        settings: &Settings,
+        view: &View<'_>,
+        settings: &RenderSettings,
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
-        let key =
-            RendererKey { data_layers: true, keeps_rays: true, ..RendererKey::new(scene, camera) };
+        let look = scene.primary_look(settings)?;
+        let key = RendererKey {
+            data_layers: true,
+            keeps_rays: true,
+            ..RendererKey::new(scene, view.camera)
+        };
         self.with_renderer(key, |renderer| {
-            let mut recording = new_recording(scene.space(), camera, film, settings)?;
+            let mut recording = new_recording(scene.space(), view, look)?;
             let Recording { image, pixels, .. } = &mut recording;
-            let view = (camera, film, settings);
-            self.render_tiles(renderer, scene, view, image, Some(pixels), watch)?;
+            let output = Output { image, pixels: Some(pixels) };
+            self.render_tiles(renderer, scene, view, &look, output, watch)?;
             Ok(recording)
         })
     }
 
-    /// Renders a picture and decides whether it is one that a conforming device may have made.
+    /// Renders a picture of primary rays and decides whether it is one that a conforming device may have made.
     ///
     /// # Errors
-    /// If it cannot be rendered, as with [`Headless::render`], or if there is no memory to check it. A picture
-    /// that is not legal is no error.
+    /// If it cannot be rendered, as with [`Headless::record`], or if there is no memory to check it. That a picture
+    /// is not legal is not an error.
     pub fn verify(
         &self,
         scene: &Scene,
-        camera: &dyn Camera,
-        film: &Film,
-        settings: &Settings,
+        view: &View<'_>,
+        settings: &RenderSettings,
     ) -> Result<Certificate, GpuError> {
-        let go_on = |_| ControlFlow::Continue(());
-        let recording = self.with_uploaded(scene, film, |buffers| {
-            self.record(buffers, camera, film, settings, &mut { go_on })
+        if !settings.integrator.is_primary() {
+            return Err(GpuError::NotPrimary { integrator: settings.integrator.name() });
+        }
+        let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
+        let recording = self.with_uploaded(scene, plan, |buffers| {
+            self.record(buffers, view, settings, &mut go_on)
         })?;
         Ok(Checker::new(scene)?.certify(&recording))
     }

@@ -5,9 +5,10 @@ use glam::{DVec3, Vec3};
 
 use super::tiles::{Groups, Tile};
 use crate::bounds::Bounds;
-use crate::camera::{CameraKind, CameraVectors};
+use crate::camera::View;
 use crate::film::{Film, YAxis};
-use crate::settings::{Settings, Shading};
+use crate::render::{PrimaryLook, Shading};
+use crate::verify::RequestedCamera;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -92,7 +93,8 @@ pub(super) use crate::verify::NO_HIT;
 impl Camera {
     /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box if
     /// its rays can start there, then narrows.
-    pub(super) fn new(kind: CameraKind, vectors: &CameraVectors, scene: &SceneSpace) -> Self {
+    pub(super) fn new(camera: &RequestedCamera, scene: &SceneSpace) -> Self {
+        let RequestedCamera { kind, vectors } = camera;
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
@@ -121,16 +123,16 @@ impl Camera {
 
 impl Frame {
     pub(super) fn new(
-        (kind, vectors): (CameraKind, &CameraVectors),
+        camera: &RequestedCamera,
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
         traced: Groups,
-        settings: &Settings,
+        look: &PrimaryLook,
         iteration_limit: u32,
     ) -> Self {
         Self {
-            camera: Camera::new(kind, vectors, scene),
+            camera: Camera::new(camera, scene),
             scene_min: scene.min.to_array(),
             scene_max: scene.max.to_array(),
             iteration_limit,
@@ -139,8 +141,8 @@ impl Frame {
             first_group: [0, 0],
             row_step: row_step(traced.size[1]),
             zero: 0,
-            background: settings.background().to_array(),
-            shading: match settings.shading() {
+            background: look.background.to_array(),
+            shading: match look.shading {
                 Shading::Flat => 0,
                 Shading::Headlight => 1,
             },
@@ -157,18 +159,16 @@ impl Frame {
 }
 
 impl Frame {
-    /// For lit pictures, which have settings of their own.
+    /// For lit pictures, whose colours other records decide.
     pub(super) fn of_tile(
-        camera: &dyn crate::camera::Camera,
+        view: &View<'_>,
         scene: &SceneSpace,
-        film: &Film,
         tile: Tile,
         traced: Groups,
         iteration_limit: u32,
     ) -> Self {
-        let settings = Settings::default();
-        let view = (camera.kind(), &camera.vectors());
-        Self::new(view, scene, film, tile, traced, &settings, iteration_limit)
+        let (camera, look) = (RequestedCamera::of(view.camera), PrimaryLook::default());
+        Self::new(&camera, scene, &view.film, tile, traced, &look, iteration_limit)
     }
 }
 
@@ -194,6 +194,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::denoise::Denoise;
     use crate::gpu::lit::records::{Look, Stage};
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
@@ -372,11 +373,10 @@ mod tests {
         };
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
-            let settings = Settings::default().with_shading(shading);
+            let look = PrimaryLook { shading, ..PrimaryLook::default() };
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
-            let camera = (CameraKind::Pinhole, &vectors);
-            let frame =
-                Frame::new(camera, &scene, &film, tile, Groups::of_size([1, 1]), &settings, 0);
+            let camera = RequestedCamera { kind: CameraKind::Pinhole, vectors };
+            let frame = Frame::new(&camera, &scene, &film, tile, Groups::of_size([1, 1]), &look, 0);
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
@@ -12,10 +12,12 @@ use super::order::CenterBox;
 use super::pace::Pace;
 use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
+use super::scene_summary::SceneSummary;
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use crate::color::LinearRgb;
 use crate::material::Finish;
+use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneColors};
 
 /// Tells scenes on devices apart.
@@ -34,13 +36,15 @@ impl SceneId {
 pub struct SceneBuffers {
     id: SceneId,
     space: SceneSpace,
-    /// The host's, for the layer of albedo.
-    colors: Arc<SceneColors>,
+    /// What of the host's scene pictures need.
+    summary: SceneSummary,
     structure: Structure,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// What the last picture of the scene taught of the device.
     pace: Mutex<Pace>,
+    /// Of the spheres that cast shadows in a studio, where some do not and a studio was planned for.
+    occluders: Option<Box<Self>>,
 }
 
 /// A brick, bound for the kernels.
@@ -86,7 +90,7 @@ impl SceneBuffers {
         scene: &Scene,
         accel: &Accel,
     ) -> Result<Self, GpuError> {
-        Self::upload(renderer, device, queue, scene, accel, || Ok(()))
+        Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, || Ok(()))
     }
 
     /// As [`SceneBuffers::with_accel`]; calls `flush` after every brick, so that the host may submit what is
@@ -95,13 +99,14 @@ impl SceneBuffers {
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
-        scene: &Scene,
+        summary: SceneSummary,
         accel: &Accel,
         mut flush: impl FnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
-        let mut upload = Upload { renderer, device, queue, scene, first_place: 0, bytes: 0 };
+        let colors = &summary.colors;
+        let mut upload = Upload { renderer, device, queue, colors, first_place: 0, bytes: 0 };
         let palette: Vec<records::Color> =
-            or_one(scene.palette().iter().zip(scene.finishes()).map(painted).collect());
+            or_one(colors.palette().iter().zip(colors.finishes()).map(painted).collect());
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
@@ -109,22 +114,56 @@ impl SceneBuffers {
             bricks.push(upload.brick(brick, accel.structure(), &palette)?);
             flush()?;
         }
+        let bytes = upload.bytes;
         let (min, max) = accel.bounds();
         Ok(Self {
             id: SceneId::new(),
-            space: SceneSpace { origin: scene.origin(), min, max },
-            colors: Arc::clone(scene.colors()),
+            space: SceneSpace { origin: summary.origin, min, max },
+            summary,
             structure: accel.structure(),
             bricks,
-            bytes: upload.bytes,
+            bytes,
+            occluders: None,
             pace: Mutex::new(Pace::new(tests_per_ray(accel))),
         })
+    }
+
+    /// The same scene with what casts shadows in a studio, unless that is all.
+    pub(super) fn with_occluders(self, occluders: Option<Self>) -> Self {
+        Self { occluders: occluders.map(Box::new), ..self }
     }
 
     /// Bytes of all its buffers on the device.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.bytes
+        self.bytes + self.occluders.as_ref().map_or(0, |occluders| occluders.bytes())
+    }
+
+    /// What is between surfaces and lights: in a studio, the opaque spheres alone.
+    ///
+    /// # Errors
+    /// [`GpuError::NoOccluders`] if the scene was uploaded without what a studio needs.
+    pub(super) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
+        match &self.occluders {
+            _ if settings.studio_parameters().is_none() || self.summary.is_opaque() => Ok(self),
+            Some(occluders) => Ok(occluders),
+            None => Err(GpuError::NoOccluders),
+        }
+    }
+
+    /// How primary rays become colours.
+    ///
+    /// # Errors
+    /// [`GpuError::NotPrimary`] if the picture is to be lit; what [`RenderSettings::check`] refuses.
+    pub(super) fn primary_look(&self, settings: &RenderSettings) -> Result<PrimaryLook, GpuError> {
+        let integrator = settings.integrator.name();
+        let look = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
+        settings.check_with(&self.summary.colors)?;
+        Ok(look)
+    }
+
+    pub(super) fn summary(&self) -> &SceneSummary {
+        &self.summary
     }
 
     pub(super) fn id(&self) -> SceneId {
@@ -143,7 +182,7 @@ impl SceneBuffers {
     }
 
     pub(super) fn colors(&self) -> &SceneColors {
-        &self.colors
+        &self.summary.colors
     }
 
     pub(super) fn space(&self) -> &SceneSpace {
@@ -166,7 +205,7 @@ struct Upload<'a> {
     renderer: &'a Renderer,
     device: &'a Device,
     queue: &'a Queue,
-    scene: &'a Scene,
+    colors: &'a SceneColors,
     first_place: u32,
     bytes: u64,
 }
@@ -187,7 +226,7 @@ impl Upload<'_> {
             .find(|(of, _)| *of == structure)
             .map(|(_, layout)| layout)
             .ok_or(GpuError::NoStructure { structure })?;
-        let colors: Vec<u32> = match self.scene.color_indices() {
+        let colors: Vec<u32> = match self.colors.indices() {
             Some(indices) => ids.iter().map(|id| indices[*id as usize]).collect(),
             None => vec![0],
         };

@@ -3,8 +3,8 @@
 use super::records::SceneSpace;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
-use crate::camera::Camera;
-use crate::film::{Film, YAxis};
+use crate::camera::View;
+use crate::film::YAxis;
 
 /// A rectangle of the film, in pixels, outside of which no ray meets the scene's box; perhaps empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ impl Seen {
     ///
     /// Where straight lines are straight in the picture, and rays go through one point, the box lies within its
     /// corners; of other cameras it is all of the film.
-    pub(super) fn of(camera: &dyn Camera, space: &SceneSpace, film: &Film) -> Self {
+    pub(super) fn of(&View { camera, film }: &View<'_>, space: &SceneSpace) -> Self {
         let size = [f64::from(film.width()), f64::from(film.height())];
         let all = Self { first: [0.0; 2], end: size };
         if !camera.kind().is_linear() || camera.has_lens() {
@@ -74,14 +74,9 @@ impl Seen {
 }
 
 /// How many pixels of a film are traced in tiles of a size, in whole workgroups, once for every brick.
-pub(super) fn traced_pixels(
-    scene: &SceneBuffers,
-    camera: &dyn Camera,
-    film: &Film,
-    tile_size: [u32; 2],
-) -> u64 {
-    let seen = Seen::of(camera, scene.space(), film);
-    let pixels: u64 = tiles(film, tile_size).map(|tile| seen.groups_of(tile).pixels()).sum();
+pub(super) fn traced_pixels(scene: &SceneBuffers, view: &View<'_>, tile_size: [u32; 2]) -> u64 {
+    let seen = Seen::of(view, scene.space());
+    let pixels: u64 = tiles(&view.film, tile_size).map(|tile| seen.groups_of(tile).pixels()).sum();
     pixels * scene.bricks().len() as u64
 }
 
@@ -90,7 +85,8 @@ mod tests {
     use glam::{DVec3, Vec3};
 
     use super::*;
-    use crate::camera::{OrthographicCamera, PinholeCamera, Pose};
+    use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+    use crate::film::Film;
 
     fn space() -> SceneSpace {
         let origin = DVec3::new(10.0, 0.0, 0.0);
@@ -108,7 +104,7 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
-        let seen = Seen::of(&camera, &space(), &film);
+        let seen = Seen::of(&View::new(&camera, film), &space());
         assert_eq!(seen, Seen { first: [68.0, 28.0], end: [92.0, 52.0] });
         let all = seen.groups_of(tile([0, 0], [160, 80]));
         assert_eq!(all, Groups { first: [8, 3], size: [4, 4] });
@@ -124,8 +120,8 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
-        let up = Seen::of(&camera, &space(), &film);
-        let down = Seen::of(&camera, &space(), &film.with_y_axis(YAxis::Down));
+        let up = Seen::of(&View::new(&camera, film), &space());
+        let down = Seen::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
         assert_eq!((up.first[1], up.end[1]), (48.0, 72.0));
         assert_eq!((down.first[1], down.end[1]), (8.0, 32.0));
     }
@@ -136,7 +132,7 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
-        let seen = Seen::of(&camera, &space(), &film);
+        let seen = Seen::of(&View::new(&camera, film), &space());
         assert_eq!(seen.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
     }
 
@@ -146,7 +142,7 @@ mod tests {
         let film = Film::new(200, 100).unwrap();
         let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();
-        let seen = Seen::of(&camera, &space(), &film);
+        let seen = Seen::of(&View::new(&camera, film), &space());
         for i in 0..8_u8 {
             let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
             let corner = DVec3::new(10.0 + sign(0), sign(1), sign(2));

@@ -12,25 +12,58 @@ use super::tiles::Tile;
 use crate::accel::PlannedBuffer;
 use crate::image::Image;
 
-const COLOR_FORMAT: TextureFormat = ColorTarget::Linear32.texture_format();
+/// A texture of a tile, and the buffer that it is copied to.
+struct TileTexture {
+    label: &'static str,
+    /// As plans call it.
+    texture: &'static str,
+    /// The same of the buffer.
+    read_back: &'static str,
+    format: TextureFormat,
+}
+
+const COLOR: TileTexture = TileTexture {
+    label: "pinhole color",
+    texture: "color texture",
+    read_back: "color read-back",
+    format: ColorTarget::Linear32.texture_format(),
+};
+const DEPTH: TileTexture = TileTexture {
+    label: "pinhole depth",
+    texture: "depth texture",
+    read_back: "depth read-back",
+    format: DEPTH_FORMAT,
+};
+const NORMAL: TileTexture = TileTexture {
+    label: "pinhole normal",
+    texture: "normal texture",
+    read_back: "normal read-back",
+    format: NORMAL_FORMAT,
+};
+const ID: TileTexture = TileTexture {
+    label: "pinhole id",
+    texture: "id texture",
+    read_back: "id read-back",
+    format: ID_FORMAT,
+};
+
+impl TileTexture {
+    fn planned(&self, size: [u32; 2]) -> [PlannedBuffer; 2] {
+        [
+            PlannedBuffer::one(self.texture, ReadableTexture::texture_bytes(self.format, size)),
+            PlannedBuffer::one(self.read_back, ReadableTexture::buffer_bytes(self.format, size)),
+        ]
+    }
+
+    fn create(&self, device: &Device, size: [u32; 2]) -> ReadableTexture {
+        ReadableTexture::new(device, self.label, self.format, size)
+    }
+}
 
 /// What the textures of such a tile will take, and the buffers that they are copied to.
 pub(super) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
-    let color = ("color texture", "color read-back", COLOR_FORMAT);
-    let data = [
-        ("depth texture", "depth read-back", DEPTH_FORMAT),
-        ("normal texture", "normal read-back", NORMAL_FORMAT),
-        ("id texture", "id read-back", ID_FORMAT),
-    ];
-    std::iter::once(color)
-        .chain(data.into_iter().filter(|_| data_layers))
-        .flat_map(|(texture, buffer, format)| {
-            [
-                PlannedBuffer::one(texture, ReadableTexture::texture_bytes(format, size)),
-                PlannedBuffer::one(buffer, ReadableTexture::buffer_bytes(format, size)),
-            ]
-        })
-        .collect()
+    let data = [DEPTH, NORMAL, ID].into_iter().filter(|_| data_layers);
+    std::iter::once(COLOR).chain(data).flat_map(|texture| texture.planned(size)).collect()
 }
 
 #[derive(Debug)]
@@ -49,13 +82,12 @@ struct DataTextures {
 
 impl TileTextures {
     pub(super) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
-        let texture = |label, format| ReadableTexture::new(device, label, format, size);
         Self {
-            color: texture("pinhole color", COLOR_FORMAT),
+            color: COLOR.create(device, size),
             data: data_layers.then(|| DataTextures {
-                depth: texture("pinhole depth", DEPTH_FORMAT),
-                normal: texture("pinhole normal", NORMAL_FORMAT),
-                id: texture("pinhole id", ID_FORMAT),
+                depth: DEPTH.create(device, size),
+                normal: NORMAL.create(device, size),
+                id: ID.create(device, size),
             }),
             status: ReadableBuffer::new(
                 device,

@@ -17,6 +17,9 @@ pub struct TraceTime {
     pub longest: Duration,
     /// How many submissions there were.
     pub submissions: u32,
+    /// How many pixels were traced, in whole workgroups, and once for every brick: those in which the scene's box may
+    /// be seen.
+    pub pixels: u64,
 }
 
 impl TraceTime {

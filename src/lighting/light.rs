@@ -78,7 +78,7 @@ impl Light {
     }
 
     /// The light in the world, seen by a camera; directions have unit length. `None` for a direction that is none,
-    /// which [`Lighting`](super::Lighting) refuses.
+    /// which [`RenderSettings::check`](crate::render::RenderSettings::check) refuses.
     #[must_use]
     pub fn in_world(&self, camera: &dyn Camera) -> Option<LightKind> {
         self.in_view(&camera.vectors())

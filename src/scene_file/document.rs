@@ -18,7 +18,7 @@ use crate::camera::CameraParameters;
 use crate::exact::{self, Table};
 use crate::film::{Film, YAxis};
 use crate::material::Finish;
-use crate::settings::Shading;
+use crate::render::Shading;
 use crate::sphere::Sphere;
 
 /// All tables and keys at the top.

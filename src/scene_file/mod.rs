@@ -1,4 +1,4 @@
-//! Scene files: TOML text in; film, camera, settings, lighting and spheres out. No file system.
+//! Scene files: TOML text in; film, camera, settings and spheres out. No file system.
 //!
 //! `examples/*.toml` show every part with comments.
 
@@ -21,6 +21,7 @@ use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
 use materials::Materials;
 use place::{Lines, Place, Placed};
+use toml::Spanned;
 use words::explain;
 
 use crate::camera::{Camera, CameraParameters};
@@ -28,8 +29,8 @@ use crate::color::LinearRgb;
 use crate::encoding::Encoding;
 use crate::film::Film;
 use crate::points::Points;
+use crate::render::Shading;
 use crate::scene::{Scene, SceneError};
-use crate::settings::Settings;
 use crate::sphere::Sphere;
 
 /// What a scene file says.
@@ -37,10 +38,11 @@ use crate::sphere::Sphere;
 pub struct SceneFile {
     /// The picture's size.
     pub film: Film,
-    /// Background, and the shading of a picture without lights.
-    pub settings: Settings,
     /// How the picture is written.
     pub encoding: Encoding,
+    background: LinearRgb,
+    /// Of primary rays.
+    shading: Shading,
     lighting: SceneLighting,
     data: Option<Placed<Data>>,
     camera: Placed<CameraParameters>,
@@ -88,13 +90,10 @@ impl SceneFile {
             has_materials: has_looks || has_finish(&spheres, data.as_ref()),
         }
         .read(&lines)?;
-        let defaults = Settings::default();
-        let shading = document.shading.map_or(defaults.shading(), |shading| shading.into_inner());
         Ok(Self {
             film: FilmTable::film(document.film, &lines)?,
-            settings: defaults
-                .with_shading(shading)
-                .with_background(document.background.map_or(defaults.background(), |c| c.0)),
+            background: document.background.map_or(LinearRgb::WHITE, |color| color.0),
+            shading: document.shading.map(Spanned::into_inner).unwrap_or_default(),
             encoding: document.output.0.encoding(&lines)?,
             lighting,
             data,

@@ -7,7 +7,7 @@ use serde::de::{self, SeqAccess, Visitor};
 
 use crate::color::LinearRgb;
 use crate::exact;
-use crate::lighting::{BRIGHTEST, LightingError};
+use crate::render::{BRIGHTEST, SettingsError};
 
 /// A CSS colour, or a linear triple.
 #[derive(Clone, Copy)]
@@ -58,9 +58,9 @@ impl<'de> Deserialize<'de> for Vector {
 }
 
 /// A colour times a number that was checked: the light of `what`.
-pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, LightingError> {
+pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, SettingsError> {
     let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
-    let too_bright = || LightingError::TooBright { what: what.to_owned(), rgb };
+    let too_bright = || SettingsError::TooBright { what: what.to_owned(), rgb };
     let is_bearable = rgb.iter().all(|c| *c <= BRIGHTEST);
     LinearRgb::new(rgb).ok().filter(|_| is_bearable).ok_or_else(too_bright)
 }

@@ -21,10 +21,10 @@
 //! are taken not to be multiplied out.
 //!
 //! ```no_run
-//! # use pinhole::{Scene, Film, Settings, camera::PinholeCamera, gpu::{Headless, HeadlessOptions}};
-//! # fn f(scene: &Scene, camera: &PinholeCamera, film: &Film) -> Result<(), Box<dyn std::error::Error>> {
+//! # use pinhole::{RenderSettings, Scene, View, gpu::{Headless, HeadlessOptions}};
+//! # fn f(scene: &Scene, view: &View<'_>) -> Result<(), Box<dyn std::error::Error>> {
 //! let headless = Headless::open(&HeadlessOptions::default())?;
-//! let certificate = headless.verify(scene, camera, film, &Settings::default())?;
+//! let certificate = headless.verify(scene, view, &RenderSettings::default())?;
 //! assert!(certificate.is_legal(), "{certificate}");
 //! # Ok(())
 //! # }

@@ -117,7 +117,7 @@ impl PixelCheck<'_> {
             let (found, exact) = (layers.normal, [0.0; 3]);
             return Err(ViolationKind::Normal { found, exact, error: 0.0 });
         }
-        let background = self.recording.settings.background().to_array();
+        let background = self.recording.look.background.to_array();
         check_color(layers.color, background.map(exactly))
     }
 
@@ -148,7 +148,7 @@ impl PixelCheck<'_> {
             return Err(ViolationKind::Normal { found, exact, error });
         }
         let color = scene.color(id).to_array();
-        let shading = self.recording.settings.shading();
+        let shading = self.recording.look.shading;
         check_color(layers.color, legal_color(shading, color, normal, entered.direction))?;
         Ok(fraction)
     }

@@ -1,9 +1,9 @@
 //! What a device was given, and what it made of it.
 
-use crate::camera::{CameraKind, CameraVectors};
+use crate::camera::{Camera, CameraKind, CameraVectors};
 use crate::film::Film;
 use crate::image::Image;
-use crate::settings::Settings;
+use crate::render::PrimaryLook;
 
 /// The picture of a scene as a device rendered it, the rays and hits that it got there by, and the numbers
 /// that it was given. Beside the scene, this is all that the checker needs.
@@ -15,8 +15,8 @@ pub struct Recording {
     pub uploaded: UploadedView,
     /// The picture's size.
     pub film: Film,
-    /// How hits become colours.
-    pub settings: Settings,
+    /// How hits and misses become colours.
+    pub look: PrimaryLook,
     /// Of every pixel, as in [`Image`].
     pub pixels: Vec<TracedPixel>,
     /// All layers.
@@ -30,6 +30,14 @@ pub struct RequestedCamera {
     pub kind: CameraKind,
     /// Its vectors.
     pub vectors: CameraVectors,
+}
+
+impl RequestedCamera {
+    /// What a camera says of itself.
+    #[must_use]
+    pub fn of(camera: &dyn Camera) -> Self {
+        Self { kind: camera.kind(), vectors: camera.vectors() }
+    }
 }
 
 /// The numbers of a view that kernels compute with, in the scene's frame.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::line::Line;
 use super::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use super::sphere::{Slack, SphereTest};
-use crate::settings::Shading;
+use crate::render::Shading;
 
 /// The unit normals that a device may write: all within a distance of one of these.
 #[derive(Clone, Copy, Debug, Default)]

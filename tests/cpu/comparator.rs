@@ -1,7 +1,7 @@
 //! The comparator itself: it must find what is planted, and only that.
 
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::{Film, Scene, Shading, Sphere};
+use pinhole::{Film, Integrator, Scene, Shading, Sphere};
 
 use crate::support::View;
 use crate::support::compare::{Picture, Violation, compare};
@@ -13,7 +13,7 @@ const BACKGROUND: [u32; 2] = [2, 3];
 fn scene() -> View {
     let mut view = View::three_spheres();
     view.film = Film::new(80, 60).unwrap().with_y_axis(view.film.y_axis());
-    view.settings = view.settings.with_shading(Shading::Headlight);
+    view.settings.integrator = Integrator::Primary(Shading::Headlight);
     view
 }
 
@@ -135,7 +135,7 @@ fn a_picture_upside_down_is_found() {
 
 #[test]
 fn another_shading_is_found_and_nothing_else() {
-    let violations = found(|view| view.settings = view.settings.with_shading(Shading::Flat));
+    let violations = found(|view| view.settings.integrator = Integrator::Primary(Shading::Flat));
     assert!(violations.iter().all(|v| matches!(v, Violation::Color { .. })), "{violations:?}");
     let view = scene();
     let hits = picture(&view).pixels.iter().filter(|p| p.id != NO_ID).count();

@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::image::NO_ID;
-use pinhole::lighting::{
-    Integrator, LightSampling, Lighting, PathTracing, Sampling, Sky, SkyLight,
-};
+use pinhole::lighting::{Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
 use pinhole::sampling::{pair, pixel_seed, unit};
 use pinhole::verify::{
     Checker, NO_HIT, PathRecording, PathState, RecordedSample, RecordedSurface, TracedRay,
@@ -21,9 +20,9 @@ use crate::verify::given;
 const DEPTH: u32 = 5;
 
 /// The lighting of all these: a sky, and nothing that is looked for.
-fn lighting() -> Lighting {
+fn lighting() -> RenderSettings {
     let rgb = |r, g, b| LinearRgb::new([r, g, b]).unwrap();
-    Lighting {
+    RenderSettings {
         integrator: Integrator::Path(PathTracing {
             max_depth: DEPTH,
             roulette_from: 1,
@@ -42,7 +41,7 @@ fn lighting() -> Lighting {
         ground: None,
         background: LinearRgb::BLACK,
         is_transparent: false,
-        ..Lighting::default()
+        ..RenderSettings::studio()
     }
 }
 
@@ -73,7 +72,7 @@ fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
         film,
         origin: [0, 0],
         size: [film.width(), film.height()],
-        lighting,
+        settings: lighting,
         max_depth: DEPTH,
         look,
         tables,

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
-use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Sphere, cpu, glam};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu, glam};
 
 use crate::camera::project;
 
@@ -23,7 +23,9 @@ fn parallel() -> OrthographicCamera {
 fn area(camera: &dyn Camera, z: f64) -> usize {
     let scene = Scene::new(&[Sphere::new([0.0, 0.0, z], 1.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(200, 200).unwrap();
-    let image = cpu::render(&scene, camera, &film, &Settings::default(), LayerSet::DATA).unwrap();
+    let image =
+        cpu::render(&scene, &View::new(camera, film), &RenderSettings::default(), LayerSet::DATA)
+            .unwrap();
     image.id().unwrap().iter().filter(|id| **id != NO_ID).count()
 }
 

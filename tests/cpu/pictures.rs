@@ -16,7 +16,7 @@ use crate::support::View;
 fn picture() -> Image {
     let mut view = View::three_spheres();
     view.film = pinhole::Film::new(61, 47).unwrap();
-    view.settings = view.settings.with_background(LinearRgb::BLACK);
+    view.settings.background = LinearRgb::BLACK;
     view.reference()
 }
 

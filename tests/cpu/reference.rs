@@ -2,13 +2,13 @@
 
 use pinhole::camera::{OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
-use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Shading, Sphere, cpu};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere, cpu};
 
-use crate::support::View;
+use crate::support::{View, shaded};
 
-fn headlight() -> Settings {
+fn headlight() -> RenderSettings {
     let background = LinearRgb::new([0.1, 0.2, 0.3]).unwrap();
-    Settings::default().with_shading(Shading::Headlight).with_background(background)
+    shaded(Shading::Headlight, background)
 }
 
 /// One white sphere of radius 2 at the origin, seen in parallel along −z from z = 8, a pixel per unit.
@@ -17,7 +17,7 @@ fn one_sphere() -> Image {
     let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [3.5, 3.5]).unwrap();
     let film = Film::new(7, 7).unwrap();
-    cpu::render(&scene, &camera, &film, &headlight(), LayerSet::ALL).unwrap()
+    cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL).unwrap()
 }
 
 #[test]
@@ -69,7 +69,9 @@ fn from_inside_the_far_wall_is_seen() {
     let pose = Pose::looking_at([0.0, 0.0, 1.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
     let film = Film::new(1, 1).unwrap();
-    let image = cpu::render(&scene, &camera, &film, &headlight(), LayerSet::ALL).unwrap();
+    let image =
+        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL)
+            .unwrap();
     assert_eq!(image.depth().unwrap(), [4.0]);
     // Still away from the centre, so it points along the view; the light does not mind.
     assert_eq!(image.normal().unwrap(), [[0.0, 0.0, -1.0]]);
@@ -83,7 +85,9 @@ fn of_equal_spheres_the_first_is_seen() {
     let pose = Pose::looking_at([0.0, 0.0, 4.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::new(pose, 1.0, [0.1, 0.1]).unwrap();
     let film = Film::new(5, 5).unwrap();
-    let image = cpu::render(&scene, &camera, &film, &headlight(), LayerSet::ALL).unwrap();
+    let image =
+        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::ALL)
+            .unwrap();
     assert!(image.id().unwrap().iter().all(|id| *id == 0));
 }
 
@@ -118,7 +122,9 @@ fn a_picture_of_nothing_is_background() {
     let pose = Pose::looking_at([0.0, 0.0, 4.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
     let film = Film::new(3, 2).unwrap();
-    let image = cpu::render(&scene, &camera, &film, &headlight(), LayerSet::COLOR).unwrap();
+    let image =
+        cpu::render(&scene, &pinhole::View::new(&camera, film), &headlight(), LayerSet::COLOR)
+            .unwrap();
     assert!(image.color().iter().all(|c| *c == [0.1, 0.2, 0.3]));
     assert_eq!((image.depth(), image.normal(), image.id()), (None, None, None));
 }

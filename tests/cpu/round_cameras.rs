@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DVec2, DVec3};
 use pinhole::camera::{Camera, CameraError, FisheyeCamera, PanoramaCamera, Pose};
 use pinhole::image::NO_ID;
-use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Sphere, cpu, glam};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu, glam};
 
 const EYE: [f64; 3] = [1.0, 2.0, 3.0];
 
@@ -100,7 +100,9 @@ fn outside_of_the_disk_there_is_nothing() {
     let scene = Scene::new(&[Sphere::new(EYE, 5.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(90, 60).unwrap();
     let camera = FisheyeCamera::new(pose(), TAU, film.aspect()).unwrap();
-    let image = cpu::render(&scene, &camera, &film, &Settings::default(), LayerSet::ALL).unwrap();
+    let image =
+        cpu::render(&scene, &View::new(&camera, film), &RenderSettings::default(), LayerSet::ALL)
+            .unwrap();
     for (index, id) in image.id().unwrap().iter().enumerate() {
         let (i, j) = ((index % 90) as f64 + 0.5, (index / 90) as f64 + 0.5);
         let is_in_disk = (i - 45.0).hypot(j - 30.0) <= 30.0;

@@ -1,5 +1,6 @@
 //! Run files: what is written is read again, and nothing else is.
 
+use crate::support::shaded;
 use std::collections::BTreeMap;
 
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
@@ -7,14 +8,14 @@ use pinhole::film::YAxis;
 use pinhole::image::NO_ID;
 use pinhole::verify::run_file::{self, Provenance, RunFileError};
 use pinhole::verify::{Checker, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
-use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, Shading, Sphere, cpu};
+use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading, Sphere, View, cpu};
 use sha2::{Digest, Sha256};
 
 /// A recording by hand: the numbers are of no device, and every kind of number is there.
 fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let grey = LinearRgb::new([0.25, 0.5, 1.5]).unwrap();
-    let settings = Settings::default().with_shading(Shading::Flat).with_background(grey);
-    let image = cpu::render(scene, camera, &film, &settings, LayerSet::DATA).unwrap();
+    let settings = shaded(Shading::Flat, grey);
+    let image = cpu::render(scene, &View::new(camera, film), &settings, LayerSet::DATA).unwrap();
     let pixels = image.id().unwrap().iter().zip(image.depth().unwrap()).map(|(id, depth)| {
         let direction = [-0.0, f32::from_bits(1), -1.0];
         let ray = TracedRay { origin: [1.0, f32::NAN, *depth], direction, distance: 0.1 };
@@ -35,7 +36,7 @@ fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
             scene_max: [1e3; 3],
         },
         film,
-        settings,
+        look: settings.primary().unwrap(),
         pixels: pixels.collect(),
         image,
     }

@@ -4,11 +4,18 @@ use glam::{DVec2, DVec3};
 use pinhole::camera::CameraKind;
 use pinhole::encoding::{Bits, Encoding};
 use pinhole::film::YAxis;
-use pinhole::scene_file::SceneFile;
-use pinhole::{LinearRgb, Shading, ToneCurve, glam};
+use pinhole::scene_file::{IntegratorKind, SceneFile};
+use pinhole::{LinearRgb, RenderSettings, Shading, ToneCurve, glam};
 
 fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What the file says of primary rays.
+fn settings(file: &SceneFile) -> RenderSettings {
+    let scene = file.scene(&[]).unwrap();
+    let camera = file.camera(&file.film, &scene).unwrap();
+    file.settings(IntegratorKind::Primary, &scene, camera.as_ref(), None).unwrap()
 }
 
 /// Whatever is wrong, wherever it shows.
@@ -35,8 +42,9 @@ fn an_empty_file_is_a_picture_of_nothing() {
 #[test]
 fn the_example_says_what_it_should() {
     let file = parse(include_str!("../../examples/three-spheres.toml"));
-    assert_eq!(file.settings.shading(), Shading::Flat);
-    assert_eq!(file.settings.background(), LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
+    let look = settings(&file).primary().unwrap();
+    assert_eq!(look.shading, Shading::Flat);
+    assert_eq!(look.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
     assert_eq!(file.film.y_axis(), YAxis::Down);
     let scene = file.scene(&[]).unwrap();
     assert_eq!(

@@ -3,9 +3,8 @@
 use pinhole::color::LinearRgb;
 use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Integrator, Light, LightFrame, LightKind, LightSampling, Lighting, Sampling, SkyLight, Studio,
-};
+use pinhole::lighting::{Light, LightFrame, LightKind, SkyLight};
+use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::{IntegratorKind, SceneFile};
 use pinhole::{Finish, Material, PixelFilter, Points, Scene};
 
@@ -28,24 +27,24 @@ fn message(text: &str) -> String {
     let scene = scene(&file);
     let camera = file.camera(&file.film, &scene).unwrap();
     let kind = file.integrator().unwrap_or(IntegratorKind::Studio);
-    file.lighting(kind, &scene, camera.as_ref(), None).unwrap_err().to_string()
+    file.settings(kind, &scene, camera.as_ref(), None).unwrap_err().to_string()
 }
 
-fn lighting(text: &str) -> Lighting {
+fn lighting(text: &str) -> RenderSettings {
     let file = parse(text);
     let kind = file.integrator().unwrap();
     lighting_by(text, kind)
 }
 
-fn lighting_by(text: &str, kind: IntegratorKind) -> Lighting {
+fn lighting_by(text: &str, kind: IntegratorKind) -> RenderSettings {
     let file = parse(text);
     let scene = scene(&file);
     let camera = file.camera(&file.film, &scene).unwrap();
-    file.lighting(kind, &scene, camera.as_ref(), None).unwrap_or_else(|error| panic!("{error}"))
+    file.settings(kind, &scene, camera.as_ref(), None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn studio(text: &str) -> Studio {
-    lighting(text).studio().unwrap().clone()
+    lighting(text).studio_parameters().unwrap().clone()
 }
 
 fn first_finish(text: &str) -> Finish {
@@ -85,10 +84,10 @@ fn what_is_about_light_asks_for_it() {
 
 #[test]
 fn what_is_left_out_is_as_without_a_file() {
-    assert_eq!(lighting("integrator = 'studio'\n"), Lighting::default());
+    assert_eq!(lighting("integrator = 'studio'\n"), RenderSettings::studio());
     let path = lighting("integrator = 'path'\n");
-    let integrator = Integrator::Path(pinhole::lighting::PathTracing::default());
-    assert_eq!(path, Lighting { integrator, ..Lighting::default() });
+    let integrator = Integrator::Path(pinhole::render::PathTracing::default());
+    assert_eq!(path, RenderSettings { integrator, ..RenderSettings::studio() });
 }
 
 #[test]
@@ -258,14 +257,14 @@ fn skies() {
     let camera = file.camera(&file.film, &scene).unwrap();
     let image = Environment::new(2, 1, vec![[1.0; 3]; 2]).unwrap();
     let kind = IntegratorKind::Path;
-    let found = file.lighting(kind, &scene, camera.as_ref(), Some(image)).unwrap();
+    let found = file.settings(kind, &scene, camera.as_ref(), Some(image)).unwrap();
     assert!(found.sky.is_visible);
     let SkyLight::Image { strength, rotation, .. } = found.sky.light else { panic!() };
     assert_eq!((strength, rotation), (3.0, std::f64::consts::FRAC_PI_2));
     // A studio needs none.
-    assert!(file.lighting(IntegratorKind::Studio, &scene, camera.as_ref(), None).is_ok());
+    assert!(file.settings(IntegratorKind::Studio, &scene, camera.as_ref(), None).is_ok());
     assert_eq!(
-        file.lighting(kind, &scene, camera.as_ref(), None).unwrap_err().to_string(),
+        file.settings(kind, &scene, camera.as_ref(), None).unwrap_err().to_string(),
         "line 3, column 9: this image was not given"
     );
 }
@@ -542,7 +541,7 @@ fn every_example_is_right() {
             pinhole::io::environment::read(&bytes).unwrap()
         });
         let Some(kind) = file.integrator() else { continue };
-        let lighting = file.lighting(kind, &scene, camera.as_ref(), image);
+        let lighting = file.settings(kind, &scene, camera.as_ref(), image);
         lighting.unwrap_or_else(|error| panic!("{place}: {error}"));
         lit += 1;
     }

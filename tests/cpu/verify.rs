@@ -1,6 +1,7 @@
 //! The checker by itself: it accuses no device that does what WGSL lets it do, and overlooks nothing that is
 //! planted in a recording.
 
+use pinhole::render::PrimaryLook;
 use std::f64::consts::TAU;
 
 use pinhole::camera::{
@@ -14,7 +15,7 @@ use pinhole::verify::{
     Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, UploadError,
     UploadedView, Verdict, ViolationKind,
 };
-use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Sphere};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
 
 use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
@@ -54,7 +55,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
             scene_max: narrow(high),
         },
         film,
-        settings: Settings::default(),
+        look: PrimaryLook::default(),
         pixels: Vec::new(),
         image: Image::new(0, 0, LayerSet::DATA).unwrap(),
     }

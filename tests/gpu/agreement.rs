@@ -15,13 +15,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         .into_iter()
         .map(|(name, view)| {
             Trial::test(format!("agreement::{name}"), move || {
-                let image = headless()?.render(
-                    &view.scene,
-                    view.camera.as_ref(),
-                    &view.film,
-                    &view.settings,
-                    LayerSet::ALL,
-                )?;
+                let image =
+                    headless()?.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?;
                 let reference = Picture::from(&view.reference());
                 let comparison = compare(&view, &reference, &Picture::from(&image));
                 if let Some(first) = comparison.violations.first() {

@@ -1,12 +1,11 @@
 //! Choosing a device, and what happens when it fails.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, Progress, wgpu};
-use pinhole::{Film, Image, LayerSet};
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Picture, Progress, wgpu};
+use pinhole::{Film, LayerSet};
 
 use crate::support::View;
 use crate::trial;
@@ -49,7 +48,12 @@ fn destroyed(_: &'static Headless) {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     headless.device().destroy();
     let View { scene, camera, film, settings } = View::three_spheres();
-    let result = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR);
+    let result = headless.render(
+        &scene,
+        &pinhole::View::new(camera.as_ref(), film),
+        &settings,
+        LayerSet::COLOR,
+    );
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
@@ -64,19 +68,27 @@ fn callers_fault(_: &'static Headless) {
         mapped_at_creation: false,
     });
     let View { scene, camera, film, settings } = View::three_spheres();
-    headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR).unwrap();
+    headless
+        .render(&scene, &pinhole::View::new(camera.as_ref(), film), &settings, LayerSet::COLOR)
+        .unwrap();
 }
 
 /// A picture of several submissions; `watch` is told after each but the last.
 fn render_watched(
     headless: &Headless,
-    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Image, GpuError> {
+    mut watch: impl FnMut(&Progress) -> Decision,
+) -> Result<Picture, GpuError> {
     let View { scene, camera, settings, .. } = View::three_spheres();
     let film = Film::new(2400, 1800).unwrap();
-    let accel = headless.plan(&scene, AccelChoice::Auto).build(scene.spheres());
-    let scene = headless.upload(&scene, &accel)?;
-    headless.render_uploaded(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR, &mut watch)
+    let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
+    let scene = headless.upload(&scene, &accel.into())?;
+    headless.render_uploaded(
+        &scene,
+        &pinhole::View::new(camera.as_ref(), film),
+        &settings,
+        LayerSet::COLOR,
+        &mut watch,
+    )
 }
 
 fn lost_midway(_: &'static Headless) {
@@ -85,12 +97,12 @@ fn lost_midway(_: &'static Headless) {
     let result = render_watched(&headless, |_| {
         told += 1;
         headless.device().destroy();
-        ControlFlow::Continue(())
+        Decision::GoOn
     });
     assert!(told > 0, "the picture is too small for more than one submission");
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
     // It stays lost.
-    let result = render_watched(&headless, |_| ControlFlow::Continue(()));
+    let result = render_watched(&headless, |_: &_| Decision::GoOn);
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
@@ -99,7 +111,7 @@ fn too_slow(_: &'static Headless) {
     let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
     let headless = Headless::open(&options).unwrap();
     // An upload waits for next to nothing, which may be done at once; a picture is not.
-    let result = render_watched(&headless, |_| ControlFlow::Continue(()));
+    let result = render_watched(&headless, |_: &_| Decision::GoOn);
     assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
 }
 
@@ -107,18 +119,23 @@ fn stopped(headless: &'static Headless) {
     let mut told = 0;
     let result = render_watched(headless, |progress| {
         told += 1;
-        assert!(progress.done < progress.total, "{progress:?}");
-        ControlFlow::Break(())
+        assert!(progress.part < 1.0, "{progress:?}");
+        Decision::Stop
     });
     assert_eq!((result.err(), told), (Some(GpuError::Stopped), 1));
-    let whole = render_watched(headless, |_| ControlFlow::Continue(())).unwrap();
-    assert_eq!(whole, render_watched(headless, |_| ControlFlow::Continue(())).unwrap());
+    let whole = render_watched(headless, |_: &_| Decision::GoOn).unwrap();
+    assert_eq!(whole, render_watched(headless, |_: &_| Decision::GoOn).unwrap());
 }
 
 /// Twelve bytes a pixel or more of the host: for the largest film, more than it can address.
 fn no_memory(headless: &'static Headless) {
     let View { scene, camera, settings, .. } = View::three_spheres();
     let film = Film::new(Film::MAX_SIDE, Film::MAX_SIDE).unwrap();
-    let result = headless.render(&scene, camera.as_ref(), &film, &settings, LayerSet::COLOR);
+    let result = headless.render(
+        &scene,
+        &pinhole::View::new(camera.as_ref(), film),
+        &settings,
+        LayerSet::COLOR,
+    );
     assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
 }

@@ -11,7 +11,7 @@ use pinhole::gpu::{
     Targets, adapter, wgpu,
 };
 use pinhole::image::NO_ID;
-use pinhole::{LinearRgb, Scene, Settings};
+use pinhole::{LinearRgb, RenderSettings, Scene};
 
 use crate::support::{View, spheres};
 use crate::trial;
@@ -127,7 +127,7 @@ pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
 /// The bytes that the CPU reference gives, from its ids, so that no rounding is involved.
 fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
-    let background = view.settings.background();
+    let background = view.settings.background;
     let color = |id: &u32| {
         if *id == NO_ID { background } else { view.scene.color(*id) }
     };
@@ -164,7 +164,14 @@ fn foreign_frame(_: &'static Headless) {
     let target_view = view_of(&target);
     let targets = Targets { color: &target_view, data: None };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame.set_view(&host.queue, &scene, view.camera.as_ref(), &view.film, &view.settings).unwrap();
+    frame
+        .set_view(
+            &host.queue,
+            &scene,
+            &pinhole::View::new(view.camera.as_ref(), view.film),
+            &view.settings,
+        )
+        .unwrap();
 
     // The host's own work in the same encoder, on the same texture: a clear before, a copy after.
     let mut encoder = host.encoder();
@@ -187,7 +194,9 @@ fn several_bands(_: &'static Headless) {
     let targets = Targets { color: &view_of(&target), data: None };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     let View { camera, film, settings, .. } = &view;
-    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    frame
+        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
+        .unwrap();
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let bytes = host.submit_and_read(encoder, &target);
@@ -213,7 +222,14 @@ fn several_views(_: &'static Headless) {
             let targets = Targets { color: &view_of(&target), data: None };
             let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
             let View { camera, film, settings, .. } = view;
-            frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+            frame
+                .set_view(
+                    &host.queue,
+                    &scene,
+                    &pinhole::View::new(camera.as_ref(), *film),
+                    settings,
+                )
+                .unwrap();
             renderer.record(&mut encoder, &scene, &frame).unwrap();
             target
         })
@@ -241,7 +257,14 @@ fn given_up(_: &'static Headless) {
         let accel = accel.build(scene.spheres());
         let buffers =
             SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &scene, &accel).unwrap();
-        frame.set_view(&host.queue, &buffers, &camera, &film, &Settings::default()).unwrap();
+        frame
+            .set_view(
+                &host.queue,
+                &buffers,
+                &pinhole::View::new(&camera, film),
+                &RenderSettings::default(),
+            )
+            .unwrap();
         let mut encoder = host.encoder();
         encoder.clear_buffer(frame.status(), 0, None);
         renderer.record(&mut encoder, &buffers, &frame).unwrap();
@@ -290,7 +313,9 @@ fn data_layers(_: &'static Headless) {
     let targets = Targets { color: &view_of(&color), data: Some(data) };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     let View { camera, film, settings, .. } = &view;
-    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    frame
+        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
+        .unwrap();
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let ids = host.submit_and_read(encoder, &id);
@@ -347,7 +372,12 @@ fn not_ready(_: &'static Headless) {
     let again = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
 
     let mut set_view = |film: &Film| {
-        frame.set_view(&host.queue, &scene, view.camera.as_ref(), film, &view.settings)
+        frame.set_view(
+            &host.queue,
+            &scene,
+            &pinhole::View::new(view.camera.as_ref(), *film),
+            &view.settings,
+        )
     };
     assert!(matches!(set_view(&view.film), Err(GpuError::Target { .. })));
     set_view(&Film::new(8, 8).unwrap()).unwrap();

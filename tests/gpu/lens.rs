@@ -1,12 +1,10 @@
 //! Rays through points of the lens other than its centre: pictures of one ray a pixel have none, so that the kernel
 //! is told another point.
 
-use std::ops::ControlFlow;
-
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
 use pinhole::glam::{DVec2, DVec3};
-use pinhole::gpu::{Headless, HeadlessOptions, ShaderEdit};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, ShaderEdit};
 use pinhole::verify::{LegalCameraRay, Recording};
 
 use crate::verify_views as views;
@@ -37,12 +35,10 @@ fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
     let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
     let headless = Headless::open(&options)?;
     let view = views::lens();
-    let accel = headless.plan_once(&view.scene, AccelChoice::List, &view.film);
-    let buffers = headless.upload(&view.scene, &accel.build(view.scene.spheres()))?;
-    let go_on = |_| ControlFlow::Continue(());
-    let recording =
-        headless
-            .record(&buffers, view.camera.as_ref(), &view.film, &view.settings, &mut { go_on })?;
+    let accel = headless.plan_accel(&view.scene, AccelChoice::List);
+    let buffers = headless.upload(&view.scene, &accel.build(view.scene.spheres()).into())?;
+    let go_on = |_: &_| Decision::GoOn;
+    let recording = headless.record(&buffers, &view.seen(), &view.settings, &mut { go_on })?;
     let Recording { camera, uploaded, film, pixels, .. } = &recording;
     let mut traced = 0;
     for (index, pixel) in pixels.iter().enumerate() {

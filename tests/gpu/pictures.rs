@@ -7,7 +7,7 @@ use pinhole::film::YAxis;
 use pinhole::gpu::Headless;
 use pinhole::image::{Layer, NO_ID};
 use pinhole::io::npy::encode;
-use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, Sphere, glam};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, glam};
 
 use crate::support::View;
 use crate::trial;
@@ -26,7 +26,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn render(headless: &Headless, view: &View, layers: LayerSet) -> Image {
     let View { scene, camera, film, settings } = view;
-    headless.render(scene, camera.as_ref(), film, settings, layers).unwrap()
+    headless.render(scene, &pinhole::View::new(camera.as_ref(), *film), settings, layers).unwrap()
 }
 
 fn exact_colors(headless: &'static Headless) {
@@ -99,8 +99,10 @@ fn on_the_wall(headless: &'static Headless) {
         let along = outward.any_orthonormal_vector();
         let pose = Pose::looking_along(outward, along, outward).unwrap();
         let camera = PinholeCamera::new(pose, 1.0, [1.0, 1e-5]).unwrap();
-        let settings = Settings::default();
-        let image = headless.render(&scene, &camera, &film, &settings, LayerSet::ALL).unwrap();
+        let settings = RenderSettings::default();
+        let image = headless
+            .render(&scene, &pinhole::View::new(&camera, film), &settings, LayerSet::ALL)
+            .unwrap();
         for depth in image.depth().unwrap().iter().filter(|depth| depth.is_finite()) {
             assert!(*depth <= 1e-3, "eye {outward}: {depth}");
             hits += 1;

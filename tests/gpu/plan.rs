@@ -5,9 +5,10 @@ use std::process::{Command, Output};
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
+use pinhole::camera::PinholeCamera;
 use pinhole::generate::Kind;
 use pinhole::gpu::Headless;
-use pinhole::{Film, LayerSet, LinearRgb, Scene};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View};
 use tempfile::TempDir;
 
 use crate::trial;
@@ -55,13 +56,16 @@ fn bounds(headless: &'static Headless) {
     let film = Film::new(64, 48).unwrap();
     for kind in [Kind::Random, Kind::Clusters] {
         let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
+        let camera =
+            PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect()).unwrap();
+        let view = View::new(&camera, film);
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
-            let accel = headless.plan_once(&scene, choice, &film);
-            let plan = headless.plan_render(&scene, accel, &film, LayerSet::DATA, 0);
-            let accel = plan.accel.build(scene.spheres());
-            let buffers = headless.upload(&scene, &accel).unwrap();
+            let settings = RenderSettings::default();
+            let plan = headless.plan(&scene, &view, &settings, LayerSet::DATA, choice, 0);
+            let structures = plan.build(&scene);
+            let buffers = headless.upload(&scene, &structures).unwrap();
             // Not counted: a record per brick, and the one word that stands for colours.
-            let small = 200 * accel.bricks().len() as u64;
+            let small = 200 * structures.accel.bricks().len() as u64;
             let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
             assert!(buffers.bytes() <= planned + small, "{kind:?}, {choice}");
             assert!(plan.check(&headless.device().limits(), None).is_ok());

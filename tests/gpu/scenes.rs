@@ -4,9 +4,9 @@ use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
 use pinhole::film::YAxis;
-use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere, glam};
+use pinhole::{Film, LinearRgb, RenderSettings, Scene, Shading, Sphere, glam};
 
-use crate::support::View;
+use crate::support::{View, shaded};
 
 /// Name and view of every scene.
 pub(crate) fn all() -> Vec<(&'static str, View)> {
@@ -71,20 +71,20 @@ enum Lens {
     Fisheye,
 }
 
-fn flat() -> Settings {
+fn flat() -> RenderSettings {
     let background = LinearRgb::new([0.25, 0.5, 0.75]).unwrap();
-    Settings::default().with_shading(Shading::Flat).with_background(background)
+    shaded(Shading::Flat, background)
 }
 
-fn headlight() -> Settings {
-    flat().with_shading(Shading::Headlight)
+fn headlight() -> RenderSettings {
+    shaded(Shading::Headlight, flat().background)
 }
 
 fn view(
     spheres: &[Sphere],
     camera: impl Camera + 'static,
     (width, height): (u32, u32),
-    settings: Settings,
+    settings: RenderSettings,
 ) -> View {
     let scene = Scene::new(spheres).unwrap();
     View { scene, camera: Box::new(camera), film: Film::new(width, height).unwrap(), settings }

@@ -5,7 +5,6 @@
 //! and grow by what they took, so that two renders of a large film are rarely cut alike; `slices` compares
 //! some.
 
-use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
 use fastrand::Rng;
@@ -13,11 +12,11 @@ use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, NO_HIT, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, DataTargets, Frame, GpuError, Headless, HeadlessOptions, LimitChoice, Query,
-    Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+    ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
+    Query, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
 };
 use pinhole::image::NO_ID;
-use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Settings, glam};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, glam};
 
 use crate::embedding::{Host, size_of_film, view_of};
 use crate::headless;
@@ -136,10 +135,11 @@ fn render_view(
     camera: &dyn Camera,
     film: &Film,
 ) -> Result<Image, GpuError> {
-    let buffers = headless.upload(scene, accel)?;
-    let settings = Settings::default();
-    let go_on = &mut |_| ControlFlow::Continue(());
-    headless.render_uploaded(&buffers, camera, film, &settings, LayerSet::ALL, go_on)
+    let buffers = headless.upload(scene, &accel.clone().into())?;
+    let (view, settings) = (pinhole::View::new(camera, *film), RenderSettings::default());
+    let go_on = &mut |_: &_| Decision::GoOn;
+    let picture = headless.render_uploaded(&buffers, &view, &settings, LayerSet::ALL, go_on)?;
+    Ok(picture.image)
 }
 
 /// Distances and ids are the same, to the bit.
@@ -192,23 +192,29 @@ fn slices(headless: &'static Headless) {
     let mut rng = Rng::with_seed(1);
     let mut first = None;
     for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List, AccelChoice::Grid] {
-        let accel = headless.plan(&scene, choice).build(scene.spheres());
-        let buffers = headless.upload(&scene, &accel).unwrap();
-        let settings = Settings::default();
+        let accel = headless.plan_accel(&scene, choice).build(scene.spheres());
+        let buffers = headless.upload(&scene, &accel.into()).unwrap();
+        let settings = RenderSettings::default();
         let mut told = Vec::new();
-        let watch = &mut |progress: pinhole::gpu::Progress| {
+        let watch = &mut |progress: &pinhole::gpu::Progress| {
             // Between slices, so that it changes nothing.
             std::thread::sleep(std::time::Duration::from_micros(rng.u64(0..300)));
-            told.push((progress.done, progress.total));
-            ControlFlow::Continue(())
+            told.push(progress.part);
+            Decision::GoOn
         };
         let image = headless
-            .render_uploaded(&buffers, &camera, &film, &settings, LayerSet::ALL, watch)
-            .unwrap();
+            .render_uploaded(
+                &buffers,
+                &pinhole::View::new(&camera, film),
+                &settings,
+                LayerSet::ALL,
+                watch,
+            )
+            .unwrap()
+            .image;
         assert!(told.is_sorted(), "{told:?}");
         // Two tiles, and all of what is traced.
-        assert!(told.len() >= 2 && told.iter().all(|(_, total)| *total == told[0].1), "{told:?}");
-        assert!(told.last().is_some_and(|(done, total)| done == total), "{told:?}");
+        assert!(told.len() >= 2 && told.last() == Some(&1.0), "{told:?}");
         let expected = first.get_or_insert_with(|| image.clone());
         assert_same(&choice.to_string(), &[image], std::slice::from_ref(expected));
     }
@@ -229,7 +235,8 @@ fn any(headless: &'static Headless) {
             let nearest = render_view(headless, &scene, &list, camera.as_ref(), &film).unwrap();
             let hits: Vec<bool> = nearest.id().unwrap().iter().map(|id| *id != NO_ID).collect();
             answers.extend(&hits);
-            let view = View { scene: scene.clone(), camera, film, settings: Settings::default() };
+            let view =
+                View { scene: scene.clone(), camera, film, settings: RenderSettings::default() };
             assert_is_reference(&view, &nearest);
             for accel in &built {
                 let found = any_hits(&host, &view, accel);
@@ -270,7 +277,9 @@ fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
         DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
     let targets = Targets { color: &view_of(&color), data: Some(data) };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame.set_view(&host.queue, &scene, camera.as_ref(), film, settings).unwrap();
+    frame
+        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
+        .unwrap();
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let depths = host.submit_and_read(encoder, &depth);
@@ -295,7 +304,7 @@ fn long_list(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
     let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
     let film = Film::new(24, 16).unwrap();
-    let list = headless.plan(&scene, AccelChoice::List).build(scene.spheres());
+    let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
     assert_eq!((list.structure(), list.bricks().len()), (Structure::List, 3));
     let found = render_view(headless, &scene, &list, &camera, &film).unwrap();
     let seen = |brick: &Brick| {
@@ -303,11 +312,11 @@ fn long_list(headless: &'static Headless) {
         found.id().unwrap().iter().any(|id| ids.contains(id))
     };
     assert!(list.bricks().iter().all(seen), "a slice without a nearest sphere");
-    let grid = headless.plan(&scene, AccelChoice::Grid).build(scene.spheres());
+    let grid = headless.plan_accel(&scene, AccelChoice::Grid).build(scene.spheres());
     let expected = render_view(headless, &scene, &grid, &camera, &film).unwrap();
     assert_same("list", std::slice::from_ref(&found), &[expected]);
     let camera = Box::new(camera);
-    let view = View { scene, camera, film, settings: Settings::default() };
+    let view = View { scene, camera, film, settings: RenderSettings::default() };
     assert_is_reference(&view, &found);
 }
 
@@ -317,7 +326,7 @@ fn too_many_steps(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres::nearly_coincident(30_000), LinearRgb::WHITE).unwrap();
     let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
     let film = Film::new(24, 16).unwrap();
-    let list = headless.plan(&scene, AccelChoice::List).build(scene.spheres());
+    let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
     let expected = render_view(headless, &scene, &list, &camera, &film).unwrap();
     let is_software = headless.adapter_info().device_type == wgpu::DeviceType::Cpu;
     for accel in all(scene.spheres()).iter().filter(|accel| accel.bricks().len() == 1) {
@@ -330,6 +339,11 @@ fn too_many_steps(headless: &'static Headless) {
         }
     }
     // Who leaves the choice to the renderer gets the picture anyway.
-    let image = headless.render(&scene, &camera, &film, &Settings::default(), LayerSet::ALL);
+    let image = headless.render(
+        &scene,
+        &pinhole::View::new(&camera, film),
+        &RenderSettings::default(),
+        LayerSet::ALL,
+    );
     assert_same("auto", &[image.unwrap()], std::slice::from_ref(&expected));
 }

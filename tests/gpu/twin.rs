@@ -1,16 +1,16 @@
 //! On a lavapipe that rounds to the nearest and fuses nothing, kernels do what plain f32 does, to the bit: a
 //! stricter wall than legality, where it stands.
 
-use std::ops::ControlFlow;
-
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, Nearest, RayF32};
 use pinhole::camera::CameraKind;
 use pinhole::film::YAxis;
 use pinhole::glam::{UVec2, Vec2, Vec3};
+use pinhole::gpu::Decision;
 use pinhole::image::NO_ID;
+use pinhole::render::PrimaryLook;
 use pinhole::verify::{Recording, TracedRay, UploadedView};
-use pinhole::{Film, LinearRgb, Settings, Shading};
+use pinhole::{Film, LayerSet, LinearRgb, Shading};
 
 use crate::support::View;
 use crate::{headless, scenes};
@@ -106,8 +106,8 @@ fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
 }
 
 /// `surface_color` of shaders/shading.wgsl.
-fn color(settings: &Settings, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
-    if settings.shading() == Shading::Flat {
+fn color(look: &PrimaryLook, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
+    if look.shading == Shading::Flat {
         return of.to_array();
     }
     let cosine = Vec3::from(normal).dot(Vec3::from(ray.direction)).abs();
@@ -122,14 +122,16 @@ fn check(view: &View) -> Result<(), Failed> {
         println!("{} {} need not be as plain f32", info.driver, info.driver_info);
         return Ok(());
     }
-    let View { scene, camera, film, settings } = view;
-    let accel = headless.plan_once(scene, AccelChoice::Auto, film).build(scene.spheres());
-    let buffers = headless.upload(scene, &accel)?;
-    let go_on = |_| ControlFlow::Continue(());
-    let recording = headless.record(&buffers, camera.as_ref(), film, settings, &mut { go_on })?;
+    let (scene, film) = (&view.scene, &view.film);
+    let structures = headless
+        .plan(scene, &view.seen(), &view.settings, LayerSet::DATA, AccelChoice::Auto, 0)
+        .build(scene);
+    let buffers = headless.upload(scene, &structures)?;
+    let go_on = |_: &_| Decision::GoOn;
+    let recording = headless.record(&buffers, &view.seen(), &view.settings, &mut { go_on })?;
     let differing = (0..film.height())
         .flat_map(|j| (0..film.width()).map(move |i| UVec2::new(i, j)))
-        .filter(|pixel| !is_same(view, &accel, &recording, *pixel))
+        .filter(|pixel| !is_same(view, &structures.accel, &recording, *pixel))
         .count();
     match differing {
         0 => Ok(()),
@@ -138,7 +140,7 @@ fn check(view: &View) -> Result<(), Failed> {
 }
 
 fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> bool {
-    let Recording { camera, uploaded, film, settings, pixels, image } = recording;
+    let Recording { camera, uploaded, film, look, pixels, image } = recording;
     let index = (pixel.y * film.width() + pixel.x) as usize;
     let (id, depth) = (image.id().unwrap()[index], image.depth().unwrap()[index]);
     let traced = &pixels[index];
@@ -158,7 +160,7 @@ fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> b
         && (traced.id, id) == (nearest.id, nearest.id)
         && traced.t.to_bits() == nearest.t.to_bits()
         && depth.to_bits() == (ray.distance + nearest.t).to_bits()
-        && bits(image.color()[index]) == bits(color(settings, view.scene.color(id), normal, &ray))
+        && bits(image.color()[index]) == bits(color(look, view.scene.color(id), normal, &ray))
 }
 
 fn bits(v: [f32; 3]) -> [u32; 3] {

@@ -1,16 +1,15 @@
 //! What the checker says of this device, and of faults that are planted in it.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::film::YAxis;
-use pinhole::gpu::{Headless, HeadlessOptions, ShaderEdit};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, ShaderEdit};
 use pinhole::image::NO_ID;
 use pinhole::verify::{Certificate, Checker, Recording};
-use pinhole::{LinearRgb, Scene, Shading, Sphere};
+use pinhole::{Integrator, LinearRgb, Scene, Shading, Sphere};
 
 use crate::faults::{self, Fault, How, LIST};
 use crate::support::View;
@@ -45,7 +44,8 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn legal(view: &View) -> Result<(), Failed> {
     let View { scene, camera, film, settings } = view;
-    let certificate = headless()?.verify(scene, camera.as_ref(), film, settings)?;
+    let certificate =
+        headless()?.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
     if certificate.is_legal() { Ok(()) } else { Err(certificate.to_string().into()) }
 }
 
@@ -55,10 +55,10 @@ fn build(scene: &Scene, how: How) -> Accel {
 }
 
 fn record(headless: &Headless, view: &View, how: How) -> Result<Recording, Failed> {
-    let View { scene, camera, film, settings } = view;
-    let buffers = headless.upload(scene, &build(scene, how))?;
-    let go_on = |_| ControlFlow::Continue(());
-    Ok(headless.record(&buffers, camera.as_ref(), film, settings, &mut { go_on })?)
+    let scene = &view.scene;
+    let buffers = headless.upload(scene, &build(scene, how).into())?;
+    let go_on = |_: &_| Decision::GoOn;
+    Ok(headless.record(&buffers, &view.seen(), &view.settings, &mut { go_on })?)
 }
 
 fn certify(view: &View, recording: &Recording) -> Certificate {
@@ -129,9 +129,9 @@ const INPUT_FAULTS: &[(&str, Spoil)] = &[
         })
     }),
     ("another_shading", |view, record, _| {
-        let asked = view.settings;
-        view.settings = asked.with_shading(Shading::Flat);
-        Recording { settings: asked, ..record(view) }
+        let asked = view.settings.primary().unwrap();
+        view.settings.integrator = Integrator::Primary(Shading::Flat);
+        Recording { look: asked, ..record(view) }
     }),
     ("y_the_other_way_round", |view, record, _| {
         let asked = view.film;

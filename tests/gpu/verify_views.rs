@@ -3,10 +3,10 @@
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::{Film, LinearRgb, Scene, Settings, Shading, Sphere};
+use pinhole::{Film, LinearRgb, Scene, Shading, Sphere};
 
-use crate::support::View;
 use crate::support::spheres;
+use crate::support::{View, shaded};
 
 fn colored(center: [f64; 3], radius: f64, i: usize) -> Sphere {
     let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
@@ -20,7 +20,7 @@ fn view(spheres: &[Sphere], camera: impl Camera + 'static, size: [u32; 2]) -> Vi
         scene: Scene::new(spheres).unwrap(),
         camera: Box::new(camera),
         film: Film::new(size[0], size[1]).unwrap(),
-        settings: Settings::default().with_shading(Shading::Headlight).with_background(background),
+        settings: shaded(Shading::Headlight, background),
     }
 }
 

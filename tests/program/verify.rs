@@ -3,7 +3,7 @@
 use pinhole::camera::{Camera, OrthographicCamera, Pose};
 use pinhole::verify::run_file::{self, Provenance, Run};
 use pinhole::verify::{Recording, RequestedCamera, TracedPixel, UploadedView};
-use pinhole::{Film, LayerSet, LinearRgb, Scene, Settings, cpu};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 use crate::support::{Folder, SCENE};
 
@@ -13,7 +13,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
     let pose = Pose::looking_along([0.0, 0.0, 4.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [1.0, 1.0]).unwrap();
     let film = Film::new(width, height).unwrap();
-    let settings = Settings::default();
+    let settings = RenderSettings::default();
     let vectors = camera.vectors();
     let narrow = |v: pinhole::glam::DVec3| v.as_vec3().to_array();
     let recording = Recording {
@@ -30,9 +30,9 @@ fn nothing([width, height]: [u32; 2]) -> Run {
             scene_max: [11.0; 3],
         },
         film,
-        settings,
+        look: settings.primary().unwrap(),
         pixels: vec![TracedPixel { ray: None, t: 1e30, id: u32::MAX }; (width * height) as usize],
-        image: cpu::render(&scene, &camera, &film, &settings, LayerSet::DATA).unwrap(),
+        image: cpu::render(&scene, &View::new(&camera, film), &settings, LayerSet::DATA).unwrap(),
     };
     let text = str::to_owned;
     let provenance = Provenance {
@@ -57,7 +57,7 @@ fn folder() -> Folder {
     std::fs::write(folder.path("one"), bytes(&nothing([1, 1]))).unwrap();
     // White, where black was asked for.
     let mut wrong = nothing([30, 20]);
-    wrong.recording.settings = wrong.recording.settings.with_background(LinearRgb::BLACK);
+    wrong.recording.look.background = LinearRgb::BLACK;
     std::fs::write(folder.path("wrong"), bytes(&wrong)).unwrap();
     let mut other_view = nothing([3, 2]);
     other_view.recording.uploaded.right[0] *= 1.5;

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use pinhole::camera::CameraKind;
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::{Image, Shading, cpu, glam};
+use pinhole::{Image, Integrator, Shading, cpu, glam};
 
 use super::View;
 
@@ -152,8 +152,8 @@ fn bounds(view: &View, [i, j]: [u32; 2], reference: &Pixel) -> PixelBounds {
         normal,
         // On the exact ray, and rounded to f32 in the world.
         position: along + DISPLACEMENT * distance(reference.position, [0.0; 3]),
-        color: match view.settings.shading() {
-            Shading::Flat => 0.0,
+        color: match view.settings.integrator {
+            Integrator::Primary(Shading::Flat) => 0.0,
             _ => f64::from(brightest) * 3.0_f64.sqrt() * (normal + DISPLACEMENT),
         },
     }

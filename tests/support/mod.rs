@@ -7,8 +7,8 @@ pub(crate) mod maps;
 pub(crate) mod spheres;
 
 use pinhole::camera::Camera;
-use pinhole::scene_file::SceneFile;
-use pinhole::{Film, Image, LayerSet, Scene, Settings, cpu};
+use pinhole::scene_file::{IntegratorKind, SceneFile};
+use pinhole::{Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, cpu};
 
 /// One picture to be made.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ pub(crate) struct View {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
     pub(crate) film: Film,
-    pub(crate) settings: Settings,
+    pub(crate) settings: RenderSettings,
 }
 
 impl View {
@@ -25,7 +25,8 @@ impl View {
         let file = SceneFile::parse(text).unwrap();
         let scene = file.scene(&[]).unwrap();
         let camera = file.camera(&file.film, &scene).unwrap();
-        Self { scene, camera, film: file.film, settings: file.settings }
+        let settings = file.settings(IntegratorKind::Primary, &scene, camera.as_ref(), None);
+        Self { scene, camera, film: file.film, settings: settings.unwrap() }
     }
 
     /// The scene of `pinhole demo`.
@@ -38,9 +39,20 @@ impl View {
         Self::from_toml(include_str!("../../examples/three-spheres-orthographic.toml"))
     }
 
+    /// Its camera and film.
+    pub(crate) fn seen(&self) -> pinhole::View<'_> {
+        pinhole::View::new(self.camera.as_ref(), self.film)
+    }
+
     /// As the CPU reference sees it.
     pub(crate) fn reference(&self) -> Image {
-        let Self { scene, camera, film, settings } = self;
-        cpu::render(scene, camera.as_ref(), film, settings, LayerSet::ALL).unwrap()
+        cpu::render(&self.scene, &self.seen(), &self.settings, LayerSet::ALL).unwrap()
     }
+}
+
+/// Primary rays, shaded over a background.
+#[allow(dead_code, reason = "each test program uses some of them")]
+pub(crate) fn shaded(shading: Shading, background: LinearRgb) -> RenderSettings {
+    let integrator = Integrator::Primary(shading);
+    RenderSettings { integrator, background, ..RenderSettings::default() }
 }

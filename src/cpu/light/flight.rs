@@ -178,7 +178,7 @@ mod tests {
     use super::*;
     use crate::camera::{PinholeCamera, Pose};
     use crate::color::LinearRgb;
-    use crate::lighting::Lighting;
+    use crate::render::RenderSettings;
     use crate::scene::Scene;
     use crate::sphere::Sphere;
 
@@ -186,7 +186,7 @@ mod tests {
         let scene = Scene::new(spheres).unwrap();
         let pose = Pose::looking_at([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
-        test(&Stage::new(&scene, &camera, &Lighting::default()));
+        test(&Stage::new(&scene, &camera, &RenderSettings::studio()));
     }
 
     fn direction(random: &mut fastrand::Rng) -> DVec3 {

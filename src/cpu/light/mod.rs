@@ -9,14 +9,13 @@ use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
 use self::stage::{Stage, luminance};
 use self::studio::follow as follow_in_studio;
-use super::{ROWS_AT_ONCE, denoise, for_each_row, shade, trace};
-use crate::camera::Camera;
-use crate::film::Film;
-use crate::image::{Averages, Image, ImageTooLarge, LayerSet, Pixel};
-use crate::lighting::{Integrator, Lighting, LightingError};
+use super::{denoise, for_each_pixel, primary_pixel, render_primary};
+use crate::camera::View;
+use crate::image::{Averages, Image, ImageTooLarge, LayerSet, NO_ID, Pixel};
+use crate::math::wide;
 use crate::outline;
+use crate::render::{Integrator, PrimaryLook, RenderSettings, SettingsError};
 use crate::scene::Scene;
-use crate::settings::Settings;
 
 mod bsdf;
 mod flight;
@@ -30,96 +29,83 @@ mod studio;
 
 pub use sample::Sample;
 
-/// Why there is no lit picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LitError {
-    /// The lighting is refused.
-    #[error(transparent)]
-    Lighting(#[from] LightingError),
-    /// The image does not fit into memory.
-    #[error(transparent)]
-    Image(#[from] ImageTooLarge),
-}
-
-/// A lit picture that is ready to be rendered, as a whole or sample by sample.
+/// A picture that is ready to be rendered, as a whole or sample by sample.
 #[derive(Debug)]
-pub struct LitPicture<'a> {
+pub struct SampledPicture<'a> {
     stage: Stage<'a>,
-    camera: &'a dyn Camera,
-    film: &'a Film,
+    view: View<'a>,
     lens: Lens<'a>,
 }
 
-impl<'a> LitPicture<'a> {
-    /// Checks the lighting, and makes ready what all samples need.
+impl<'a> SampledPicture<'a> {
+    /// Checks the settings, and makes ready what all samples need.
     ///
     /// # Errors
-    /// What [`Lighting::check`] refuses.
+    /// What [`RenderSettings::check`] refuses.
     pub fn new(
         scene: &'a Scene,
-        camera: &'a dyn Camera,
-        film: &'a Film,
-        lighting: &'a Lighting,
-    ) -> Result<Self, LightingError> {
-        lighting.check(scene)?;
-        let offsets = lighting.sampling.filter.offset_table();
+        view: &View<'a>,
+        settings: &'a RenderSettings,
+    ) -> Result<Self, SettingsError> {
+        settings.check(scene)?;
+        let offsets = settings.sampling.filter.offset_table();
         Ok(Self {
-            stage: Stage::new(scene, camera, lighting),
-            camera,
-            film,
-            lens: Lens::new(camera, film, offsets, scene.origin()),
+            stage: Stage::new(scene, view.camera, settings),
+            view: *view,
+            lens: Lens::new(view, offsets, scene.origin()),
         })
     }
 
-    /// One sample of a pixel, which is column and row.
+    /// One sample of a pixel, which is column and row. By primary rays, all samples of a pixel are the same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
-        let Lighting { integrator, sampling, is_transparent, .. } = self.stage.lighting;
+        let RenderSettings { integrator, sampling, is_transparent, .. } = self.stage.settings;
         let address = Address::new(pixel, sample, sampling.seed);
-        let found = match (self.lens.flight(pixel, address), integrator) {
-            (None, _) if *is_transparent => Found::default(),
-            (None, _) => Found { color: self.stage.background(), ..Found::default() },
-            (Some(flight), Integrator::Studio(studio)) => {
-                follow_in_studio(&self.stage, studio, flight, address)
+        let flight = || self.lens.flight(pixel, address);
+        let found = match integrator {
+            Integrator::Primary(_) => Some(self.primary(pixel)),
+            Integrator::Studio(studio) => {
+                flight().map(|flight| follow_in_studio(&self.stage, studio, flight, address))
             }
-            (Some(flight), Integrator::Path(tracing)) => {
-                follow_path(&self.stage, tracing, flight, address)
+            Integrator::Path(tracing) => {
+                flight().map(|flight| follow_path(&self.stage, tracing, flight, address))
             }
         };
-        found.into()
+        let nothing = || {
+            let color = if *is_transparent { DVec3::ZERO } else { self.stage.background() };
+            Found { color, ..Found::default() }
+        };
+        found.unwrap_or_else(nothing).into()
     }
 
-    /// Renders all pixels.
-    ///
-    /// Colour, alpha and albedo are means of samples. Depth, normal, position and id are those of the ray through the
-    /// pixel's centre, as [`super::render`] gives them: of spheres alone, whatever they are made of. The variance is
-    /// that of the mean of luminances. Rows run in parallel with the feature `parallel`; the picture does not depend
-    /// on it.
+    fn primary(&self, pixel: [u32; 2]) -> Found {
+        let look = self.stage.settings.primary().unwrap_or_default();
+        let Pixel { color, albedo, id, .. } =
+            primary_pixel(self.stage.scene, &self.view, &look, pixel);
+        let alpha = if id == NO_ID { 0.0 } else { 1.0 };
+        Found { color: wide(color), alpha, albedo: wide(albedo) }
+    }
+
+    /// Renders all pixels; see [`super::render`].
     ///
     /// # Errors
     /// If the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
-        let lighting = self.stage.lighting;
-        let wanted = lighting.layers_for(layers);
-        let mut image = Image::new(self.film.width(), self.film.height(), wanted)?;
-        let height = self.film.height() as usize;
-        for start in (0..height).step_by(ROWS_AT_ONCE) {
-            let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
-            for_each_row(rows, |j, row| {
-                for i in 0..self.film.width() {
-                    let pixel = [i, (start + j) as u32];
-                    let averages = self.averages(pixel);
-                    row.set(i as usize, &self.data(pixel));
-                    row.set_averages(i as usize, &averages);
-                }
-            });
+        let settings = self.stage.settings;
+        if let Some(look) = settings.primary() {
+            return render_primary(self.stage.scene, &self.view, &look, layers);
         }
-        if lighting.is_denoised {
+        let film = self.view.film;
+        let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
+        for_each_pixel(&mut image, |pixel, i, row| {
+            row.set(i, &self.data(pixel));
+            row.set_averages(i, &self.averages(pixel));
+        });
+        if settings.is_denoised {
             // All guides are among the layers.
             image = denoise(&image).unwrap_or(image);
         }
-        if let Some(lines) = lighting.studio().and_then(|studio| studio.outline) {
+        if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
             outline::draw(&mut image, &lines);
         }
         image.keep(layers);
@@ -127,7 +113,7 @@ impl<'a> LitPicture<'a> {
     }
 
     fn averages(&self, pixel: [u32; 2]) -> Averages {
-        let count = self.stage.lighting.sampling.samples;
+        let count = self.stage.settings.sampling.samples;
         let (mut color, mut albedo) = (DVec3::ZERO, DVec3::ZERO);
         let (mut alpha, mut light, mut square) = (0.0, 0.0, 0.0);
         for sample in 0..count {
@@ -151,39 +137,21 @@ impl<'a> LitPicture<'a> {
     }
 
     /// What the ray through the pixel's centre says, without light.
-    fn data(&self, [i, j]: [u32; 2]) -> Pixel {
-        let location = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
-        let ray = self.camera.ray_in_world(location);
-        let hit = self.camera.sees(location).then(|| trace(self.stage.scene, &ray)).flatten();
-        shade(self.stage.scene, &Settings::default(), &ray, hit.as_ref())
+    fn data(&self, pixel: [u32; 2]) -> Pixel {
+        primary_pixel(self.stage.scene, &self.view, &PrimaryLook::default(), pixel)
     }
 }
 
-/// Renders a lit picture; see [`LitPicture::render`].
+/// One sample of a picture's pixel. Who wants many makes a [`SampledPicture`] once.
 ///
 /// # Errors
-/// What [`Lighting::check`] refuses; if the image does not fit into memory.
-pub fn render_lit(
-    scene: &Scene,
-    camera: &dyn Camera,
-    film: &Film,
-    lighting: &Lighting,
-    layers: LayerSet,
-) -> Result<Image, LitError> {
-    Ok(LitPicture::new(scene, camera, film, lighting)?.render(layers)?)
-}
-
-/// One sample of a lit picture's pixel. Who wants many makes a [`LitPicture`] once.
-///
-/// # Errors
-/// What [`Lighting::check`] refuses.
+/// What [`RenderSettings::check`] refuses.
 pub fn radiance(
     scene: &Scene,
-    camera: &dyn Camera,
-    film: &Film,
-    lighting: &Lighting,
+    view: &View<'_>,
+    settings: &RenderSettings,
     pixel: [u32; 2],
     sample: u32,
-) -> Result<Sample, LightingError> {
-    Ok(LitPicture::new(scene, camera, film, lighting)?.sample(pixel, sample))
+) -> Result<Sample, SettingsError> {
+    Ok(SampledPicture::new(scene, view, settings)?.sample(pixel, sample))
 }

@@ -10,9 +10,10 @@ use super::maps::Frame;
 use super::sample::{Address, Found};
 use super::source::{Sought, SoughtLight};
 use super::stage::{Stage, rgb};
-use crate::lighting::{LightKind, LightSampling, PathTracing};
+use crate::lighting::LightKind;
 use crate::material::Material;
 use crate::ray::Ray;
+use crate::render::{LightSampling, PathTracing};
 use crate::sampling::unit;
 
 /// Which pair of a surface's random numbers is for what.
@@ -138,8 +139,8 @@ impl Path<'_> {
 
     fn miss(&mut self) {
         let Self { stage, has_scattered, .. } = *self;
-        let is_background = !has_scattered && !stage.lighting.sky.is_visible;
-        let radiance = if !has_scattered && stage.lighting.is_transparent {
+        let is_background = !has_scattered && !stage.settings.sky.is_visible;
+        let radiance = if !has_scattered && stage.settings.is_transparent {
             DVec3::ZERO
         } else if is_background {
             stage.background()

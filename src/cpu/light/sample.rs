@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::flight::{Flight, Start};
-use crate::camera::Camera;
-use crate::film::Film;
+use crate::camera::View;
 use crate::filter;
 use crate::ray::Ray;
 use crate::sampling::{self, pixel_seed};
@@ -61,36 +60,31 @@ impl Address {
 /// How a sample becomes a ray.
 #[derive(Debug)]
 pub(super) struct Lens<'a> {
-    camera: &'a dyn Camera,
-    film: &'a Film,
+    view: View<'a>,
     offsets: [f32; 257],
     /// Of the scene's frame.
     origin: DVec3,
 }
 
 impl<'a> Lens<'a> {
-    pub(super) fn new(
-        camera: &'a dyn Camera,
-        film: &'a Film,
-        offsets: [f32; 257],
-        origin: DVec3,
-    ) -> Self {
-        Self { camera, film, offsets, origin }
+    pub(super) fn new(view: &View<'a>, offsets: [f32; 257], origin: DVec3) -> Self {
+        Self { view: *view, offsets, origin }
     }
 
     /// The ray of a sample, in the scene's frame; `None` where the camera sees nothing.
     pub(super) fn flight(&self, pixel: [u32; 2], address: Address) -> Option<Flight> {
         let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
         let [column, row] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
-        let location = self.film.relative_location(column, row);
-        if !self.camera.sees(location) {
+        let View { camera, film } = self.view;
+        let location = film.relative_location(column, row);
+        if !camera.sees(location) {
             return None;
         }
-        let ray = if self.camera.has_lens() {
+        let ray = if camera.has_lens() {
             let lens = DVec2::from(address.pair(1).map(sampling::unit));
-            self.camera.ray_through_lens(location, lens)
+            camera.ray_through_lens(location, lens)
         } else {
-            self.camera.ray_in_world(location)
+            camera.ray_in_world(location)
         };
         let ray = Ray { origin: ray.origin - self.origin, ..ray };
         Some(Flight { ray, start: Start::Free })

@@ -6,7 +6,8 @@ use super::flight::Surface;
 use super::lamp::{self, Arrival};
 use super::maps::{Frame, cone, cone_density, cone_of_sphere, versine};
 use super::stage::{Stage, rgb};
-use crate::lighting::{LightKind, LightSampling};
+use crate::lighting::LightKind;
+use crate::render::LightSampling;
 use crate::sampling::unit;
 
 /// One of the things that light is sought at, each with the same probability.
@@ -125,7 +126,7 @@ impl Stage<'_> {
             Source::Sky => {
                 let image = self.sky_image?;
                 let (direction, density) = image.environment.sample(u, image.rotation);
-                let radiance = self.lighting.sky.light.radiance(direction);
+                let radiance = self.settings.sky.light.radiance(direction);
                 Some(Sought {
                     direction,
                     distance: f64::INFINITY,
@@ -168,6 +169,6 @@ impl Stage<'_> {
         let density = self.sky_image.map(|image| {
             image.environment.density(direction, image.rotation) / self.sources.count()
         });
-        (self.lighting.sky.light.radiance(direction), density)
+        (self.settings.sky.light.radiance(direction), density)
     }
 }

@@ -9,15 +9,16 @@ use crate::color::LinearRgb;
 use crate::environment::Environment;
 use crate::lighting::emitters::Emitters;
 use crate::lighting::energy::EnergyTables;
-use crate::lighting::{Integrator, LightKind, Lighting, SkyLight};
+use crate::lighting::{LightKind, SkyLight};
 use crate::material::Material;
 use crate::math::{unit, wide};
+use crate::render::{Integrator, RenderSettings};
 use crate::scene::Scene;
 
 #[derive(Debug)]
 pub(super) struct Stage<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) lighting: &'a Lighting,
+    pub(super) settings: &'a RenderSettings,
     pub(super) ground: Option<Plane>,
     /// In input order.
     pub(super) lights: Vec<LightKind>,
@@ -45,9 +46,9 @@ pub(super) struct SkyImage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    pub(super) fn new(scene: &'a Scene, camera: &dyn Camera, lighting: &'a Lighting) -> Self {
+    pub(super) fn new(scene: &'a Scene, camera: &dyn Camera, settings: &'a RenderSettings) -> Self {
         let origin = scene.origin();
-        let lights = lighting.lights.iter().filter_map(|light| light.in_world(camera));
+        let lights = settings.lights.iter().filter_map(|light| light.in_world(camera));
         let lights = lights.map(|light| match light {
             LightKind::Point { position, intensity } => {
                 LightKind::Point { position: position - origin, intensity }
@@ -57,7 +58,7 @@ impl<'a> Stage<'a> {
             }
             anywhere => anywhere,
         });
-        let ground = lighting.ground.and_then(|ground| {
+        let ground = settings.ground.and_then(|ground| {
             Some(Plane {
                 point: ground.point - origin,
                 normal: unit(ground.normal)?,
@@ -65,7 +66,7 @@ impl<'a> Stage<'a> {
                 is_shadow_catcher: ground.is_shadow_catcher,
             })
         });
-        let sky_image = match &lighting.sky.light {
+        let sky_image = match &settings.sky.light {
             SkyLight::Image { environment, strength, rotation }
                 if *strength > 0.0 && environment.has_light() =>
             {
@@ -75,8 +76,8 @@ impl<'a> Stage<'a> {
             _ => None,
         };
         let (lights, emitters): (Vec<_>, _) = (lights.collect(), Emitters::of(scene));
-        let sources = match &lighting.integrator {
-            Integrator::Studio(_) => Sources::default(),
+        let sources = match &settings.integrator {
+            Integrator::Primary(_) | Integrator::Studio(_) => Sources::default(),
             Integrator::Path(tracing) => {
                 let (has_emitters, has_sky) = (!emitters.is_empty(), sky_image.is_some());
                 Sources::new(&lights, has_emitters, has_sky, tracing.light_sampling)
@@ -84,7 +85,7 @@ impl<'a> Stage<'a> {
         };
         Self {
             scene,
-            lighting,
+            settings,
             ground,
             lights,
             emitters,
@@ -136,7 +137,7 @@ impl<'a> Stage<'a> {
     }
 
     pub(super) fn background(&self) -> DVec3 {
-        rgb(self.lighting.background)
+        rgb(self.settings.background)
     }
 }
 

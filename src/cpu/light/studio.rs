@@ -10,8 +10,9 @@ use super::lamp;
 use super::maps::{self, Frame};
 use super::sample::{Address, Found};
 use super::stage::{Plane, Stage, luminance, rgb};
-use crate::lighting::{LightKind, Studio};
+use crate::lighting::LightKind;
 use crate::ray::Ray;
+use crate::render::Studio;
 
 /// What a ray from the camera brings.
 pub(super) fn follow(
@@ -26,7 +27,8 @@ pub(super) fn follow(
     for m in 0..studio.max_surfaces {
         let Some(meeting) = nearest(stage, &flight) else { break };
         way += meeting.distance;
-        let view = View { stage, studio, meeting, direction: flight.ray.direction, address, m };
+        let view =
+            SeenSurface { stage, studio, meeting, direction: flight.ray.direction, address, m };
         if let Some(plane) = stage.ground.filter(|g| g.is_shadow_catcher)
             && meeting.surface == Surface::Ground
         {
@@ -52,14 +54,14 @@ pub(super) fn follow(
         let ray = Ray { origin: meeting.point, ..flight.ray };
         flight = Flight { ray, start: meeting.other_side() };
     }
-    if !stage.lighting.is_transparent {
+    if !stage.settings.is_transparent {
         found.color += clear * stage.background();
     }
     found
 }
 
 /// A surface that is seen.
-struct View<'a> {
+struct SeenSurface<'a> {
     stage: &'a Stage<'a>,
     studio: &'a Studio,
     meeting: Meeting,
@@ -70,7 +72,7 @@ struct View<'a> {
     m: u32,
 }
 
-impl View<'_> {
+impl SeenSurface<'_> {
     fn color(&self) -> DVec3 {
         let Self { stage, studio, meeting, .. } = self;
         if let Some(emission) = stage.emission(meeting.surface) {

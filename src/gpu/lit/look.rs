@@ -8,12 +8,13 @@ use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::gpu::records::NO_HIT;
+use crate::gpu::scene_summary::{EmissiveSphere, SceneSummary};
 use crate::lighting::emitters::Emitters;
 use crate::lighting::energy::EnergyTables;
-use crate::lighting::{Integrator, LightKind, LightSampling, Lighting, Sky, SkyLight};
+use crate::lighting::{LightKind, Sky, SkyLight};
 use crate::material::{Finish, Material};
 use crate::math::unit;
-use crate::scene::Scene;
+use crate::render::{Integrator, LightSampling, RenderSettings};
 
 /// What a picture's kernels get to know of its lighting.
 #[derive(Debug)]
@@ -30,25 +31,29 @@ pub(super) struct Lit {
 
 impl Lit {
     /// Of a lighting that has been checked, for a scene in its own frame.
-    pub(super) fn new(lighting: &Lighting, scene: &Scene, camera: &dyn Camera) -> Self {
+    pub(super) fn new(
+        lighting: &RenderSettings,
+        scene: &SceneSummary,
+        camera: &dyn Camera,
+    ) -> Self {
         let mut tables = Vec::new();
         let lights: Vec<LightKind> =
             lighting.lights.iter().filter_map(|light| light.in_world(camera)).collect();
-        let emitters = Emitters::of(scene);
-        let sources = SourceList::of(lighting, &lights, &emitters);
+        let (emitters, finishes) = (&scene.emitters, scene.colors.finishes());
+        let sources = SourceList::of(lighting, &lights, emitters);
         for (index, light) in lights.iter().enumerate() {
             let source = sources.lamps.get(index).copied().unwrap_or(0);
-            tables.extend(light_record(light, scene.origin(), source));
+            tables.extend(light_record(light, scene.origin, source));
         }
         let emitter_first = tables.len() as u32;
         if sources.emitters {
-            tables.extend(emitter_records(scene, &emitters));
+            tables.extend(emitter_records(scene));
         }
         let material_first = tables.len() as u32;
-        let energies = EnergyTables::of(scene.finishes());
-        let energy_first = material_first + 2 * (1 + scene.finishes().len()) as u32;
+        let energies = EnergyTables::of(finishes);
+        let energy_first = material_first + 2 * (1 + finishes.len()) as u32;
         tables.extend(material_record(LinearRgb::WHITE, &Finish::default(), 0));
-        let painted = scene.palette().iter().zip(scene.finishes()).zip(energies.starts());
+        let painted = scene.colors.palette().iter().zip(finishes).zip(energies.starts());
         for ((color, finish), start) in painted {
             let energy = energy_first + start.unwrap_or(0) / 4;
             tables.extend(material_record(*color, finish, energy));
@@ -65,7 +70,7 @@ impl Lit {
             mode: mode_of(lighting, scene, &sources),
             look,
             tables,
-            is_opaque: scene.finishes().iter().all(|finish| finish.opacity >= 1.0),
+            is_opaque: scene.is_opaque(),
             casts_shadow: lights.iter().map(|l| !matches!(l, LightKind::Head { .. })).collect(),
         }
     }
@@ -88,7 +93,7 @@ struct SourceList {
 }
 
 impl SourceList {
-    fn of(lighting: &Lighting, lights: &[LightKind], emitters: &Emitters) -> Self {
+    fn of(lighting: &RenderSettings, lights: &[LightKind], emitters: &Emitters) -> Self {
         let Integrator::Path(path) = &lighting.integrator else {
             return Self { lamps: Vec::new(), emitters: false, image: false };
         };
@@ -118,8 +123,8 @@ impl SourceList {
     }
 }
 
-fn mode_of(lighting: &Lighting, scene: &Scene, sources: &SourceList) -> Mode {
-    if lighting.studio().is_some() {
+fn mode_of(lighting: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {
+    if lighting.studio_parameters().is_some() {
         return Mode::Studio;
     }
     let is_matt = |finish: &Finish| match finish.material {
@@ -128,7 +133,7 @@ fn mode_of(lighting: &Lighting, scene: &Scene, sources: &SourceList) -> Mode {
         Material::Conductor { .. } | Material::Dielectric { .. } => false,
     };
     Mode::Path(
-        if scene.finishes().iter().all(is_matt) { Surfaces::Matt } else { Surfaces::Any },
+        if scene.colors.finishes().iter().all(is_matt) { Surfaces::Matt } else { Surfaces::Any },
         if sources.count() == 0 { Sources::None } else { Sources::Any },
         match lighting.sky.light {
             SkyLight::Image { .. } => SkyKind::Image,
@@ -137,7 +142,7 @@ fn mode_of(lighting: &Lighting, scene: &Scene, sources: &SourceList) -> Mode {
     )
 }
 
-fn look_of(lighting: &Lighting, scene: &Scene) -> Look {
+fn look_of(lighting: &RenderSettings, scene: &SceneSummary) -> Look {
     let mut look = Look { seed: lighting.sampling.seed, ..Look::zeroed() };
     look.background = lighting.background.to_array();
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
@@ -145,12 +150,13 @@ fn look_of(lighting: &Lighting, scene: &Scene) -> Look {
         flag(lighting.is_transparent, TRANSPARENT) | flag(lighting.sky.is_visible, SKY_SEEN);
     if let Some(ground) = &lighting.ground {
         look.flags |= GROUND | flag(ground.is_shadow_catcher, CATCHER);
-        look.ground_point = (ground.point - scene.origin()).as_vec3().to_array();
+        look.ground_point = (ground.point - scene.origin).as_vec3().to_array();
         look.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
         look.ground_color = ground.color.to_array();
     }
     sky(&lighting.sky, &mut look);
     match &lighting.integrator {
+        Integrator::Primary(_) => {}
         Integrator::Path(path) => {
             look.roulette_from = path.roulette_from;
             look.light_sampling = match path.light_sampling {
@@ -225,12 +231,10 @@ fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] 
 }
 
 /// As `shaders/emitters.wgsl` reads them.
-fn emitter_records<'a>(
-    scene: &'a Scene,
-    emitters: &'a Emitters,
-) -> impl Iterator<Item = [f32; 4]> + 'a {
-    emitters.ids().iter().enumerate().flat_map(move |(index, id)| {
-        let finish = scene.finish(*id);
+fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
+    let emitters = &scene.emitters;
+    emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
+        let EmissiveSphere { sphere, color, finish } = *emissive;
         // A surface that lets light through sends out its share.
         let strength = match finish.material {
             Material::Emissive { strength } => strength * finish.opacity,
@@ -238,9 +242,9 @@ fn emitter_records<'a>(
         };
         let probability = emitters.probability(*id) as f32;
         [
-            scene.spheres()[*id as usize],
+            sphere,
             [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
-            four(scene.color(*id).to_array().map(|c| c * strength), 0.0),
+            four(color.to_array().map(|c| c * strength), 0.0),
         ]
     })
 }

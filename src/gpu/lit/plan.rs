@@ -1,54 +1,48 @@
 //! What a lit picture will take of the device and of the host.
 
-use wgpu::{DeviceType, Limits};
-
 use super::film::BYTES_PER_PIXEL;
 use super::look::Lit;
 use super::records::{FILM_SLOTS, PATH_SLOTS};
 use super::tile::{lit_tile_size, sky_image};
-use crate::accel::{AccelChoice, AccelPlan, PlannedBuffer};
-use crate::camera::Camera;
-use crate::film::Film;
-use crate::gpu::headless::Headless;
-use crate::gpu::plan::{HostPeak, RenderPlan, scene_buffers, tile_count, total};
+use crate::accel::{AccelPlan, PlannedBuffer};
+use crate::gpu::plan::{
+    DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count,
+    total,
+};
 use crate::gpu::records::Hit;
-use crate::image::LayerSet;
-use crate::lighting::Lighting;
+use crate::gpu::scene_summary::SceneSummary;
 use crate::scene::Scene;
 
 /// Bytes of a pixel's sums as they come from a tile.
 const FOUND_BYTES: u64 = 16 * FILM_SLOTS;
 
 impl RenderPlan {
-    /// As [`RenderPlan::new`], of a lit picture. `opaque` is of the spheres that cast shadows, unless that is all.
-    #[must_use]
-    pub fn of_lit(
-        scene: &Scene,
-        (camera, film): (&dyn Camera, &Film),
-        lighting: &Lighting,
-        layers: LayerSet,
-        (accel, opaque): (AccelPlan, Option<AccelPlan>),
-        (limits, device_type): (&Limits, DeviceType),
-        host_bytes_per_pixel: u64,
+    /// Plans a lit picture.
+    pub(in crate::gpu) fn of_lit(
+        request: &PictureRequest<'_>,
+        StructurePlans { accel, occluders }: StructurePlans,
+        device: &DeviceLimits,
     ) -> Self {
-        let layers = lighting.layers_for(layers);
+        let PictureRequest { scene, view, settings, host_bytes_per_pixel, .. } = *request;
+        let (film, limits) = (&view.film, &device.limits);
+        let layers = settings.layers_for(request.layers);
         // Depth, normals and ids are rendered first, by one ray a pixel; then that tile is gone.
-        let device = (limits, device_type);
-        let data = Self::new(scene, film, layers, accel, device, host_bytes_per_pixel);
+        let data = Self::of_primary(&PictureRequest { layers, ..*request }, accel, device);
         let data_bytes = total(&data.tile_buffers) + total(&data.tile_textures);
         let mut scene_buffers = data.scene_buffers;
-        let shadows = opaque.as_ref().map_or(Vec::new(), |opaque| shadow_buffers(scene, opaque));
+        let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
         scene_buffers.extend(shadows);
 
         let tile_size = lit_tile_size(limits, film);
         let pixels = u64::from(tile_size[0]) * u64::from(tile_size[1]);
+        let lit = Lit::new(settings, &SceneSummary::of(scene), view.camera);
         let mut tile_buffers = vec![
             PlannedBuffer::one("hits", pixels * size_of::<Hit>() as u64),
             PlannedBuffer::one("paths", pixels * 16 * PATH_SLOTS),
             PlannedBuffer::one("film", pixels * FOUND_BYTES),
-            PlannedBuffer::one("tables", Lit::new(lighting, scene, camera).table_bytes()),
+            PlannedBuffer::one("tables", lit.table_bytes()),
         ];
-        let sky = sky_image(lighting).map_or(0, |sky| {
+        let sky = sky_image(settings).map_or(0, |sky| {
             let texels = 16 * sky.texels().len() as u64;
             let shares = 4 * (sky.rows().len() + sky.columns().len()) as u64;
             tile_buffers.push(PlannedBuffer::one("sky", texels));
@@ -59,15 +53,15 @@ impl RenderPlan {
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = (total(&tile_buffers) + total(&tile_textures)).max(data_bytes);
 
-        let in_host = |bytes| if device_type == DeviceType::Cpu { bytes } else { 0 };
-        let opaque_bytes = opaque.as_ref().map_or(0, AccelPlan::device_bytes);
+        let in_host = |bytes| device.in_host(bytes);
+        let occluder_bytes = occluders.as_ref().map_or(0, AccelPlan::device_bytes);
         // What is built second is built beside the first, from a copy of its spheres.
-        let building = opaque.as_ref().map_or(0, |opaque| {
-            let spheres = 16 * opaque.statistics.count as u64;
-            data.accel.device_bytes() + spheres + opaque.host_bytes()
+        let building = occluders.as_ref().map_or(0, |plan| {
+            let spheres = 16 * plan.statistics.count as u64;
+            data.accel.device_bytes() + spheres + plan.host_bytes()
         });
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
-        let uploading = data.accel.device_bytes() + opaque_bytes + queued;
+        let uploading = data.accel.device_bytes() + occluder_bytes + queued;
         // Sums, those of one batch, and coverage by lines; or what the caller makes of the picture.
         let beside = host_bytes_per_pixel.max(BYTES_PER_PIXEL + FOUND_BYTES + 4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
@@ -82,6 +76,7 @@ impl RenderPlan {
         let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
         Self {
             accel: data.accel,
+            occluders,
             scene_buffers,
             tile_buffers,
             tile_textures,
@@ -95,46 +90,30 @@ impl RenderPlan {
 }
 
 /// Of the structure for shadows; nothing is shaded in it but a palette of one colour.
-fn shadow_buffers(scene: &Scene, opaque: &AccelPlan) -> Vec<PlannedBuffer> {
-    scene_buffers(scene, opaque).into_iter().filter(|buffer| buffer.name != "colors").collect()
-}
-
-impl Headless {
-    /// What a lit picture will take on this device, of a scene in the structure that [`Headless::plan`] planned.
-    /// `host_bytes_per_pixel` is as in [`RenderPlan::new`].
-    #[must_use]
-    pub fn plan_lit(
-        &self,
-        scene: &Scene,
-        accel: AccelPlan,
-        view: (&dyn Camera, &Film),
-        lighting: &Lighting,
-        layers: LayerSet,
-        host_bytes_per_pixel: u64,
-    ) -> RenderPlan {
-        let limits = self.device().limits();
-        let device = (&limits, self.adapter_info().device_type);
-        let opaque = scene.opaque().map(|opaque| self.plan(&opaque, AccelChoice::Auto));
-        let plans = (accel, opaque);
-        RenderPlan::of_lit(scene, view, lighting, layers, plans, device, host_bytes_per_pixel)
-    }
+fn shadow_buffers(scene: &Scene, plan: &AccelPlan) -> Vec<PlannedBuffer> {
+    scene_buffers(scene, plan).into_iter().filter(|buffer| buffer.name != "colors").collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use wgpu::{DeviceType, Limits};
+
     use super::*;
-    use crate::camera::{PinholeCamera, Pose};
+    use crate::accel::AccelChoice;
+    use crate::camera::{PinholeCamera, Pose, View};
     use crate::color::LinearRgb;
     use crate::environment::Environment;
-    use crate::image::Layer;
-    use crate::lighting::{Integrator, Outline, PathTracing, Sky, SkyLight, Studio};
+    use crate::film::Film;
+    use crate::image::{Layer, LayerSet};
+    use crate::lighting::{Sky, SkyLight};
     use crate::outline;
+    use crate::render::{Integrator, Outline, RenderSettings, Studio};
     use crate::sphere::Sphere;
 
     fn planned(
         opacity: f32,
         size: u32,
-        lighting: &Lighting,
+        settings: &RenderSettings,
         layers: LayerSet,
         device_type: DeviceType,
     ) -> RenderPlan {
@@ -149,9 +128,17 @@ mod tests {
         let film = Film::new(size, size).unwrap();
         let pose = Pose::looking_at([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
-        let plans = (plan(&scene), scene.opaque().map(|opaque| plan(&opaque)));
-        let device = (&Limits::default(), device_type);
-        RenderPlan::of_lit(&scene, (&camera, &film), lighting, layers, plans, device, 16)
+        let occluders = scene.opaque().map(|opaque| plan(&opaque));
+        let structures = StructurePlans { accel: plan(&scene), occluders };
+        let device = DeviceLimits { limits: Limits::default(), device_type };
+        let request = PictureRequest {
+            scene: &scene,
+            view: View::new(&camera, film),
+            settings,
+            layers,
+            host_bytes_per_pixel: 16,
+        };
+        RenderPlan::of_lit(&request, structures, &device)
     }
 
     fn bytes(plan: &RenderPlan, name: &str) -> u64 {
@@ -163,8 +150,8 @@ mod tests {
 
     #[test]
     fn a_tile_takes_its_paths_and_sums() {
-        let lighting = Lighting::default();
-        let plan = planned(1.0, 512, &lighting, LayerSet::COLOR, GPU);
+        let settings = RenderSettings::studio();
+        let plan = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         assert_eq!((plan.tile_size, plan.tile_count), ([512, 512], 1));
         let pixels = 1 << 18;
         assert_eq!(bytes(&plan, "paths"), 16 * PATH_SLOTS * pixels);
@@ -178,13 +165,13 @@ mod tests {
         assert_eq!(plan.host_bytes, (12 + 56 + 32 + 4) * pixels);
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
 
-        let software = planned(1.0, 512, &lighting, LayerSet::COLOR, DeviceType::Cpu);
+        let software = planned(1.0, 512, &settings, LayerSet::COLOR, DeviceType::Cpu);
         assert_eq!(software.host_bytes, plan.host_bytes + plan.device_bytes);
     }
 
     #[test]
     fn what_is_larger_than_a_tile_is_cut() {
-        let plan = planned(1.0, 4096, &Lighting::default(), LayerSet::COLOR, GPU);
+        let plan = planned(1.0, 4096, &RenderSettings::studio(), LayerSet::COLOR, GPU);
         assert!(bytes(&plan, "paths") <= (16 * PATH_SLOTS) << 19);
         assert!(plan.tile_count >= 32);
         let low = Limits { max_storage_buffer_binding_size: 1 << 20, ..Limits::default() };
@@ -194,20 +181,20 @@ mod tests {
 
     #[test]
     fn shadows_of_some_spheres_have_a_structure_of_their_own() {
-        let lighting = Lighting::default();
-        let opaque = planned(1.0, 64, &lighting, LayerSet::COLOR, GPU);
-        let clear = planned(0.5, 64, &lighting, LayerSet::COLOR, GPU);
+        let settings = RenderSettings::studio();
+        let opaque = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
+        let clear = planned(0.5, 64, &settings, LayerSet::COLOR, GPU);
         assert_eq!(bytes(&opaque, "spheres"), 16_000);
         assert_eq!(bytes(&clear, "spheres"), 16_000 + 14_400);
     }
 
     #[test]
     fn lines_take_the_layers_that_they_are_found_by() {
-        let mut lighting = Lighting::default();
-        let before = planned(1.0, 512, &lighting, LayerSet::COLOR, GPU);
+        let mut settings = RenderSettings::studio();
+        let before = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         let studio = Studio { outline: Some(Outline::default()), ..Studio::default() };
-        lighting.integrator = Integrator::Studio(studio);
-        let after = planned(1.0, 512, &lighting, LayerSet::COLOR, GPU);
+        settings.integrator = Integrator::Studio(studio);
+        let after = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         let layers = outline::LAYERS.bytes_per_pixel() - Layer::Color.bytes_per_pixel();
         assert_eq!(after.host_bytes, before.host_bytes + (layers << 18));
     }
@@ -218,10 +205,9 @@ mod tests {
         let light =
             SkyLight::Image { environment: environment.into(), strength: 1.0, rotation: 0.0 };
         let sky = Sky { light, is_visible: true };
-        let mut lighting = Lighting { sky, ..Lighting::default() };
-        let studio = planned(1.0, 64, &lighting, LayerSet::COLOR, GPU);
-        lighting.integrator = Integrator::Path(PathTracing::default());
-        let path = planned(1.0, 64, &lighting, LayerSet::COLOR, GPU);
+        let studio = planned(1.0, 64, &RenderSettings::studio(), LayerSet::COLOR, GPU);
+        let settings = RenderSettings { sky, ..RenderSettings::path() };
+        let path = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
         assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 << 19));
         assert_eq!(bytes(&path, "sky shares"), 4 * (513 + 1025 * 512));
         let low = Limits { max_storage_buffer_binding_size: 1 << 22, ..Limits::default() };

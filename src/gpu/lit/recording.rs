@@ -10,18 +10,20 @@ use super::records::{Look, PATH_SLOTS};
 use super::renderer::LitKey;
 use super::run::Run;
 use super::tile::TileBuffers;
-use super::{LitDecision, LitProgress, LitScene, LitWatch, frames, seen};
-use crate::camera::Camera;
+use super::{frames, seen};
+use crate::camera::View;
 use crate::film::Film;
 use crate::gpu::error::GpuError;
 use crate::gpu::frame::iteration_limit;
 use crate::gpu::headless::Headless;
+use crate::gpu::progress::{Decision, Progress, Watch};
 use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::recording::requested_view;
 use crate::gpu::records::Hit;
+use crate::gpu::scene_buffers::SceneBuffers;
 use crate::gpu::tiles::Tile;
-use crate::lighting::{Integrator, Lighting, SkyLight};
-use crate::scene::Scene;
+use crate::lighting::SkyLight;
+use crate::render::{Integrator, RenderSettings};
 use crate::verify::{
     PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLook, UploadedSky,
 };
@@ -133,66 +135,64 @@ impl Headless {
     /// more than 256 pixels, those of a rectangle in its middle.
     ///
     /// # Errors
-    /// [`GpuError::NotPaths`] if the lighting is a studio; as [`Headless::render_lit`]; [`GpuError::Stopped`] if
-    /// `watch` says anything but to go on.
+    /// [`GpuError::NotPaths`] if the integrator is not `path`; as [`Headless::render_uploaded`]; [`GpuError::Stopped`]
+    /// if `watch` says anything but to go on.
     pub fn record_paths(
         &self,
-        scene: &Scene,
-        buffers: &LitScene,
-        (camera, film): (&dyn Camera, &Film),
-        lighting: &Lighting,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
         samples: Range<u32>,
-        watch: &mut LitWatch<'_>,
+        watch: &mut Watch<'_>,
     ) -> Result<PathRecording, GpuError> {
-        lighting.check(scene)?;
-        let Integrator::Path(path) = &lighting.integrator else {
+        settings.check_with(scene.colors())?;
+        let Integrator::Path(path) = &settings.integrator else {
             return Err(GpuError::NotPaths);
         };
-        let lit = Lit::new(lighting, scene, camera);
-        let searched = [&buffers.all; 2];
+        let lit = Lit::new(settings, scene.summary(), view.camera);
+        let searched = [scene; 2];
         let key = LitKey {
-            camera: camera.kind(),
+            camera: view.camera.kind(),
             mode: lit.mode,
-            structure: buffers.all.structure(),
-            occluders: buffers.all.structure(),
+            structure: scene.structure(),
+            occluders: scene.structure(),
         };
-        let tile = middle_of(film);
-        let (camera_asked, uploaded) = requested_view(buffers.all.space(), camera);
+        let tile = middle_of(&view.film);
+        let (camera, uploaded) = requested_view(scene.space(), view.camera);
         let mut recording = PathRecording {
-            camera: camera_asked,
+            camera,
             uploaded,
-            film: *film,
+            film: view.film,
             origin: tile.origin,
             size: tile.size,
-            lighting: lighting.clone(),
+            settings: settings.clone(),
             max_depth: path.max_depth,
             look: uploaded_look(&lit.look),
             tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
-            sky: uploaded_sky(lighting),
+            sky: uploaded_sky(settings),
             samples: Vec::new(),
         };
         self.with_lit_renderer(key, |renderer| {
             let (device, queue) = (self.device(), self.queue());
             let tile_buffers =
-                TileBuffers::new(device, queue, renderer, tile.size, &lit, lighting)?;
+                TileBuffers::new(device, queue, renderer, tile.size, &lit, settings)?;
             let limit = iteration_limit(device);
-            let view = (camera, film);
-            let frames = frames(searched, view, seen(&buffers.all, view, lighting), tile, limit);
+            let frames = frames(searched, view, seen(scene, view, settings), tile, limit);
             let pixels = tile.size[0] as usize * tile.size[1] as usize;
             let mut keeper = Keeper::new(device, &tile_buffers, pixels);
             let total = samples.end.saturating_sub(samples.start);
             for (done, sample) in (0..).zip(samples) {
                 let part = f64::from(done) / f64::from(total);
-                let progress = LitProgress { samples: done, total, part, noise: None };
+                let progress = Progress { samples: done, total, part, noise: None };
                 let mut after = || match watch(&progress) {
-                    LitDecision::GoOn => Ok(()),
-                    LitDecision::Finish | LitDecision::Stop => Err(GpuError::Stopped),
+                    Decision::GoOn | Decision::MeasureNoise => Ok(()),
+                    Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
                 };
                 keeper.sample = RecordedSample { sample, ..RecordedSample::default() };
                 let mut run = Run::new(self, renderer, &tile_buffers, searched, frames, &mut after);
                 run.keeper = Some(&mut keeper);
                 tile_buffers.record_clear(run.encoder());
-                run.sample(sample, &lit, lighting)?;
+                run.sample(sample, &lit, settings)?;
                 recording.samples.push(std::mem::take(&mut keeper.sample));
             }
             Ok(recording)
@@ -237,8 +237,8 @@ fn uploaded_look(look: &Look) -> UploadedLook {
     }
 }
 
-fn uploaded_sky(lighting: &Lighting) -> Option<UploadedSky> {
-    match &lighting.sky.light {
+fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
+    match &settings.sky.light {
         SkyLight::Image { environment, .. } => Some(UploadedSky {
             texels: environment.texels().to_vec(),
             shares: environment.rows().iter().chain(environment.columns()).copied().collect(),

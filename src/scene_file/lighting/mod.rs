@@ -1,4 +1,4 @@
-//! What a scene file says of light: tables in, a checked lighting out.
+//! What a scene file says of light: tables in, checked settings out.
 
 use std::ops::Range;
 
@@ -28,16 +28,18 @@ use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::environment::Environment;
 use crate::exact::Table;
-use crate::lighting::{
-    Integrator, Light, Lighting, LightingError, PathTracing, Sampling, Sky, SkyLight,
-};
+use crate::lighting::{Light, Sky, SkyLight};
 use crate::material::Material;
+use crate::render::{Integrator, PathTracing, RenderSettings, Sampling, SettingsError};
 use crate::scene::Scene;
 
-/// How light is followed, by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+/// How a picture is made, by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
+    /// By what a pixel's ray meets first, without lights.
+    #[default]
+    Primary,
     /// Directly from lights to surfaces.
     Studio,
     /// As it is scattered.
@@ -97,16 +99,22 @@ impl LightingTables {
     fn integrator(&self, lines: &Lines<'_>) -> Result<Option<IntegratorKind>, SceneFileError> {
         let of_paths = [("[path]", span(&self.path)), ("[sky]", span(&self.sky))];
         let of_studio = [("[studio]", span(&self.studio))];
+        let lights = self.lights.as_ref();
         let of_both = [
-            self.sampling.is_some(),
-            self.lights.is_some(),
-            self.sun.is_some(),
-            self.ground.is_some(),
-            self.has_materials,
+            ("[sampling]", span(&self.sampling)),
+            ("[[lights]]", lights.map(|lights| lights.first().map_or(0..0, Spanned::span))),
+            ("[sun]", span(&self.sun)),
+            ("[ground]", span(&self.ground)),
         ];
         let first = |tables: &[(&'static str, Option<Range<usize>>)]| {
             tables.iter().find_map(|(name, span)| Some((*name, span.as_ref()?.start)))
         };
+        let of_any = || first(&of_paths).or(first(&of_studio)).or(first(&of_both));
+        if let (Some(IntegratorKind::Primary), Some((table, start))) = (self.integrator, of_any()) {
+            return Err(lines.place(start).error(format!(
+                "`{table}` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one"
+            )));
+        }
         let kind = match (self.integrator, first(&of_paths), first(&of_studio)) {
             (Some(kind), ..) => Some(kind),
             (None, Some((table, start)), Some(_)) => {
@@ -117,10 +125,12 @@ impl LightingTables {
             }
             (None, Some(_), None) => Some(IntegratorKind::Path),
             (None, None, Some(_)) => Some(IntegratorKind::Studio),
-            (None, None, None) => of_both.contains(&true).then_some(IntegratorKind::Studio),
+            (None, None, None) => {
+                (self.has_materials || first(&of_both).is_some()).then_some(IntegratorKind::Studio)
+            }
         };
         match (kind, self.shading) {
-            (Some(_), Some(start)) => Err(lines.place(start).error(
+            (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => Err(lines.place(start).error(
                 "`shading` is for pictures without light, and this file asks for light; drop one",
             )),
             _ => Ok(kind),
@@ -129,8 +139,8 @@ impl LightingTables {
 }
 
 impl SceneFile {
-    /// How light is followed, if the file asks for light at all: by the key `integrator`, or by a table, material
-    /// or opacity that only a lit picture shows.
+    /// How the picture is made, if the file says so: by the key `integrator`, or by a table, material or opacity that
+    /// only a lit picture shows. A file that says nothing asks for primary rays.
     #[must_use]
     pub fn integrator(&self) -> Option<IntegratorKind> {
         self.lighting.integrator
@@ -142,35 +152,41 @@ impl SceneFile {
         self.lighting.sky.as_ref()?.image()
     }
 
-    /// The lighting, for an integrator that need not be the file's own. Who names lights, a sun or a sky gets no
-    /// others; what is left open follows the scene and, for the depth cue, the camera. Transparency is for the
-    /// caller to decide.
+    /// The settings, for an integrator that need not be the file's own; what it does not use is left out. A file that
+    /// names lights, a sun or a sky gets no others; what is left open follows the scene and, for the depth cue, the
+    /// camera. Transparency is for the caller to decide.
     ///
     /// # Errors
-    /// If a colour would create light, if the integrator has no shadow catcher, or if the image of the sky is
-    /// needed and not given.
-    pub fn lighting(
+    /// Of a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
+    /// image of the sky is needed and not given.
+    pub fn settings(
         &self,
         kind: IntegratorKind,
         scene: &Scene,
         camera: &dyn Camera,
         image: Option<Environment>,
-    ) -> Result<Lighting, SceneFileError> {
-        let (says, defaults) = (&self.lighting, Lighting::default());
-        let background = self.settings.background();
-        let sky = match &says.sky {
-            // Only paths are lit by it, and only they need its image.
-            Some(sky) if kind == IntegratorKind::Path => sky.sky(image)?,
-            None if says.lights.is_none() => defaults.sky,
-            _ => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
+    ) -> Result<RenderSettings, SceneFileError> {
+        let (says, defaults) = (&self.lighting, RenderSettings::studio());
+        let background = self.background;
+        let integrator = match kind {
+            IntegratorKind::Primary => {
+                let integrator = Integrator::Primary(self.shading);
+                return Ok(RenderSettings { integrator, background, ..RenderSettings::default() });
+            }
+            IntegratorKind::Studio => {
+                Integrator::Studio(says.studio.studio(scene, camera, background)?)
+            }
+            IntegratorKind::Path => Integrator::Path(says.path),
         };
-        let lighting = Lighting {
-            integrator: match kind {
-                IntegratorKind::Studio => {
-                    Integrator::Studio(says.studio.studio(scene, camera, background)?)
-                }
-                IntegratorKind::Path => Integrator::Path(says.path),
-            },
+        // Only paths are lit by a sky, and only they need its image.
+        let sky = match &says.sky {
+            _ if kind == IntegratorKind::Studio => defaults.sky,
+            Some(sky) => sky.sky(image)?,
+            None if says.lights.is_none() => defaults.sky,
+            None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
+        };
+        let settings = RenderSettings {
+            integrator,
             sampling: says.sampling,
             lights: says.lights.clone().unwrap_or(defaults.lights),
             sky,
@@ -180,7 +196,7 @@ impl SceneFile {
             is_denoised: says.is_denoised,
         };
         self.check_colors()?;
-        lighting.check(scene).map(|()| lighting).map_err(|error| self.place_of(&error).error(error))
+        settings.check(scene).map(|()| settings).map_err(|error| self.place_of(&error).error(error))
     }
 
     /// Refuses spheres of this file that would create light.
@@ -194,7 +210,7 @@ impl SceneFile {
                         .map_err(|error| sphere.place.error(error))?;
                 }
                 _ if rgb.iter().any(|c| *c > 1.0) => {
-                    return Err(sphere.place.error(LightingError::Albedo { what, rgb }));
+                    return Err(sphere.place.error(SettingsError::Albedo { what, rgb }));
                 }
                 _ => {}
             }
@@ -203,13 +219,13 @@ impl SceneFile {
     }
 
     /// Of what is left when all tables, and the spheres of this file, have been checked.
-    fn place_of(&self, error: &LightingError) -> Place {
+    fn place_of(&self, error: &SettingsError) -> Place {
         let ground = || self.lighting.ground.as_ref().map(|ground| ground.place);
         let data = || self.data.as_ref().map(|data| data.place);
         match error {
-            LightingError::Ground | LightingError::Catcher => ground(),
-            LightingError::Albedo { what, .. } if what == "the ground" => ground(),
-            LightingError::Albedo { .. } | LightingError::TooBright { .. } => data(),
+            SettingsError::Ground | SettingsError::Catcher => ground(),
+            SettingsError::Albedo { what, .. } if what == "the ground" => ground(),
+            SettingsError::Albedo { .. } | SettingsError::TooBright { .. } => data(),
             _ => None,
         }
         .unwrap_or(Place::START)

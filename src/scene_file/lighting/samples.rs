@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use crate::exact::Table;
 use crate::filter::PixelFilter;
-use crate::lighting::{LightSampling, PathTracing, Sampling};
+use crate::render::{LightSampling, PathTracing, Sampling};
 use crate::scene_file::place::{Keys, Lines, SceneFileError, whole};
 
 #[derive(Deserialize)]

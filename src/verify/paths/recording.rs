@@ -1,7 +1,7 @@
 //! What a device did with paths, dispatch by dispatch, and the numbers that it was given.
 
 use crate::film::Film;
-use crate::lighting::Lighting;
+use crate::render::RenderSettings;
 use crate::verify::recording::{RequestedCamera, UploadedView};
 
 /// Paths of a rectangle of a film as a device followed them. Beside the scene, this is all that the checker needs.
@@ -18,10 +18,10 @@ pub struct PathRecording {
     /// Its width and height, in pixels.
     pub size: [u32; 2],
     /// How light was to be followed.
-    pub lighting: Lighting,
+    pub settings: RenderSettings,
     /// How many surfaces a path meets at most.
     pub max_depth: u32,
-    /// What was made of the lighting for the device.
+    /// What was made of the settings for the device.
     pub look: UploadedLook,
     /// The bits of lights, emitters, materials and energies, each at its own place.
     pub tables: Vec<[u32; 4]>,
@@ -120,7 +120,7 @@ pub(super) mod flag {
     pub(in crate::verify) const GROUND: u32 = 8;
 }
 
-/// What of a lighting the kernels of paths are given: `Look` in `shaders/light_records.wgsl`.
+/// What of settings the kernels of paths are given: `Look` in `shaders/light_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UploadedLook {
     /// What is seen where there is nothing.

@@ -6,8 +6,9 @@ use super::material::ENERGIES;
 use super::recording::{PathRecording, UploadedLook};
 use super::upload::{PathUploadError, are_near, is_near};
 use crate::lighting::energy::EnergyTables;
-use crate::lighting::{Integrator, LightKind, LightSampling, SkyLight};
+use crate::lighting::{LightKind, SkyLight};
 use crate::material::{Finish, Material};
+use crate::render::{Integrator, LightSampling};
 use crate::scene::Scene;
 
 /// Tables, and how they are read.
@@ -36,7 +37,7 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
     let lamps = check_lights(&tables, scene, recording)?;
     let emitters = check_emitters(&tables, scene, recording)?;
     check_materials(&tables, scene)?;
-    let is_image = match &recording.lighting.sky.light {
+    let is_image = match &recording.settings.sky.light {
         SkyLight::Image { environment, strength, .. } => {
             environment.has_light() && *strength > 0.0 && is_looked_for(recording)
         }
@@ -52,9 +53,9 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
 }
 
 fn is_looked_for(recording: &PathRecording) -> bool {
-    match &recording.lighting.integrator {
+    match &recording.settings.integrator {
         Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
-        Integrator::Studio(_) => false,
+        Integrator::Primary(_) | Integrator::Studio(_) => false,
     }
 }
 
@@ -66,7 +67,7 @@ fn check_lights(
 ) -> Result<u32, PathUploadError> {
     let vectors = &recording.camera.vectors;
     let mut lamps = 0_u32;
-    let lights = recording.lighting.lights.iter().filter_map(|light| light.in_view(vectors));
+    let lights = recording.settings.lights.iter().filter_map(|light| light.in_view(vectors));
     let mut count = 0;
     for (light, index) in lights.zip(0_u32..) {
         count = index + 1;

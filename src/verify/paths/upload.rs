@@ -1,10 +1,11 @@
-//! Whether the numbers that a device was given are those of the scene and the lighting that were asked for.
+//! Whether the numbers that a device was given are those of the scene and the settings that were asked for.
 
 use super::recording::{PathRecording, UploadedLook, flag};
 use super::tables;
 use crate::environment::Environment;
-use crate::lighting::{Integrator, LightSampling, Lighting, SkyLight};
+use crate::lighting::SkyLight;
 use crate::math::unit;
+use crate::render::{Integrator, LightSampling, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::candidates::Candidates;
 use crate::verify::rounding::{FLUSH, U};
@@ -23,7 +24,7 @@ pub enum PathUploadError {
         /// How many there are in the rectangle.
         pixels: u64,
     },
-    /// Of the lighting.
+    /// Of the settings.
     #[error("{what} on the device is not what was asked for")]
     Look {
         /// What it is.
@@ -76,20 +77,20 @@ fn check_size(recording: &PathRecording) -> Result<(), PathUploadError> {
 }
 
 fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
-    let PathRecording { lighting, look, .. } = recording;
-    let Integrator::Path(path) = &lighting.integrator else {
+    let PathRecording { settings, look, .. } = recording;
+    let Integrator::Path(path) = &settings.integrator else {
         return Err(PathUploadError::Look { what: "the integrator" });
     };
     let flags = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    let expected_flags = flags(lighting.is_transparent, flag::TRANSPARENT)
-        | flags(lighting.sky.is_visible, flag::SKY_SEEN)
-        | flags(lighting.ground.is_some(), flag::GROUND);
+    let expected_flags = flags(settings.is_transparent, flag::TRANSPARENT)
+        | flags(settings.sky.is_visible, flag::SKY_SEEN)
+        | flags(settings.ground.is_some(), flag::GROUND);
     let sampling = match path.light_sampling {
         LightSampling::Chance => 0,
         LightSampling::Direct => 1,
         LightSampling::Multiple => 2,
     };
-    let is_ground = lighting.ground.as_ref().is_none_or(|ground| {
+    let is_ground = settings.ground.as_ref().is_none_or(|ground| {
         let point = (ground.point - scene.origin()).to_array();
         let normal = unit(ground.normal).unwrap_or_default().to_array();
         let moved = (ground.point.abs() + scene.origin().abs()) * f64::EPSILON * 4.0;
@@ -101,20 +102,20 @@ fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUpload
             && are_near(look.ground_normal, normal)
             && are_near(look.ground_color, ground.color.to_array().map(f64::from))
     });
-    let filter = lighting.sampling.filter.offset_table();
+    let filter = settings.sampling.filter.offset_table();
     let all = [
         (
             "the background",
-            are_near(look.background, lighting.background.to_array().map(f64::from)),
+            are_near(look.background, settings.background.to_array().map(f64::from)),
         ),
         ("the set of flags", look.flags == expected_flags),
-        ("the seed", look.seed == lighting.sampling.seed),
+        ("the seed", look.seed == settings.sampling.seed),
         ("the start of roulette", look.roulette_from == path.roulette_from),
         ("how lights are sampled", look.light_sampling == sampling),
         ("the depth of paths", recording.max_depth == path.max_depth),
         ("the ground", is_ground),
         ("the pixel filter", look.filter_table[..] == filter[..]),
-        ("the sky", is_sky(lighting, look, recording)),
+        ("the sky", is_sky(settings, look, recording)),
     ];
     match all.into_iter().find(|(_, is_right)| !is_right) {
         None => Ok(()),
@@ -122,12 +123,12 @@ fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUpload
     }
 }
 
-fn is_sky(lighting: &Lighting, look: &UploadedLook, recording: &PathRecording) -> bool {
+fn is_sky(settings: &RenderSettings, look: &UploadedLook, recording: &PathRecording) -> bool {
     let ends = [look.zenith, look.horizon, look.nadir];
     let are = |colors: [[f32; 3]; 3]| {
         ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)))
     };
-    match &lighting.sky.light {
+    match &settings.sky.light {
         SkyLight::Constant(radiance) => recording.sky.is_none() && are([radiance.to_array(); 3]),
         SkyLight::Gradient { zenith, horizon, nadir } => {
             recording.sky.is_none() && are([zenith, horizon, nadir].map(|end| end.to_array()))

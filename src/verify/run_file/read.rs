@@ -10,8 +10,8 @@ use crate::color::LinearRgb;
 use crate::film::{Film, YAxis};
 use crate::image::Image;
 use crate::parallel::try_map;
+use crate::render::{PrimaryLook, Shading};
 use crate::scene::Scene;
-use crate::settings::{Settings, Shading};
 use crate::text::shortened;
 use crate::verify::{Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 
@@ -52,9 +52,10 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
         file.fixed::<f32, 3, 7>("view")?;
     let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
     let [background] = file.fixed::<f32, 3, 1>("background")?;
-    let settings = Settings::default()
-        .with_shading(named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?)
-        .with_background(color("background", background)?);
+    let look = PrimaryLook {
+        shading: named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?,
+        background: color("background", background)?,
+    };
     let image = Image::from_layers(
         [film.width(), film.height()],
         file.items("color", &shape)?,
@@ -76,7 +77,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
             scene_max,
         },
         film,
-        settings,
+        look,
         pixels: pixels(file, &shape)?,
         image,
     })

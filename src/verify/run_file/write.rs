@@ -19,7 +19,7 @@ pub fn write(
     provenance: &Provenance,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let Recording { camera, uploaded, film, settings, pixels, image } = recording;
+    let Recording { camera, uploaded, film, look, pixels, image } = recording;
     let shape = [film.height() as usize, film.width() as usize];
     let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id()) else {
         return Err(io::Error::other("the recording lacks a layer"));
@@ -38,7 +38,7 @@ pub fn write(
     for (key, text) in [
         ("camera", camera.kind.name()),
         ("y_axis", film.y_axis().name()),
-        ("shading", settings.shading().name()),
+        ("shading", look.shading.name()),
     ] {
         texts.insert(key.to_owned(), text.to_owned());
     }
@@ -57,7 +57,7 @@ pub fn write(
         uploaded.scene_max,
     ];
     let (origin, advance) = ([scene.origin()], [uploaded.advance]);
-    let background = [settings.background()];
+    let background = [look.background];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
     // The widest numbers first, so that all are aligned.
     let mut arrays = vec![

@@ -1,10 +1,9 @@
 //! What is seen through spheres: absorption, and opacity.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    DepthCue, Integrator, Light, LightFrame, LightKind, LightSampling, Sky, SkyLight, Studio,
-};
-use pinhole::{Lighting, LinearRgb, Material, Sphere};
+use pinhole::lighting::{Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::render::{DepthCue, Integrator, LightSampling, Studio};
+use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 
 use super::{Shot, blocks, furnace, gray, paths, rgb, white};
 
@@ -82,9 +81,9 @@ fn opacity_hides_twice() {
         let sky = Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false };
         let studio = Integrator::Studio(Studio::default());
         for (lighting, tolerance) in
-            [(Lighting { integrator: studio, ..path.clone() }, 1e-6), (path, 2e-3)]
+            [(RenderSettings { integrator: studio, ..path.clone() }, 1e-6), (path, 2e-3)]
         {
-            let lighting = Lighting { sky: sky.clone(), background, ..lighting };
+            let lighting = RenderSettings { sky: sky.clone(), background, ..lighting };
             let image = shot.render(&lighting);
             let found = blocks(&image, 1)[0];
             for (found, wanted) in found.into_iter().zip(wanted(behind)) {
@@ -94,7 +93,7 @@ fn opacity_hides_twice() {
             assert!((mean - alpha).abs() < tolerance, "{mean}, not {alpha}");
             // Without a background, the same less what was seen of it.
             let cut_out =
-                blocks(&shot.render(&Lighting { is_transparent: true, ..lighting }), 1)[0];
+                blocks(&shot.render(&RenderSettings { is_transparent: true, ..lighting }), 1)[0];
             let missing = found[0] - cut_out[0];
             assert!((missing - (1.0 - mean) * 0.25).abs() < 1e-6, "{missing}");
         }
@@ -118,7 +117,7 @@ fn a_studio_sees_through() {
     let shot = Shot::from(8.0, &spheres, [0.0; 3], 0.01, 4);
     for (max_surfaces, seen) in [(64, 1.0 / 64.0), (7, 1.0 / 64.0), (6, 0.0), (3, 0.0)] {
         let studio = Studio { ambient: LinearRgb::BLACK, max_surfaces, ..Studio::default() };
-        let lighting = Lighting {
+        let lighting = RenderSettings {
             integrator: Integrator::Studio(studio),
             lights: vec![sun],
             ..paths(1, LightSampling::Chance)
@@ -144,8 +143,10 @@ fn the_depth_cue() {
     {
         let cue = DepthCue { near, far, color: rgb([0.0, 1.0, 0.0]) };
         let studio = Studio { depth_cue: Some(cue), ..Studio::default() };
-        let lighting =
-            Lighting { integrator: Integrator::Studio(studio), ..paths(1, LightSampling::Chance) };
+        let lighting = RenderSettings {
+            integrator: Integrator::Studio(studio),
+            ..paths(1, LightSampling::Chance)
+        };
         let [[red, green, _]] = blocks(&shot.render(&lighting), 1)[..] else { panic!() };
         assert!((red - 3.0 * (1.0 - fade)).abs() < 1e-4, "{near}, {far}: {red}");
         assert!((green - (3.0 - 2.0 * fade)).abs() < 1e-4, "{near}, {far}: {green}");

@@ -1,10 +1,9 @@
 //! Lights over a plane and a sphere, against irradiance on paper.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Sky, SkyLight, Studio,
-};
-use pinhole::{Lighting, LinearRgb, Material, Sphere, cpu};
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, Studio};
+use pinhole::{LinearRgb, Material, RenderSettings, Sphere, cpu};
 
 use super::{Shot, blocks, gray, paths, rgb, standard_errors, white};
 
@@ -22,8 +21,8 @@ fn light(kind: LightKind) -> Light {
 }
 
 /// Lights alone, with shadows.
-fn studio(samples: u32, lights: &[LightKind]) -> Lighting {
-    Lighting {
+fn studio(samples: u32, lights: &[LightKind]) -> RenderSettings {
+    RenderSettings {
         integrator: Integrator::Studio(Studio { ambient: LinearRgb::BLACK, ..Studio::default() }),
         lights: lights.iter().copied().map(light).collect(),
         ..paths(samples, LightSampling::Multiple)
@@ -65,9 +64,11 @@ fn expected(shot: &Shot, of_point: impl Fn(DVec3) -> f64) -> Vec<f64> {
 fn a_sphere_lamp_over_a_plane() {
     let lamp =
         LightKind::Sphere { center: LAMP, radius: LAMP_RADIUS, radiance: rgb([2.0, 1.0, 0.0]) };
-    let in_studio = Lighting { ground: Some(ground(gray(0.5))), ..studio(64, &[lamp]) };
-    let on_paths =
-        Lighting { integrator: paths(64, LightSampling::Chance).integrator, ..in_studio.clone() };
+    let in_studio = RenderSettings { ground: Some(ground(gray(0.5))), ..studio(64, &[lamp]) };
+    let on_paths = RenderSettings {
+        integrator: paths(64, LightSampling::Chance).integrator,
+        ..in_studio.clone()
+    };
     let shot = plane(&[]);
     for lighting in [in_studio, on_paths] {
         let image = shot.render(&lighting);
@@ -90,7 +91,8 @@ fn an_emissive_sphere_over_a_plane() {
     for (sampling, samples) in
         [(LightSampling::Chance, 2048), (LightSampling::Direct, 64), (LightSampling::Multiple, 256)]
     {
-        let lighting = Lighting { ground: Some(ground(gray(0.5))), ..paths(samples, sampling) };
+        let lighting =
+            RenderSettings { ground: Some(ground(gray(0.5))), ..paths(samples, sampling) };
         let image = shot.render(&lighting);
         let errors = standard_errors(&image, 4);
         let found = blocks(&image, 4);
@@ -110,7 +112,7 @@ fn a_sun_over_a_plane() {
     let toward = DVec3::new(1.0, -2.0, 2.0);
     for angular_radius in [0.0, 0.01, 0.7] {
         let sun = LightKind::Directional { toward, strength: gray(1.5), angular_radius };
-        let base = Lighting { ground: Some(ground(gray(0.5))), ..studio(256, &[sun]) };
+        let base = RenderSettings { ground: Some(ground(gray(0.5))), ..studio(256, &[sun]) };
         let mut lightings = vec![base.clone()];
         for (sampling, samples) in [
             (LightSampling::Chance, 1024),
@@ -119,7 +121,7 @@ fn a_sun_over_a_plane() {
         ] {
             // Chance does not meet what is so small.
             if sampling != LightSampling::Chance || angular_radius != 0.01 {
-                lightings.push(Lighting {
+                lightings.push(RenderSettings {
                     lights: base.lights.clone(),
                     ground: base.ground,
                     ..paths(samples, sampling)
@@ -147,9 +149,11 @@ fn a_point_light_and_a_light_at_the_eye() {
         LightKind::Point { position, intensity: gray(3.0) },
         LightKind::Head { strength: gray(0.25) },
     ];
-    let in_studio = Lighting { ground: Some(ground(gray(0.5))), ..studio(16, &lights) };
-    let on_paths =
-        Lighting { integrator: paths(16, LightSampling::Multiple).integrator, ..in_studio.clone() };
+    let in_studio = RenderSettings { ground: Some(ground(gray(0.5))), ..studio(16, &lights) };
+    let on_paths = RenderSettings {
+        integrator: paths(16, LightSampling::Multiple).integrator,
+        ..in_studio.clone()
+    };
     for lighting in [in_studio, on_paths] {
         let image = shot.render(&lighting);
         for j in 0..16 {
@@ -175,7 +179,8 @@ fn lights_turn_with_the_camera() {
         angular_radius: 0.0,
     };
     let lights = vec![Light { kind, frame: LightFrame::Camera }];
-    let lighting = Lighting { lights, ground: Some(ground(LinearRgb::WHITE)), ..studio(1, &[]) };
+    let lighting =
+        RenderSettings { lights, ground: Some(ground(LinearRgb::WHITE)), ..studio(1, &[]) };
     for color in shot.render(&lighting).color() {
         assert!((color[0] - 0.8).abs() < 1e-6, "{color:?}");
     }
@@ -211,7 +216,7 @@ fn a_matt_sphere_under_a_uniform_sky() {
     let shot = Shot::new(&[sphere], [0.0; 3], 1.2, 32);
     let sky = Sky { light: SkyLight::Constant(rgb([2.0, 4.0, 8.0])), is_visible: false };
     for sampling in [LightSampling::Chance, LightSampling::Direct, LightSampling::Multiple] {
-        let lighting = Lighting { sky: sky.clone(), ..paths(4, sampling) };
+        let lighting = RenderSettings { sky: sky.clone(), ..paths(4, sampling) };
         let image = shot.render(&lighting);
         for (color, alpha) in image.color().iter().zip(image.alpha().unwrap()) {
             assert_eq!(*color, [1.5, 2.0, 2.0].map(|c: f32| c * alpha));
@@ -226,7 +231,7 @@ fn inside_a_lamp() {
     let shot = Shot::new(&[white([0.3, 0.2, 0.1], 0.5)], [0.3, 0.2, 0.1], 0.2, 16);
     for lighting in [
         studio(256, &[lamp]),
-        Lighting { lights: vec![light(lamp)], ..paths(256, LightSampling::Multiple) },
+        RenderSettings { lights: vec![light(lamp)], ..paths(256, LightSampling::Multiple) },
     ] {
         for color in blocks(&shot.render(&lighting), 4) {
             assert!((color[0] - 0.5).abs() < 2e-3, "{color:?}");

@@ -1,10 +1,9 @@
 //! No light gets where it should not, and none is lost, at any scale: rays start on surfaces, not near them.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Occlusion, Studio,
-};
-use pinhole::{Lighting, LinearRgb, Material, Sphere};
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
+use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
+use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 
 use super::{Shot, furnace, gray, paths, white};
 
@@ -98,7 +97,7 @@ fn a_lamp_in_a_shell_lights_nothing() {
             let radius = 0.25 * scale;
             let kind = LightKind::Sphere { center: place.into(), radius, radiance: gray(1e6) };
             let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
-            let lighting = Lighting {
+            let lighting = RenderSettings {
                 integrator: Integrator::Studio(studio),
                 lights: vec![Light { kind, frame: LightFrame::World }],
                 ..paths(4, LightSampling::Multiple)
@@ -146,7 +145,7 @@ fn open_surfaces_hide_nothing_of_themselves() {
     for scale in SCALES {
         for place in PLACES {
             let studio = Studio { ambient: LinearRgb::WHITE, occlusion, ..Studio::default() };
-            let lighting = Lighting {
+            let lighting = RenderSettings {
                 integrator: Integrator::Studio(studio),
                 ..paths(4, LightSampling::Multiple)
             };
@@ -161,7 +160,7 @@ fn open_surfaces_hide_nothing_of_themselves() {
             });
             let far_above = placed(&[white([0.0, 0.0, -5.0], 1.0)], scale, place);
             let shot = Shot::new(&far_above, place, 0.6 * scale, 24);
-            let image = shot.render(&Lighting { ground, ..lighting });
+            let image = shot.render(&RenderSettings { ground, ..lighting });
             assert!(image.color().iter().all(|c| *c == [1.0; 3]), "{scale:e} at {place:?}");
         }
     }

@@ -9,11 +9,12 @@ mod pixels;
 mod unbiased;
 
 use pinhole::camera::{Camera, PinholeCamera, Pose};
-use pinhole::cpu::LitPicture;
+use pinhole::cpu::SampledPicture;
 use pinhole::filter::PixelFilter;
-use pinhole::lighting::{Integrator, LightSampling, PathTracing, Sampling, Sky, SkyLight};
+use pinhole::lighting::{Sky, SkyLight};
 use pinhole::ray::Ray;
-use pinhole::{Film, Image, LayerSet, Lighting, LinearRgb, Scene, Sphere, cpu};
+use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 
 /// A colour from three numbers.
 pub(crate) fn rgb(rgb: [f32; 3]) -> LinearRgb {
@@ -30,9 +31,9 @@ pub(crate) fn white(center: [f64; 3], radius: f64) -> Sphere {
 }
 
 /// Paths that are followed to the end, over black, without a light.
-pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> Lighting {
+pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> RenderSettings {
     let tracing = PathTracing { max_depth: 64, roulette_from: u32::MAX, light_sampling };
-    Lighting {
+    RenderSettings {
         integrator: Integrator::Path(tracing),
         sampling: Sampling { samples, seed: 5, filter: PixelFilter::Box },
         lights: Vec::new(),
@@ -45,9 +46,9 @@ pub(crate) fn paths(samples: u32, light_sampling: LightSampling) -> Lighting {
 }
 
 /// The same in a furnace: light of radiance 1 from everywhere, so that whatever loses none has radiance 1.
-pub(crate) fn furnace(samples: u32) -> Lighting {
+pub(crate) fn furnace(samples: u32) -> RenderSettings {
     let sky = Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true };
-    Lighting { sky, ..paths(samples, LightSampling::Multiple) }
+    RenderSettings { sky, ..paths(samples, LightSampling::Multiple) }
 }
 
 /// A scene with a view of it.
@@ -82,8 +83,9 @@ impl Shot {
     }
 
     /// To be rendered sample by sample.
-    pub(crate) fn picture<'a>(&'a self, lighting: &'a Lighting) -> LitPicture<'a> {
-        LitPicture::new(&self.scene, self.camera.as_ref(), &self.film, lighting).unwrap()
+    pub(crate) fn picture<'a>(&'a self, lighting: &'a RenderSettings) -> SampledPicture<'a> {
+        SampledPicture::new(&self.scene, &View::new(self.camera.as_ref(), self.film), lighting)
+            .unwrap()
     }
 
     /// Through the centre of a pixel.
@@ -92,9 +94,9 @@ impl Shot {
         self.camera.ray_in_world(location)
     }
 
-    pub(crate) fn render(&self, lighting: &Lighting) -> Image {
+    pub(crate) fn render(&self, lighting: &RenderSettings) -> Image {
         let Self { scene, camera, film } = self;
-        cpu::render_lit(scene, camera.as_ref(), film, lighting, LayerSet::ALL).unwrap()
+        cpu::render(scene, &View::new(camera.as_ref(), *film), lighting, LayerSet::ALL).unwrap()
     }
 }
 

@@ -3,17 +3,19 @@
 use std::f64::consts::{PI, TAU};
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Occlusion, Studio,
-};
-use pinhole::{Lighting, LinearRgb, Sphere};
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
+use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
+use pinhole::{LinearRgb, RenderSettings, Sphere};
 
 use super::{Shot, paths, white};
 
-fn studio(samples: u32, occlusion: Occlusion) -> Lighting {
+fn studio(samples: u32, occlusion: Occlusion) -> RenderSettings {
     let studio =
         Studio { ambient: LinearRgb::WHITE, occlusion: Some(occlusion), ..Studio::default() };
-    Lighting { integrator: Integrator::Studio(studio), ..paths(samples, LightSampling::Chance) }
+    RenderSettings {
+        integrator: Integrator::Studio(studio),
+        ..paths(samples, LightSampling::Chance)
+    }
 }
 
 /// The cosine-weighted share of directions around a normal in which a sphere is: by midpoints over its cone, of which
@@ -107,7 +109,7 @@ fn shadows_on_nothing() {
         is_shadow_catcher: true,
     };
     let base = studio(16, Occlusion { radius: None, samples: 64 });
-    let lighting = Lighting {
+    let lighting = RenderSettings {
         lights: vec![from_above],
         ground: Some(ground),
         background: LinearRgb::WHITE,
@@ -124,7 +126,7 @@ fn shadows_on_nothing() {
         film: pinhole::Film::new(1 << 12, 1 << 12).unwrap(),
     };
     let picture = shot.picture(&lighting);
-    let transparent = Lighting { is_transparent: true, ..lighting.clone() };
+    let transparent = RenderSettings { is_transparent: true, ..lighting.clone() };
     let cut_out = shot.picture(&transparent);
     let (mut lit, mut dark) = (0, 0);
     for k in 0..300 {

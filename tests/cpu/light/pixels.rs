@@ -3,8 +3,9 @@
 use pinhole::camera::{FisheyeCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::filter::PixelFilter;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Integrator, LightSampling, LightingError, Sky, SkyLight, Studio};
-use pinhole::{Film, LayerSet, Lighting, Material, Scene, Settings, Sphere, cpu, image::NO_ID};
+use pinhole::lighting::{Ground, Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, SettingsError, Studio};
+use pinhole::{Film, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu, image::NO_ID};
 
 use super::{Shot, furnace, gray, paths, rgb, white};
 
@@ -18,7 +19,7 @@ fn layers_are_means_of_samples() {
     let mut lighting = furnace(7);
     lighting.sampling.filter = PixelFilter::BlackmanHarris;
     for integrator in [lighting.integrator.clone(), Integrator::Studio(Studio::default())] {
-        let lighting = Lighting { integrator, ..lighting.clone() };
+        let lighting = RenderSettings { integrator, ..lighting.clone() };
         let image = shot.render(&lighting);
         let picture = shot.picture(&lighting);
         for index in 0..144 {
@@ -41,9 +42,8 @@ fn layers_are_means_of_samples() {
         }
         let data = cpu::render(
             &shot.scene,
-            shot.camera.as_ref(),
-            &shot.film,
-            &Settings::default(),
+            &View::new(shot.camera.as_ref(), shot.film),
+            &RenderSettings::default(),
             LayerSet::ALL,
         )
         .unwrap();
@@ -63,7 +63,8 @@ fn one_sample_is_that_of_the_picture() {
     let shot = Shot::new(&[white([0.0; 3], 1.0)], [0.0; 3], 1.2, 4);
     let lighting = furnace(3);
     let Shot { scene, camera, film } = &shot;
-    let alone = cpu::radiance(scene, camera.as_ref(), film, &lighting, [1, 2], 2).unwrap();
+    let alone =
+        cpu::radiance(scene, &View::new(camera.as_ref(), *film), &lighting, [1, 2], 2).unwrap();
     assert_eq!(alone, shot.picture(&lighting).sample([1, 2], 2));
     let mut other = lighting.clone();
     other.sampling.seed += 1;
@@ -78,8 +79,9 @@ fn what_is_refused_is_refused() {
     let bright = Sphere::new([0.0; 3], 1.0, gray(1.5));
     let shot = Shot::new(&[bright], [0.0; 3], 1.2, 4);
     let Shot { scene, camera, film } = &shot;
-    let error = cpu::render_lit(scene, camera.as_ref(), film, &furnace(1), LayerSet::COLOR);
-    let Err(cpu::LitError::Lighting(LightingError::Albedo { .. })) = error else {
+    let error =
+        cpu::render(scene, &View::new(camera.as_ref(), *film), &furnace(1), LayerSet::COLOR);
+    let Err(cpu::RenderError::Settings(SettingsError::Albedo { .. })) = error else {
         panic!("{error:?}")
     };
 }
@@ -163,7 +165,7 @@ fn albedo_is_that_of_the_first_surface() {
     for (integrator, wanted) in
         [(path.integrator.clone(), [0.5, 0.0, 0.0]), (studio, [0.0, 0.5, 0.0])]
     {
-        let lighting = Lighting { integrator, ..path.clone() };
+        let lighting = RenderSettings { integrator, ..path.clone() };
         assert_eq!(shot.render(&lighting).albedo().unwrap(), [wanted; 4]);
     }
     for is_shadow_catcher in [false, true] {
@@ -174,7 +176,7 @@ fn albedo_is_that_of_the_first_surface() {
             is_shadow_catcher,
         });
         let integrator = Integrator::Studio(Studio::default());
-        let lighting = Lighting { integrator, ground, ..path.clone() };
+        let lighting = RenderSettings { integrator, ground, ..path.clone() };
         let image = Shot::from(4.0, &[], [0.0; 3], 0.1, 2).render(&lighting);
         let wanted = if is_shadow_catcher { [0.0; 3] } else { [0.25; 3] };
         assert_eq!(image.albedo().unwrap(), [wanted; 4]);
@@ -187,7 +189,7 @@ fn albedo_is_that_of_the_first_surface() {
 fn where_there_is_nothing() {
     let background = rgb([0.1, 0.2, 0.3]);
     let sky = |is_visible| Sky { light: SkyLight::Constant(gray(0.5)), is_visible };
-    let base = Lighting { background, ..paths(2, LightSampling::Multiple) };
+    let base = RenderSettings { background, ..paths(2, LightSampling::Multiple) };
     let pose = Pose::looking_along([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let fisheye = FisheyeCamera::new(pose, std::f64::consts::PI, 1.0).unwrap();
     let mirror =
@@ -204,7 +206,7 @@ fn where_there_is_nothing() {
         (studio, true, [0.1, 0.2, 0.3]),
     ] {
         for is_transparent in [false, true] {
-            let lighting = Lighting {
+            let lighting = RenderSettings {
                 integrator: integrator.clone(),
                 sky: sky(is_visible),
                 is_transparent,

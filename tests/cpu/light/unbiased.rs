@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, PathTracing, Sky, SkyLight,
-};
-use pinhole::{Environment, Film, Image, Lighting, Material, Scene, Sphere};
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::render::{Integrator, LightSampling, PathTracing};
+use pinhole::{Environment, Film, Image, Material, RenderSettings, Scene, Sphere};
 
 use super::{Shot, blocks, gray, paths, rgb, standard_errors};
 
@@ -35,7 +34,7 @@ fn spheres() -> Vec<Sphere> {
     ]
 }
 
-fn lighting(samples: u32, light_sampling: LightSampling, seed: u32) -> Lighting {
+fn lighting(samples: u32, light_sampling: LightSampling, seed: u32) -> RenderSettings {
     let sun = LightKind::Directional {
         toward: DVec3::new(1.0, 1.0, 0.5),
         strength: gray(0.6),
@@ -48,9 +47,9 @@ fn lighting(samples: u32, light_sampling: LightSampling, seed: u32) -> Lighting 
     let environment = Arc::new(Environment::new(8, 4, texels).unwrap());
     let base = paths(samples, light_sampling);
     let tracing = PathTracing { max_depth: 6, roulette_from: 2, light_sampling };
-    Lighting {
+    RenderSettings {
         integrator: Integrator::Path(tracing),
-        sampling: pinhole::lighting::Sampling { seed, ..base.sampling },
+        sampling: pinhole::render::Sampling { seed, ..base.sampling },
         lights: [sun, point].map(|kind| Light { kind, frame: LightFrame::World }).into(),
         sky: Sky {
             light: SkyLight::Image { environment, strength: 0.75, rotation: 0.6 },

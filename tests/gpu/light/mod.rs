@@ -32,14 +32,12 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 fn render(view: &LitView) -> Result<Image, Failed> {
-    let LitView { scene, camera, film, lighting } = view;
-    Ok(headless()?.render_lit(scene, camera.as_ref(), film, lighting, LayerSet::ALL)?)
+    Ok(headless()?.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?)
 }
 
 fn agree(view: &LitView) -> Result<(), Failed> {
-    let LitView { scene, camera, film, lighting } = view;
     let found = render(view)?;
-    let wanted = cpu::render_lit(scene, camera.as_ref(), film, lighting, LayerSet::ALL)?;
+    let wanted = cpu::render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?;
     let colors = found.color().iter().zip(wanted.color());
     let differences: Vec<f64> = colors
         .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).abs())).fold(0.0, f64::max))
@@ -48,7 +46,7 @@ fn agree(view: &LitView) -> Result<(), Failed> {
         found.color().iter().zip(wanted.color()).flat_map(|(a, b)| {
             (0..3).map(move |c| f64::from(a[c].min(1.0) - b[c].min(1.0)).powi(2))
         });
-    let count = film.pixel_count() as f64;
+    let count = view.film.pixel_count() as f64;
     let mean_square = squares.sum::<f64>() / (3.0 * count);
     let psnr = -10.0 * mean_square.max(1e-20).log10();
     let other = differences.iter().filter(|difference| **difference > SAME_WAY).count();
@@ -73,18 +71,16 @@ fn agree(view: &LitView) -> Result<(), Failed> {
 /// A grid, a tree and a list, and bricks, on a device of WebGPU's limits.
 fn structures(_: &'static pinhole::gpu::Headless) {
     use pinhole::accel::AccelChoice;
-    use pinhole::gpu::{LitDecision, LitProgress};
+    use pinhole::gpu::{Decision, Progress};
     let device = headless().unwrap();
     for (name, view) in [scenes::studios().swap_remove(2), scenes::paths().swap_remove(2)] {
-        let LitView { scene, camera, film, lighting } = &view;
+        let LitView { scene, settings, .. } = &view;
         let pictures = [AccelChoice::List, AccelChoice::Tree, AccelChoice::Grid].map(|choice| {
-            let accel = device.plan(scene, choice).build(scene.spheres());
-            let buffers = device.upload_lit(scene, &accel).unwrap();
-            let go_on = &mut |_: &LitProgress| LitDecision::GoOn;
-            let view = (camera.as_ref(), film);
-            let layers = LayerSet::COLOR;
+            let accel = device.plan_accel(scene, choice).build(scene.spheres());
+            let buffers = device.upload(scene, &accel.into()).unwrap();
+            let go_on = &mut |_: &Progress| Decision::GoOn;
             device
-                .render_lit_uploaded(scene, &buffers, view, lighting, layers, go_on)
+                .render_uploaded(&buffers, &view.seen(), settings, LayerSet::COLOR, go_on)
                 .unwrap()
                 .image
         });
@@ -96,29 +92,27 @@ fn structures(_: &'static pinhole::gpu::Headless) {
 /// A picture that is finished early is the one that was asked for with so many samples.
 fn batches(device: &'static pinhole::gpu::Headless) {
     use pinhole::accel::AccelChoice;
-    use pinhole::gpu::{LitDecision, LitProgress};
+    use pinhole::gpu::{Decision, Progress};
     let (_, mut view) = scenes::paths().swap_remove(1);
-    view.lighting.sampling.samples = 1000;
-    let LitView { scene, camera, film, lighting } = &view;
-    let accel = device.plan(scene, AccelChoice::Auto).build(scene.spheres());
-    let buffers = device.upload_lit(scene, &accel).unwrap();
-    let enough = &mut |progress: &LitProgress| {
-        if progress.samples >= 8 { LitDecision::Finish } else { LitDecision::GoOn }
+    view.settings.sampling.samples = 1000;
+    let LitView { scene, settings, .. } = &view;
+    let accel = device.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = device.upload(scene, &accel.into()).unwrap();
+    let enough = &mut |progress: &Progress| {
+        if progress.samples >= 8 { Decision::Finish } else { Decision::GoOn }
     };
-    let seen = (camera.as_ref(), film);
-    let early = device
-        .render_lit_uploaded(scene, &buffers, seen, lighting, LayerSet::COLOR, enough)
-        .unwrap();
+    let early =
+        device.render_uploaded(&buffers, &view.seen(), settings, LayerSet::COLOR, enough).unwrap();
     assert!((8..=64).contains(&early.samples), "{}", early.samples);
-    let mut asked = lighting.clone();
+    let mut asked = settings.clone();
     asked.sampling.samples = early.samples;
-    let whole = device.render_lit(scene, camera.as_ref(), film, &asked, LayerSet::COLOR).unwrap();
+    let whole = device.render(scene, &view.seen(), &asked, LayerSet::COLOR).unwrap();
     assert_eq!(early.image, whole);
 }
 
 fn denoising(device: &'static pinhole::gpu::Headless) {
     let (_, mut view) = scenes::paths().swap_remove(1);
-    view.lighting.sampling.samples = 4;
+    view.settings.sampling.samples = 4;
     let noisy = render(&view).unwrap();
     let quiet = device.denoise(&noisy).unwrap();
     let wanted = cpu::denoise(&noisy).unwrap();
@@ -127,7 +121,7 @@ fn denoising(device: &'static pinhole::gpu::Headless) {
             assert!((a[c] - b[c]).abs() <= 1e-4 * b[c].max(1.0), "{a:?} {b:?}");
         }
     }
-    view.lighting.sampling.samples = 512;
+    view.settings.sampling.samples = 512;
     let reference = render(&view).unwrap();
     let error = |image: &Image| {
         let squares = image.color().iter().zip(reference.color());

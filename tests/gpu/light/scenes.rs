@@ -2,18 +2,27 @@
 
 use pinhole::camera::{Camera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    DepthCue, Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Occlusion,
-    PathTracing, Sampling, Sky, SkyLight, Studio,
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::render::{
+    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio,
 };
-use pinhole::{Environment, Film, Lighting, LinearRgb, Material, PixelFilter, Scene, Sphere};
+use pinhole::{
+    Environment, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere, View,
+};
 
 /// A scene, how it is seen and how it is lit.
 pub(crate) struct LitView {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
     pub(crate) film: Film,
-    pub(crate) lighting: Lighting,
+    pub(crate) settings: RenderSettings,
+}
+
+impl LitView {
+    /// Its camera and film.
+    pub(crate) fn seen(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
 }
 
 pub(crate) const SAMPLES: u32 = 64;
@@ -131,15 +140,15 @@ fn inside() -> Vec<Sphere> {
     spheres
 }
 
-fn view(spheres: &[Sphere], lighting: Lighting) -> LitView {
+fn view(spheres: &[Sphere], settings: RenderSettings) -> LitView {
     let film = Film::new(48, 36).unwrap();
     let pose = Pose::looking_at([1.0, 1.5, 7.0], [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::with_vertical_fov(pose, 0.6, film.aspect()).unwrap();
-    LitView { scene: Scene::new(spheres).unwrap(), camera: Box::new(camera), film, lighting }
+    LitView { scene: Scene::new(spheres).unwrap(), camera: Box::new(camera), film, settings }
 }
 
 /// The same scene, scaled and moved.
-fn moved(spheres: &[Sphere], lighting: Lighting, scale: f64, offset: f64) -> LitView {
+fn moved(spheres: &[Sphere], mut settings: RenderSettings, scale: f64, offset: f64) -> LitView {
     let place = |[x, y, z]: [f64; 3]| [x * scale + offset, y * scale - offset, z * scale + offset];
     let spheres: Vec<Sphere> = spheres
         .iter()
@@ -154,38 +163,37 @@ fn moved(spheres: &[Sphere], lighting: Lighting, scale: f64, offset: f64) -> Lit
     let (eye, look_at) = (place([1.0, 1.5, 7.0]), place([0.0, -0.2, 0.3]));
     let pose = Pose::looking_at(eye, look_at, [0.05, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::with_vertical_fov(pose, 0.6, film.aspect()).unwrap();
-    let mut lighting = lighting;
-    if let Some(ground) = &mut lighting.ground {
+    if let Some(ground) = &mut settings.ground {
         ground.point = DVec3::from(place([0.0, -1.0, 0.0]));
     }
-    for light in &mut lighting.lights {
+    for light in &mut settings.lights {
         if let LightKind::Sphere { center, radius, .. } = &mut light.kind {
             *center = DVec3::from(place(center.to_array()));
             *radius *= scale;
         }
     }
-    LitView { scene: Scene::new(&spheres).unwrap(), camera: Box::new(camera), film, lighting }
+    LitView { scene: Scene::new(&spheres).unwrap(), camera: Box::new(camera), film, settings }
 }
 
 fn through_a_lens() -> LitView {
-    let LitView { scene, film, lighting, .. } = view(&shiny(), path(LightSampling::Multiple));
+    let LitView { scene, film, settings, .. } = view(&shiny(), path(LightSampling::Multiple));
     let pose = Pose::looking_at([1.0, 1.5, 7.0], [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
     let pinhole = PinholeCamera::with_vertical_fov(pose, 0.6, film.aspect()).unwrap();
     let camera = ThinLensCamera::new(pinhole, 0.2, 7.0).unwrap();
-    LitView { scene, camera: Box::new(camera), film, lighting }
+    LitView { scene, camera: Box::new(camera), film, settings }
 }
 
-fn lit(integrator: Integrator, lights: Vec<Light>) -> Lighting {
-    Lighting {
+fn lit(integrator: Integrator, lights: Vec<Light>) -> RenderSettings {
+    RenderSettings {
         integrator,
         lights,
         sampling: Sampling { samples: SAMPLES, seed: 7, filter: PixelFilter::default() },
         background: rgb(0.2, 0.3, 0.4),
-        ..Lighting::default()
+        ..RenderSettings::studio()
     }
 }
 
-fn studio(studio: Studio) -> Lighting {
+fn studio(studio: Studio) -> RenderSettings {
     lit(Integrator::Studio(studio), Light::key_and_fill().to_vec())
 }
 
@@ -202,47 +210,47 @@ fn sphere_light() -> Light {
     world(LightKind::Sphere { center: DVec3::new(2.0, 4.0, 3.0), radius: 0.8, radiance })
 }
 
-fn soft_light() -> Lighting {
+fn soft_light() -> RenderSettings {
     let head = Light { kind: LightKind::Head { strength: gray(0.2) }, frame: LightFrame::Camera };
     lit(Integrator::Studio(Studio::default()), vec![sphere_light(), head])
 }
 
-fn on_ground(mut lighting: Lighting) -> Lighting {
+fn on_ground(mut lighting: RenderSettings) -> RenderSettings {
     let point = DVec3::new(0.0, -1.0, 0.0);
     let color = rgb(0.6, 0.55, 0.5);
     lighting.ground = Some(Ground { point, normal: DVec3::Y, color, is_shadow_catcher: false });
     lighting
 }
 
-fn catcher() -> Lighting {
+fn catcher() -> RenderSettings {
     let mut lighting = on_ground(studio(occluded(Some(1.0))));
     lighting.ground.as_mut().unwrap().is_shadow_catcher = true;
     lighting.is_transparent = true;
     lighting
 }
 
-fn cued() -> Lighting {
+fn cued() -> RenderSettings {
     let cue = DepthCue { near: 5.5, far: 8.5, color: rgb(0.2, 0.3, 0.4) };
     studio(Studio { depth_cue: Some(cue), ..Studio::default() })
 }
 
-fn dark() -> Lighting {
+fn dark() -> RenderSettings {
     lit(Integrator::Studio(Studio { ambient: LinearRgb::BLACK, ..Studio::default() }), Vec::new())
 }
 
-fn path(light_sampling: LightSampling) -> Lighting {
+fn path(light_sampling: LightSampling) -> RenderSettings {
     let tracing = PathTracing { max_depth: 6, roulette_from: 2, light_sampling };
     lit(Integrator::Path(tracing), Vec::new())
 }
 
 /// Nothing shines but spheres.
-fn night(light_sampling: LightSampling) -> Lighting {
+fn night(light_sampling: LightSampling) -> RenderSettings {
     let mut lighting = path(light_sampling);
     lighting.sky = Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: true };
     lighting
 }
 
-fn sunny() -> Lighting {
+fn sunny() -> RenderSettings {
     let mut lighting = path(LightSampling::Multiple);
     let sun = LightKind::Directional {
         toward: DVec3::new(0.5, 1.0, 0.7),
@@ -262,7 +270,7 @@ fn sunny() -> Lighting {
     lighting
 }
 
-fn under_image() -> Lighting {
+fn under_image() -> RenderSettings {
     let mut lighting = path(LightSampling::Multiple);
     // Bright towards one side, and dim elsewhere.
     let texel = |index: usize| {

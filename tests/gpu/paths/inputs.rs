@@ -60,33 +60,33 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
     (
         "light_moved",
         Spoil::Given(|view| {
-            for light in &mut view.lighting.lights {
+            for light in &mut view.settings.lights {
                 if let LightKind::Point { position, .. } = &mut light.kind {
                     *position += DVec3::new(1e-4, 0.0, 0.0);
                 }
             }
         }),
     ),
-    ("another_seed", Spoil::Given(|view| view.lighting.sampling.seed += 1)),
+    ("another_seed", Spoil::Given(|view| view.settings.sampling.seed += 1)),
     (
         "another_filter",
         Spoil::Given(|view| {
-            view.lighting.sampling.filter = pinhole::PixelFilter::Box;
+            view.settings.sampling.filter = pinhole::PixelFilter::Box;
         }),
     ),
     (
         "ground_moved",
         Spoil::Given(|view| {
-            if let Some(ground) = &mut view.lighting.ground {
+            if let Some(ground) = &mut view.settings.ground {
                 ground.point.y -= 1e-5;
             }
         }),
     ),
-    ("sky_seen", Spoil::Given(|view| view.lighting.sky.is_visible ^= true)),
+    ("sky_seen", Spoil::Given(|view| view.settings.sky.is_visible ^= true)),
     (
         "light_left_out",
         Spoil::Given(|view| {
-            view.lighting.lights.pop();
+            view.settings.lights.pop();
         }),
     ),
     ("another_number_of_sources", Spoil::Said(|recording| recording.look.source_count += 1)),

@@ -9,10 +9,9 @@ use std::path::Path;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LitDecision, ShaderEdit};
-use pinhole::lighting::{Integrator, Studio};
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, ShaderEdit};
 use pinhole::verify::{Checker, PathCertificate, PathRecording};
-use pinhole::{Film, Lighting};
+use pinhole::{Film, RenderSettings};
 
 use crate::{headless, trial};
 use faults::Fault;
@@ -50,19 +49,17 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn record(headless: &Headless, view: &LitView) -> Result<PathRecording, Failed> {
     let spheres = view.scene.spheres();
-    record_in(headless, view, &headless.plan(&view.scene, AccelChoice::Auto).build(spheres))
+    record_in(headless, view, headless.plan_accel(&view.scene, AccelChoice::Auto).build(spheres))
 }
 
 fn record_in(
     headless: &Headless,
     view: &LitView,
-    accel: &pinhole::accel::Accel,
+    accel: pinhole::accel::Accel,
 ) -> Result<PathRecording, Failed> {
-    let LitView { scene, camera, film, lighting } = view;
-    let buffers = headless.upload_lit(scene, accel)?;
-    let go_on = &mut |_: &_| LitDecision::GoOn;
-    let seen = (camera.as_ref(), film);
-    Ok(headless.record_paths(scene, &buffers, seen, lighting, 0..2, go_on)?)
+    let buffers = headless.upload(&view.scene, &accel.into())?;
+    let go_on = &mut |_: &_| Decision::GoOn;
+    Ok(headless.record_paths(&buffers, &view.seen(), &view.settings, 0..2, go_on)?)
 }
 
 fn certify(view: &LitView, recording: &PathRecording) -> PathCertificate {
@@ -92,7 +89,7 @@ fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
     let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
-    is_legal(&view, &record_in(headless()?, &view, &accel)?)
+    is_legal(&view, &record_in(headless()?, &view, accel)?)
 }
 
 /// By the stage that it is a fault of.
@@ -123,7 +120,7 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
         inputs::Spoil::Said(change) => spoilt = Some(change),
     }
     let mut recording = record(headless()?, &given)?;
-    recording.lighting = view.lighting.clone();
+    recording.settings = view.settings.clone();
     if let Some(change) = spoilt {
         change(&mut recording);
     }
@@ -151,21 +148,20 @@ fn part_of_a_large_film() -> Result<(), Failed> {
 
 fn refuses_a_studio(headless: &'static Headless) {
     let view = scenes::matt();
-    let lighting = Lighting { integrator: Integrator::Studio(Studio::default()), ..view.lighting };
-    let accel = headless.plan(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
-    let buffers = headless.upload_lit(&view.scene, &accel).unwrap();
-    let seen = (view.camera.as_ref(), &view.film);
-    let go_on = &mut |_: &_| LitDecision::GoOn;
-    let refused = headless.record_paths(&view.scene, &buffers, seen, &lighting, 0..1, go_on);
+    // Sky and ground are the studio\'s own.
+    let settings = RenderSettings::studio();
+    let accel = headless.plan_accel(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
+    let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
+    let go_on = &mut |_: &_| Decision::GoOn;
+    let refused = headless.record_paths(&buffers, &view.seen(), &settings, 0..1, go_on);
     assert_eq!(refused.unwrap_err(), GpuError::NotPaths);
 }
 
 fn stops_when_told(headless: &'static Headless) {
     let view = scenes::matt();
-    let accel = headless.plan(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
-    let buffers = headless.upload_lit(&view.scene, &accel).unwrap();
-    let seen = (view.camera.as_ref(), &view.film);
-    let stop = &mut |_: &_| LitDecision::Stop;
-    let stopped = headless.record_paths(&view.scene, &buffers, seen, &view.lighting, 0..1, stop);
+    let accel = headless.plan_accel(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
+    let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
+    let stop = &mut |_: &_| Decision::Stop;
+    let stopped = headless.record_paths(&buffers, &view.seen(), &view.settings, 0..1, stop);
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }

@@ -5,19 +5,24 @@ use std::sync::Arc;
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{
-    Ground, Integrator, Light, LightFrame, LightKind, LightSampling, Lighting, PathTracing,
-    Sampling, Sky, SkyLight,
-};
+use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::material::Material;
-use pinhole::{Film, LinearRgb, Scene, Sphere};
+use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
+use pinhole::{Film, LinearRgb, Scene, Sphere, View};
 
 /// A scene, and how it is lit and seen.
 pub(crate) struct LitView {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
     pub(crate) film: Film,
-    pub(crate) lighting: Lighting,
+    pub(crate) settings: RenderSettings,
+}
+
+impl LitView {
+    /// Its camera and film.
+    pub(crate) fn seen(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
 }
 
 type Named = (&'static str, fn() -> LitView);
@@ -99,8 +104,8 @@ fn ground(y: f64) -> Ground {
     }
 }
 
-fn lighting(lights: Vec<Light>, sky: Sky, light_sampling: LightSampling) -> Lighting {
-    Lighting {
+fn lighting(lights: Vec<Light>, sky: Sky, light_sampling: LightSampling) -> RenderSettings {
+    RenderSettings {
         integrator: Integrator::Path(PathTracing {
             max_depth: 6,
             roulette_from: 2,
@@ -112,7 +117,7 @@ fn lighting(lights: Vec<Light>, sky: Sky, light_sampling: LightSampling) -> Ligh
         ground: None,
         background: rgb(0.1, 0.2, 0.3),
         is_transparent: false,
-        ..Lighting::default()
+        ..RenderSettings::studio()
     }
 }
 
@@ -121,12 +126,12 @@ fn camera(eye: [f64; 3], look_at: [f64; 3]) -> PinholeCamera {
     PinholeCamera::with_vertical_fov(pose, f64::to_radians(40.0), 1.2).unwrap()
 }
 
-fn view(spheres: &[Sphere], lighting: Lighting) -> LitView {
+fn view(spheres: &[Sphere], settings: RenderSettings) -> LitView {
     LitView {
         scene: Scene::new(spheres).unwrap(),
         camera: Box::new(camera([0.5, 1.5, 7.0], [0.0, 0.0, 0.0])),
         film: Film::new(48, 40).unwrap(),
-        lighting,
+        settings,
     }
 }
 
@@ -151,7 +156,7 @@ pub(crate) fn matt() -> LitView {
         }),
     ];
     let lit = lighting(lights, sky(), LightSampling::Multiple);
-    view(&grid(|_| Material::default()), Lighting { ground: Some(ground(-2.4)), ..lit })
+    view(&grid(|_| Material::default()), RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
 pub(crate) fn lobes() -> LitView {
@@ -173,7 +178,7 @@ pub(crate) fn lobes() -> LitView {
 pub(crate) fn metals() -> LitView {
     let lit = lighting(vec![light(directional(0.02))], sky(), LightSampling::Multiple);
     let material = |i| metal(if i == 0 { 0.02 } else { 0.11 * i as f32 });
-    view(&grid(material), Lighting { ground: Some(ground(-2.4)), ..lit })
+    view(&grid(material), RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
 pub(crate) fn glass() -> LitView {
@@ -205,7 +210,7 @@ fn lamps() -> Vec<Sphere> {
 
 fn with_lamps(sampling: LightSampling) -> LitView {
     let lit = lighting(Vec::new(), no_sky(), sampling);
-    view(&lamps(), Lighting { ground: Some(ground(-2.4)), ..lit })
+    view(&lamps(), RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
 pub(crate) fn emitters() -> LitView {
@@ -222,7 +227,7 @@ fn emitters_by_chance() -> LitView {
 
 pub(crate) fn sun() -> LitView {
     let lit = lighting(vec![light(directional(0.3))], sky(), LightSampling::Multiple);
-    let lit = Lighting { ground: Some(ground(-2.4)), ..lit };
+    let lit = RenderSettings { ground: Some(ground(-2.4)), ..lit };
     view(&grid(|i| if i % 2 == 0 { metal(0.2) } else { lobe(0.3, 0.3) }), lit)
 }
 
@@ -246,7 +251,7 @@ pub(crate) fn image() -> LitView {
 
 pub(crate) fn image_over_ground() -> LitView {
     let view = image();
-    LitView { lighting: Lighting { ground: Some(ground(-2.4)), ..view.lighting }, ..view }
+    LitView { settings: RenderSettings { ground: Some(ground(-2.4)), ..view.settings }, ..view }
 }
 
 pub(crate) fn opacity() -> LitView {
@@ -256,7 +261,7 @@ pub(crate) fn opacity() -> LitView {
         .enumerate()
         .map(|(i, sphere)| sphere.with_opacity(i as f32 / 8.0))
         .collect();
-    view(&spheres, Lighting { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
+    view(&spheres, RenderSettings { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
 }
 
 pub(crate) fn from_inside() -> LitView {
@@ -287,7 +292,7 @@ pub(crate) fn many() -> LitView {
         })
         .collect();
     let lit = lighting(vec![light(directional(0.1))], sky(), LightSampling::Multiple);
-    view(&spheres, Lighting { ground: Some(ground(-2.4)), ..lit })
+    view(&spheres, RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
 pub(crate) fn mixed() -> Vec<Sphere> {
@@ -321,7 +326,7 @@ fn scaled(scale: f64, moved: DVec3) -> LitView {
     let eye = place(DVec3::new(0.5, 1.5, 7.0)).to_array();
     LitView {
         camera: Box::new(camera(eye, place(DVec3::ZERO).to_array())),
-        ..view(&spheres, Lighting { ground: Some(below), ..lit })
+        ..view(&spheres, RenderSettings { ground: Some(below), ..lit })
     }
 }
 

@@ -1,18 +1,19 @@
-//! What a lighting refuses.
+//! What settings refuse: numbers out of range, and choices that contradict each other.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Integrator, LightKind, Lighting, PathTracing, Sampling, SkyLight, Studio};
+use super::{Integrator, PathTracing, RenderSettings, Sampling, Studio};
 use crate::color::LinearRgb;
+use crate::lighting::{LightKind, Sky, SkyLight};
 use crate::material::Material;
 use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::range::RangeError;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneColors};
 
-/// What is wrong with a lighting, or with a scene's materials.
+/// What is wrong with settings, or with a scene's materials.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum LightingError {
+pub enum SettingsError {
     /// A parameter is out of range.
     #[error(transparent)]
     Range(#[from] RangeError),
@@ -51,26 +52,58 @@ pub enum LightingError {
     /// The ground's normal is zero, or its point not finite.
     #[error("the ground's normal must have a length, and its point must be finite")]
     Ground,
-    /// Paths know no shadow catcher.
+    /// The path integrator does not support shadow catchers.
     #[error(
         "a shadow catcher needs the integrator `studio`; paths light the ground as they find it"
     )]
     Catcher,
+    /// A picture of primary rays has one for each pixel.
+    #[error(
+        "the integrator `primary` traces one ray through the center of each pixel, and {samples} samples are asked \
+         for; ask for 1, or choose the integrator `studio` or `path`"
+    )]
+    OneSample {
+        /// How many were asked for.
+        samples: u32,
+    },
+    /// Something is set that the integrator would ignore.
+    #[error(
+        "the integrator `{integrator}` does not use {what}; leave out {what}, or choose the integrator {instead}"
+    )]
+    Unused {
+        /// What is set.
+        what: &'static str,
+        /// The integrator's name.
+        integrator: &'static str,
+        /// Which integrators use it.
+        instead: &'static str,
+    },
 }
 
-impl Lighting {
-    /// Whether all of it is in range, and the scene's materials give back no more light than they get.
+impl RenderSettings {
+    /// Whether all numbers are in range, no two settings contradict each other, and, in a lit picture, the scene's
+    /// materials give back no more light than they get.
     ///
     /// # Errors
-    /// The first thing that is not.
-    pub fn check(&self, scene: &Scene) -> Result<(), LightingError> {
+    /// The first thing that is wrong.
+    pub fn check(&self, scene: &Scene) -> Result<(), SettingsError> {
+        self.check_with(scene.colors())
+    }
+
+    /// As [`RenderSettings::check`], with what is known of the scene's materials.
+    pub(crate) fn check_with(&self, colors: &SceneColors) -> Result<(), SettingsError> {
+        self.check_is_used()?;
+        if self.integrator.is_primary() {
+            return Ok(());
+        }
         let within = RangeError::unless_within;
         self.sampling.check()?;
         match &self.integrator {
+            Integrator::Primary(_) => {}
             Integrator::Path(path) => {
                 path.check()?;
                 if self.ground.is_some_and(|ground| ground.is_shadow_catcher) {
-                    return Err(LightingError::Catcher);
+                    return Err(SettingsError::Catcher);
                 }
             }
             Integrator::Studio(studio) => studio.check()?,
@@ -86,15 +119,37 @@ impl Lighting {
         if let Some(ground) = &self.ground {
             let is_near = ground.point.abs().cmple(glam::DVec3::splat(MAX_LENGTH)).all();
             if unit(ground.normal).is_none() || !is_near {
-                return Err(LightingError::Ground);
+                return Err(SettingsError::Ground);
             }
             check_albedo(ground.color, || "the ground".to_owned())?;
         }
-        check_materials(scene)
+        check_materials(colors)
+    }
+
+    /// Refuses what the integrator would ignore.
+    fn check_is_used(&self) -> Result<(), SettingsError> {
+        let integrator = self.integrator.name();
+        let unused = |what, instead| Err(SettingsError::Unused { what, integrator, instead });
+        let is_primary = self.integrator.is_primary();
+        if is_primary && self.sampling.samples != 1 {
+            return Err(SettingsError::OneSample { samples: self.sampling.samples });
+        }
+        if !matches!(self.integrator, Integrator::Path(_)) && self.sky != Sky::default() {
+            return unused("the sky", "`path`");
+        }
+        let for_light = [
+            ("the lights", !self.lights.is_empty()),
+            ("the ground", self.ground.is_some()),
+            ("denoising", self.is_denoised),
+        ];
+        match for_light.into_iter().find(|(_, is_set)| is_primary && *is_set) {
+            Some((what, _)) => unused(what, "`studio` or `path`"),
+            None => Ok(()),
+        }
     }
 
     /// Of all but spheres.
-    fn check_brightness(&self) -> Result<(), LightingError> {
+    fn check_brightness(&self) -> Result<(), SettingsError> {
         for (index, light) in self.lights.iter().enumerate() {
             let color = match &light.kind {
                 LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
@@ -103,7 +158,7 @@ impl Lighting {
             };
             check_brightness(color.to_array(), 1.0, || format!("light {index}"))?;
         }
-        let ambient = self.studio().map(|studio| studio.ambient);
+        let ambient = self.studio_parameters().map(|studio| studio.ambient);
         let others = ambient.into_iter().chain([self.background]);
         match &self.sky.light {
             SkyLight::Constant(color) => {
@@ -135,12 +190,12 @@ fn check_brightness(
     rgb: [f32; 3],
     by: f32,
     what: impl Fn() -> String,
-) -> Result<(), LightingError> {
+) -> Result<(), SettingsError> {
     let rgb = rgb.map(|c| c * by);
     if rgb.iter().all(|c| *c <= BRIGHTEST) {
         Ok(())
     } else {
-        Err(LightingError::TooBright { what: what(), rgb })
+        Err(SettingsError::TooBright { what: what(), rgb })
     }
 }
 
@@ -189,16 +244,16 @@ impl Studio {
 const LENGTH: [f64; 2] = [MIN_LENGTH, MAX_LENGTH];
 const LENGTH_WORDS: &str = "a length greater than 0, from 2^-56 to 2^56";
 
-fn check_light(index: usize, light: &LightKind) -> Result<(), LightingError> {
+fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
     let within = |parameter, value, bounds, range| {
         RangeError::unless_within(parameter, value, bounds, range)
-            .map_err(|error| LightingError::Light { index, error })
+            .map_err(|error| SettingsError::Light { index, error })
     };
     match *light {
         LightKind::Head { .. } => {}
         LightKind::Directional { toward, angular_radius, .. } => {
             if unit(toward).is_none() {
-                return Err(LightingError::Direction { index });
+                return Err(SettingsError::Direction { index });
             }
             if angular_radius != 0.0 {
                 let range = "0, or from 0.06 to 90 degrees";
@@ -220,12 +275,12 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), LightingError> {
     Ok(())
 }
 
-fn check_materials(scene: &Scene) -> Result<(), LightingError> {
-    for (place, (color, finish)) in scene.palette().iter().zip(scene.finishes()).enumerate() {
+fn check_materials(colors: &SceneColors) -> Result<(), SettingsError> {
+    for (place, (color, finish)) in colors.palette().iter().zip(colors.finishes()).enumerate() {
         finish.check()?;
         let what = || {
-            let id = scene
-                .color_indices()
+            let id = colors
+                .indices()
                 .map_or(Some(0), |places| places.iter().position(|found| *found as usize == place));
             id.map_or_else(|| "a material".to_owned(), |id| format!("sphere {id}"))
         };
@@ -239,11 +294,11 @@ fn check_materials(scene: &Scene) -> Result<(), LightingError> {
     Ok(())
 }
 
-fn check_albedo(color: LinearRgb, what: impl Fn() -> String) -> Result<(), LightingError> {
+fn check_albedo(color: LinearRgb, what: impl Fn() -> String) -> Result<(), SettingsError> {
     let rgb = color.to_array();
     if rgb.iter().all(|c| *c <= 1.0) {
         Ok(())
     } else {
-        Err(LightingError::Albedo { what: what(), rgb })
+        Err(SettingsError::Albedo { what: what(), rgb })
     }
 }

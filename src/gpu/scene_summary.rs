@@ -1,0 +1,62 @@
+//! What lit pictures need of a scene beside its buffers, so that the host's scene need not be at hand.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::color::LinearRgb;
+use crate::lighting::emitters::Emitters;
+use crate::material::Finish;
+use crate::scene::{Scene, SceneColors};
+
+/// Palette, finishes and emissive spheres of a scene.
+#[derive(Debug)]
+pub(super) struct SceneSummary {
+    /// Of the scene's frame, in the world.
+    pub(super) origin: DVec3,
+    pub(super) colors: Arc<SceneColors>,
+    pub(super) emitters: Emitters,
+    /// The spheres of `emitters`, in the same order.
+    pub(super) emissive: Vec<EmissiveSphere>,
+}
+
+/// A sphere that sends out light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EmissiveSphere {
+    /// Centre in the scene's frame, and radius.
+    pub(super) sphere: [f32; 4],
+    pub(super) color: LinearRgb,
+    pub(super) finish: Finish,
+}
+
+impl SceneSummary {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let emitters = Emitters::of(scene);
+        let emissive = |id: &u32| EmissiveSphere {
+            sphere: scene.spheres()[*id as usize],
+            color: scene.color(*id),
+            finish: scene.finish(*id),
+        };
+        Self {
+            origin: scene.origin(),
+            colors: Arc::clone(scene.colors()),
+            emissive: emitters.ids().iter().map(emissive).collect(),
+            emitters,
+        }
+    }
+
+    /// Of a structure for shadows: nothing of it is seen.
+    pub(super) fn of_occluders(scene: &Scene) -> Self {
+        Self {
+            origin: scene.origin(),
+            colors: Arc::new(SceneColors::one(LinearRgb::WHITE)),
+            emitters: Emitters::default(),
+            emissive: Vec::new(),
+        }
+    }
+
+    /// Whether every sphere is opaque.
+    pub(super) fn is_opaque(&self) -> bool {
+        self.colors.finishes().iter().all(|finish| finish.opacity >= 1.0)
+    }
+}

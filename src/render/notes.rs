@@ -1,0 +1,88 @@
+//! What somebody should know of settings although it is no error.
+
+use std::fmt;
+
+use super::{Integrator, RenderSettings};
+use crate::color::LinearRgb;
+use crate::lighting::{LightKind, SkyLight};
+use crate::material::{Finish, Material};
+use crate::scene::Scene;
+
+/// Something about settings and a scene that may not be what was meant, and what to do about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SettingsNote {
+    /// The picture is lit, and nothing shines.
+    NoLight,
+    /// A studio draws metal and glass as matt surfaces.
+    MattInStudio,
+    /// Primary rays end at the first sphere, whatever its opacity.
+    OpacityIgnored,
+}
+
+impl fmt::Display for SettingsNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoLight => {
+                "no light: nothing shines on this scene, and its spheres will be black; add \
+                 [[lights]], or give something that is there a color and a strength"
+            }
+            Self::MattInStudio => {
+                "metal and glass are matt in a studio; the integrator `path` shows what they are"
+            }
+            Self::OpacityIgnored => {
+                "primary rays ignore opacity, and spheres that are not opaque are drawn as if they were; \
+                 the integrators `studio` and `path` show it"
+            }
+        })
+    }
+}
+
+impl RenderSettings {
+    /// What somebody who renders a scene with these settings should know although it is no error.
+    #[must_use]
+    pub fn notes(&self, scene: &Scene) -> Vec<SettingsNote> {
+        let any = |is_special: fn(&Finish) -> bool| scene.finishes().iter().any(is_special);
+        let is_translucent = || any(|finish| finish.opacity < 1.0);
+        let needs_paths = || {
+            any(|finish| {
+                matches!(finish.material, Material::Conductor { .. } | Material::Dielectric { .. })
+            })
+        };
+        let notes = [
+            (SettingsNote::NoLight, self.is_dark(scene)),
+            (SettingsNote::MattInStudio, self.studio_parameters().is_some() && needs_paths()),
+            (SettingsNote::OpacityIgnored, self.integrator.is_primary() && is_translucent()),
+        ];
+        notes.into_iter().filter(|(_, holds)| *holds).map(|(note, _)| note).collect()
+    }
+
+    /// Whether the picture is lit, and nothing shines at all.
+    fn is_dark(&self, scene: &Scene) -> bool {
+        let is_black = |color: &LinearRgb| *color == LinearRgb::BLACK;
+        let is_lit = self.lights.iter().any(|light| {
+            !is_black(match &light.kind {
+                LightKind::Head { strength } | LightKind::Directional { strength, .. } => strength,
+                LightKind::Point { intensity, .. } => intensity,
+                LightKind::Sphere { radiance, .. } => radiance,
+            })
+        });
+        let from_around = match (&self.integrator, &self.sky.light) {
+            // The eye is the light.
+            (Integrator::Primary(_), _) => true,
+            (Integrator::Studio(studio), _) => !is_black(&studio.ambient),
+            (Integrator::Path(_), SkyLight::Constant(color)) => !is_black(color),
+            (Integrator::Path(_), SkyLight::Gradient { zenith, horizon, nadir }) => {
+                [zenith, horizon, nadir].into_iter().any(|color| !is_black(color))
+            }
+            (Integrator::Path(_), SkyLight::Image { environment, strength, .. }) => {
+                environment.has_light() && *strength > 0.0
+            }
+        };
+        let shines = |(color, finish): (&LinearRgb, &Finish)| match finish.material {
+            Material::Emissive { strength } => strength > 0.0 && !is_black(color),
+            _ => false,
+        };
+        !is_lit && !from_around && !scene.palette().iter().zip(scene.finishes()).any(shines)
+    }
+}
