@@ -42,6 +42,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LOOK_SHADOWS", lit::records::SHADOWS),
         ("LOOK_GROUND", lit::records::GROUND),
         ("LOOK_CATCHER", lit::records::CATCHER),
+        ("LIST_OF_LIGHT", lit::records::LIST_OF_LIGHT),
         ("ENERGIES", crate::lighting::energy::ENTRIES as u32),
     ];
     let floats = [
@@ -64,6 +65,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
 /// tables, of which `tests/gpu/light` and `tests/gpu/paths` compare what becomes.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_PLACE",
+    "NO_PATH",
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",
     "SMALLEST_SPOT",
@@ -75,6 +77,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "THROUGHPUT",
     "RADIANCE",
     "FIRST",
+    "HIT",
     "SHADOW",
     "PENDING",
     "TARGET",
@@ -85,7 +88,6 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "PATH_ALIVE",
     "PATH_INSIDE",
     "PATH_ON_GROUND",
-    "PATH_LIT",
     "PATH_BACK",
     "PATH_FULL",
     "PATH_SCATTERED",

@@ -11,7 +11,7 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 use super::adapter;
 use super::error::GpuError;
 use super::faults::Faults;
-use super::lit::{LitKey, LitRenderer};
+use super::lit::{LitKey, LitPasses};
 use super::options::{HeadlessOptions, required_limits, wanted_features};
 use super::plan::RenderPlan;
 use super::progress::{Picture, Watch, go_on};
@@ -35,6 +35,7 @@ pub struct Headless {
     device: Device,
     queue: Queue,
     timeout: Duration,
+    is_indirect: bool,
     faults: Arc<Faults>,
     /// Locked for the whole of a render, because faults cannot be told apart by render.
     renderers: Mutex<Renderers>,
@@ -85,8 +86,11 @@ impl Headless {
             reported.report(GpuError::DeviceLost { message });
         });
         let timeout = options.timeout;
+        let downlevel = adapter.get_downlevel_capabilities().flags;
+        let is_indirect =
+            options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let renderers = Mutex::new(Renderers::new(options.edits.clone()));
-        Ok(Self { info, device, queue, timeout, faults, renderers })
+        Ok(Self { info, device, queue, timeout, is_indirect, faults, renderers })
     }
 
     /// Name, driver and kind of the adapter in use.
@@ -99,6 +103,11 @@ impl Headless {
     #[must_use]
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// Whether the device can be told by a buffer how many workgroups a dispatch has.
+    pub(super) fn is_indirect(&self) -> bool {
+        self.is_indirect
     }
 
     /// The queue, for a caller that wants to record by itself.
@@ -258,11 +267,11 @@ impl Headless {
         self.alone(|renderers| renderers.of(&self.device, key).and_then(work))
     }
 
-    /// Works with the lit renderer that a key stands for, alone on this device.
-    pub(super) fn with_lit_renderer<T>(
+    /// Works with the passes that a key stands for, alone on this device.
+    pub(super) fn with_lit_passes<T>(
         &self,
         key: LitKey,
-        work: impl FnOnce(&LitRenderer) -> Result<T, GpuError>,
+        work: impl FnOnce(&LitPasses) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(|renderers| renderers.lit(&self.device, key).and_then(work))
     }
@@ -277,18 +286,23 @@ impl Headless {
         work(&mut renderers).map_err(|error| self.explained(error))
     }
 
+    /// Submits, and does not wait.
+    pub(super) fn submit(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
+        self.queue.submit([encoder.finish()])
+    }
+
     /// Submits, and waits until it is done and the buffers are mapped.
     pub(super) fn run(
         &self,
         encoder: CommandEncoder,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
-        let submission = self.queue.submit([encoder.finish()]);
+        let submission = self.submit(encoder);
         self.wait(mapped, submission)
     }
 
     /// Waits until the submission is done and the buffers are mapped.
-    fn wait(
+    pub(super) fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,

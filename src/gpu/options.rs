@@ -16,6 +16,9 @@ pub struct HeadlessOptions {
     /// How long one submission may take before it is given up. Submissions adapt to the device and take
     /// about 60 milliseconds.
     pub timeout: Duration,
+    /// Whether the device itself may say how many workgroups a dispatch has, where it can; off only in experiments
+    /// and tests. The picture does not depend on it.
+    pub indirect: bool,
     /// Changes of shaders; none, but in experiments and tests.
     pub edits: Vec<ShaderEdit>,
 }
@@ -34,7 +37,8 @@ impl Default for HeadlessOptions {
     /// The best adapter with its own limits; ten minutes.
     fn default() -> Self {
         let timeout = Duration::from_secs(600);
-        Self { adapter: None, limits: LimitChoice::Adapter, timeout, edits: Vec::new() }
+        let edits = Vec::new();
+        Self { adapter: None, limits: LimitChoice::Adapter, timeout, indirect: true, edits }
     }
 }
 

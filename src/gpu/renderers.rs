@@ -6,7 +6,7 @@ use std::collections::hash_map::Entry;
 use wgpu::Device;
 
 use super::error::GpuError;
-use super::lit::{LitKey, LitRenderer, LitRenderers};
+use super::lit::{AllLitPasses, LitKey, LitPasses};
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
 use super::shaders::ShaderEdit;
@@ -42,14 +42,14 @@ impl RendererKey {
 #[derive(Debug)]
 pub(super) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
-    lit: LitRenderers,
+    lit: AllLitPasses,
     edits: Vec<ShaderEdit>,
 }
 
 impl Renderers {
     /// None yet; all will be built with these changes of their shaders.
     pub(super) fn new(edits: Vec<ShaderEdit>) -> Self {
-        Self { built: HashMap::new(), lit: LitRenderers::new(), edits }
+        Self { built: HashMap::new(), lit: AllLitPasses::new(), edits }
     }
 
     /// The renderer that a key stands for.
@@ -73,11 +73,11 @@ impl Renderers {
         }
     }
 
-    /// The lit renderer that a key stands for.
-    pub(super) fn lit(&mut self, device: &Device, key: LitKey) -> Result<&LitRenderer, GpuError> {
+    /// The passes of lit pictures that a key stands for.
+    pub(super) fn lit(&mut self, device: &Device, key: LitKey) -> Result<&LitPasses, GpuError> {
         match self.lit.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(place) => Ok(place.insert(LitRenderer::new(device, key, &self.edits)?)),
+            Entry::Vacant(place) => Ok(place.insert(LitPasses::new(device, key, &self.edits)?)),
         }
     }
 }

@@ -227,21 +227,6 @@ impl Image {
     pub(crate) fn alpha_mut(&mut self) -> Option<&mut [f32]> {
         self.alpha.as_deref_mut()
     }
-
-    #[cfg(feature = "gpu")]
-    pub(crate) fn albedo_mut(&mut self) -> Option<&mut [[f32; 3]]> {
-        self.albedo.as_deref_mut()
-    }
-
-    #[cfg(feature = "gpu")]
-    pub(crate) fn samples_mut(&mut self) -> Option<&mut [u32]> {
-        self.samples.as_deref_mut()
-    }
-
-    #[cfg(feature = "gpu")]
-    pub(crate) fn variance_mut(&mut self) -> Option<&mut [f32]> {
-        self.variance.as_deref_mut()
-    }
 }
 
 /// `None` if the memory cannot be reserved.

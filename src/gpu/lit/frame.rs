@@ -4,7 +4,7 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Dev
 
 use super::look::Lit;
 use super::passes::LitPasses;
-use super::records::{Look, Stage};
+use super::records::{Look, QUEUE_HEAD, Stage};
 use super::sizes::LitSizes;
 use crate::environment::Environment;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
@@ -38,7 +38,8 @@ pub(in crate::gpu) struct LitFrame {
     stage_stride: usize,
     pub(super) queue: Buffer,
     pub(super) groups_needed: Buffer,
-    pub(super) paths: Buffer,
+    /// The state of all paths, slot by slot.
+    pub(in crate::gpu) paths: Buffer,
     variations: Buffer,
     pub(super) look: BindGroup,
     pub(super) sky: Option<BindGroup>,
@@ -54,8 +55,6 @@ pub(in crate::gpu) struct LitFrame {
 pub(in crate::gpu) struct LitTile {
     pub(in crate::gpu) tile: Tile,
     pub(super) frames: Frames,
-    /// How many samples every pixel has.
-    pub(in crate::gpu) samples: u32,
     film: Buffer,
     /// Group 0 of most passes, by [`Area`].
     pub(super) groups: [BindGroup; 3],
@@ -148,15 +147,14 @@ impl LitFrame {
         (number * self.stage_stride) as u32
     }
 
-    /// Records that nobody has given up, and that lists are empty.
+    /// Records that lists are empty.
     pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
-        encoder.clear_buffer(&self.queue, 4, Some(super::records::QUEUE_HEAD - 4));
+        encoder.clear_buffer(&self.queue, 4, Some(QUEUE_HEAD - 4));
     }
 
-    /// Records that nothing is summed up yet in a tile, and that nobody has given up.
-    pub(in crate::gpu) fn record_clear(&self, encoder: &mut CommandEncoder, tile: usize) {
+    /// Records that nothing is summed up yet in a tile.
+    pub(in crate::gpu) fn record_clear_film(&self, encoder: &mut CommandEncoder, tile: usize) {
         encoder.clear_buffer(&self.tiles[tile].film, 0, None);
-        encoder.clear_buffer(&self.queue, 0, Some(4));
     }
 
     /// Records the copy of whether an invocation gave up.
@@ -252,8 +250,8 @@ impl Make<'_> {
         LitTile {
             tile,
             frames,
-            samples: 0,
-            groups: [0, 1, 2].map(|area| self.group("pinhole frame", &layouts.frame, &common(area))),
+            groups: [0, 1, 2]
+                .map(|area| self.group("pinhole frame", &layouts.frame, &common(area))),
             advance: self.group("pinhole advance", &layouts.advance, &advance),
             sums: self.group("pinhole film", &layouts.film, &sums),
             film,

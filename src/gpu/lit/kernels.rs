@@ -11,6 +11,18 @@ pub(in crate::gpu) enum Mode {
     Path(Surfaces, Sources, SkyKind),
 }
 
+impl Mode {
+    /// Whether paths look for light.
+    pub(in crate::gpu) fn looks_for_light(self) -> bool {
+        matches!(self, Self::Path(_, Sources::Any, _))
+    }
+
+    /// Whether something may absorb light on the way.
+    pub(in crate::gpu) fn has_medium(self) -> bool {
+        matches!(self, Self::Path(Surfaces::Any, ..))
+    }
+}
+
 /// Whether all surfaces are matt or emissive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) enum Surfaces {

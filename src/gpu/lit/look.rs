@@ -1,5 +1,7 @@
 //! A lighting as kernels have it: one record, and one buffer of lights, emitters, materials and energies.
 
+use std::sync::Arc;
+
 use bytemuck::Zeroable;
 use glam::DVec3;
 
@@ -7,6 +9,7 @@ use super::kernels::{Mode, SkyKind, Sources, Surfaces};
 use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
+use crate::environment::Environment;
 use crate::gpu::records::NO_HIT;
 use crate::gpu::scene_summary::{EmissiveSphere, SceneSummary};
 use crate::lighting::emitters::Emitters;
@@ -18,20 +21,25 @@ use crate::render::{Integrator, LightSampling, RenderSettings};
 
 /// What a picture's kernels get to know of its lighting.
 #[derive(Debug)]
-pub(super) struct Lit {
-    pub(super) mode: Mode,
-    pub(super) look: Look,
+pub(in crate::gpu) struct Lit {
+    pub(in crate::gpu) mode: Mode,
+    pub(in crate::gpu) look: Look,
     /// Never empty.
-    pub(super) tables: Vec<[f32; 4]>,
-    /// Whether every sphere is opaque.
-    pub(super) is_opaque: bool,
+    pub(in crate::gpu) tables: Vec<[f32; 4]>,
+    /// How many surfaces a ray meets: of a path at most, and one more that it may end on; in a studio one if every
+    /// sphere is opaque.
+    pub(super) most_surfaces: u32,
+    /// In a studio, whether lights cast shadows.
+    pub(super) has_shadows: bool,
+    /// The image that paths are lit by.
+    pub(super) sky: Option<Arc<Environment>>,
     /// Of each light, whether shadow rays are sent to it.
     pub(super) casts_shadow: Vec<bool>,
 }
 
 impl Lit {
     /// Of a lighting that has been checked, for a scene in its own frame.
-    pub(super) fn new(
+    pub(in crate::gpu) fn new(
         lighting: &RenderSettings,
         scene: &SceneSummary,
         camera: &dyn Camera,
@@ -70,7 +78,18 @@ impl Lit {
             mode: mode_of(lighting, scene, &sources),
             look,
             tables,
-            is_opaque: scene.is_opaque(),
+            most_surfaces: match &lighting.integrator {
+                Integrator::Studio(studio) if !scene.is_opaque() => studio.max_surfaces,
+                Integrator::Primary(_) | Integrator::Studio(_) => 1,
+                Integrator::Path(path) => path.max_depth,
+            },
+            has_shadows: lighting.studio_parameters().is_some_and(|studio| studio.has_shadows),
+            sky: match (&lighting.sky.light, &lighting.integrator) {
+                (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
+                    Some(Arc::clone(environment))
+                }
+                _ => None,
+            },
             casts_shadow: lights.iter().map(|l| !matches!(l, LightKind::Head { .. })).collect(),
         }
     }
@@ -78,7 +97,7 @@ impl Lit {
 
 impl Lit {
     /// What its tables take on the device.
-    pub(super) fn table_bytes(&self) -> u64 {
+    pub(in crate::gpu) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }
 }

@@ -51,7 +51,12 @@ impl Pass {
     }
 
     /// Records one dispatch. Nothing is submitted.
-    pub(super) fn record(&self, encoder: &mut CommandEncoder, bound: Bound<'_>, extent: Extent<'_>) {
+    pub(super) fn record(
+        &self,
+        encoder: &mut CommandEncoder,
+        bound: Bound<'_>,
+        extent: Extent<'_>,
+    ) {
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,

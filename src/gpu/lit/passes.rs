@@ -112,9 +112,8 @@ impl LitPasses {
         };
         let scene = scoped(device, || Layouts::new(device, &options))?;
         let layouts = scoped(device, || LitLayouts::new(device))?;
-        let build = |kernel: Kernel, groups: &[&BindGroupLayout]| {
-            Pass::new(device, kernel, groups, edits)
-        };
+        let build =
+            |kernel: Kernel, groups: &[&BindGroupLayout]| Pass::new(device, kernel, groups, edits);
         let both = |kernel: &dyn Fn(Schedule) -> Kernel, groups: &[&BindGroupLayout]| {
             Ok::<_, GpuError>(BySchedule {
                 pixels: build(kernel(Schedule::Pixels), groups)?,
@@ -161,6 +160,18 @@ impl LitPasses {
             noise: build(kernels::noise_kernel(), &[film])?,
             layouts,
         })
+    }
+}
+
+impl LitPasses {
+    /// Says how many workgroups dispatches need.
+    pub(in crate::gpu) fn advance(&self) -> &Pass {
+        &self.advance
+    }
+
+    /// Sums up how much samples vary.
+    pub(in crate::gpu) fn noise(&self) -> &Pass {
+        &self.noise
     }
 }
 

@@ -1,20 +1,14 @@
 //! What a lit picture will take of the device and of the host.
 
-use super::film::BYTES_PER_PIXEL;
 use super::look::Lit;
-use super::records::{FILM_SLOTS, PATH_SLOTS};
-use super::tile::{lit_tile_size, sky_image};
+use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::gpu::plan::{
     DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count,
     total,
 };
-use crate::gpu::records::Hit;
 use crate::gpu::scene_summary::SceneSummary;
 use crate::scene::Scene;
-
-/// Bytes of a pixel's sums as they come from a tile.
-const FOUND_BYTES: u64 = 16 * FILM_SLOTS;
 
 impl RenderPlan {
     /// Plans a lit picture.
@@ -33,23 +27,31 @@ impl RenderPlan {
         let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
         scene_buffers.extend(shadows);
 
-        let tile_size = lit_tile_size(limits, film);
-        let pixels = u64::from(tile_size[0]) * u64::from(tile_size[1]);
         let lit = Lit::new(settings, &SceneSummary::of(scene), view.camera);
+        let sizes = LitSizes::new(limits, film, lit.mode, settings.sampling.samples);
+        let tile_size = sizes.tile;
+        let tile_count = tile_count(film, tile_size);
+        let film_bytes = sizes.film_bytes();
         let mut tile_buffers = vec![
-            PlannedBuffer::one("hits", pixels * size_of::<Hit>() as u64),
-            PlannedBuffer::one("paths", pixels * 16 * PATH_SLOTS),
-            PlannedBuffer::one("film", pixels * FOUND_BYTES),
+            PlannedBuffer::one("paths", sizes.path_bytes()),
+            PlannedBuffer::one("lists", sizes.queue_bytes() + sizes.groups_bytes()),
+            // Those of all tiles stay.
+            PlannedBuffer {
+                name: "sums",
+                bytes: film_bytes * tile_count,
+                bytes_per_binding: film_bytes,
+            },
+            PlannedBuffer::one("variations", 2 * sizes.variation_bytes()),
             PlannedBuffer::one("tables", lit.table_bytes()),
         ];
-        let sky = sky_image(settings).map_or(0, |sky| {
+        let sky = lit.sky.as_ref().map_or(0, |sky| {
             let texels = 16 * sky.texels().len() as u64;
             let shares = 4 * (sky.rows().len() + sky.columns().len()) as u64;
             tile_buffers.push(PlannedBuffer::one("sky", texels));
             tile_buffers.push(PlannedBuffer::one("sky shares", shares));
             texels + shares
         });
-        let tile_textures = vec![PlannedBuffer::one("film read-back", pixels * FOUND_BYTES)];
+        let tile_textures = vec![PlannedBuffer::one("sums read-back", film_bytes)];
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = (total(&tile_buffers) + total(&tile_textures)).max(data_bytes);
 
@@ -62,8 +64,8 @@ impl RenderPlan {
         });
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
         let uploading = data.accel.device_bytes() + occluder_bytes + queued;
-        // Sums, those of one batch, and coverage by lines; or what the caller makes of the picture.
-        let beside = host_bytes_per_pixel.max(BYTES_PER_PIXEL + FOUND_BYTES + 4);
+        // Coverage by lines, or what the caller makes of the picture.
+        let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
         // An image is widened, and then waits for the device.
         let picture = film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky);
@@ -81,7 +83,7 @@ impl RenderPlan {
             tile_buffers,
             tile_textures,
             tile_size,
-            tile_count: tile_count(film, tile_size),
+            tile_count,
             device_bytes: scene_bytes + tile_bytes,
             host_bytes,
             host_peak,
@@ -98,6 +100,7 @@ fn shadow_buffers(scene: &Scene, plan: &AccelPlan) -> Vec<PlannedBuffer> {
 mod tests {
     use wgpu::{DeviceType, Limits};
 
+    use super::super::kernels::Mode;
     use super::*;
     use crate::accel::AccelChoice;
     use crate::camera::{PinholeCamera, Pose, View};
@@ -149,20 +152,21 @@ mod tests {
     const GPU: DeviceType = DeviceType::DiscreteGpu;
 
     #[test]
-    fn a_tile_takes_its_paths_and_sums() {
+    fn a_tile_takes_its_paths_and_every_pixel_its_sums() {
         let settings = RenderSettings::studio();
         let plan = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         assert_eq!((plan.tile_size, plan.tile_count), ([512, 512], 1));
         let pixels = 1 << 18;
-        assert_eq!(bytes(&plan, "paths"), 16 * PATH_SLOTS * pixels);
-        assert_eq!(bytes(&plan, "hits"), 16 * pixels);
+        // Two samples in flight, of ten vectors each.
+        assert_eq!(bytes(&plan, "paths"), 2 * 160 * pixels);
+        assert_eq!(bytes(&plan, "lists"), 2 * 12 * pixels + 16 + 24);
         assert_eq!(
-            (bytes(&plan, "film"), bytes(&plan, "film read-back")),
-            (32 * pixels, 32 * pixels)
+            (bytes(&plan, "sums"), bytes(&plan, "sums read-back")),
+            (48 * pixels, 48 * pixels)
         );
         let all = plan.scene_buffers.iter().chain(&plan.tile_buffers).chain(&plan.tile_textures);
         assert_eq!(plan.device_bytes, all.map(|buffer| buffer.bytes).sum::<u64>());
-        assert_eq!(plan.host_bytes, (12 + 56 + 32 + 4) * pixels);
+        assert_eq!(plan.host_bytes, (12 + 16) * pixels);
         assert_eq!(plan.check(&Limits::default(), None), Ok(()));
 
         let software = planned(1.0, 512, &settings, LayerSet::COLOR, DeviceType::Cpu);
@@ -170,13 +174,26 @@ mod tests {
     }
 
     #[test]
+    fn paths_keep_what_their_scene_needs() {
+        let at_most = |settings: &RenderSettings| {
+            bytes(&planned(1.0, 512, settings, LayerSet::COLOR, GPU), "paths")
+        };
+        let lit = RenderSettings::path();
+        let sky_alone = RenderSettings { lights: Vec::new(), ..RenderSettings::path() };
+        assert_eq!(at_most(&lit), at_most(&RenderSettings::studio()));
+        assert_eq!(at_most(&sky_alone), 112 << 19);
+    }
+
+    #[test]
     fn what_is_larger_than_a_tile_is_cut() {
         let plan = planned(1.0, 4096, &RenderSettings::studio(), LayerSet::COLOR, GPU);
-        assert!(bytes(&plan, "paths") <= (16 * PATH_SLOTS) << 19);
+        assert!(bytes(&plan, "paths") <= 160 << 19);
         assert!(plan.tile_count >= 32);
+        assert!(bytes(&plan, "sums") >= 48 << 24, "those of all tiles stay");
         let low = Limits { max_storage_buffer_binding_size: 1 << 20, ..Limits::default() };
-        let size = lit_tile_size(&low, &Film::new(4096, 4096).unwrap());
-        assert!(u64::from(size[0] * size[1]) * 16 * PATH_SLOTS <= 1 << 20, "{size:?}");
+        let film = Film::new(4096, 4096).unwrap();
+        let sizes = LitSizes::new(&low, &film, Mode::Studio, 16);
+        assert!(sizes.path_bytes().max(sizes.film_bytes()) <= 1 << 20, "{sizes:?}");
     }
 
     #[test]
@@ -207,10 +224,10 @@ mod tests {
         let sky = Sky { light, is_visible: true };
         let studio = planned(1.0, 64, &RenderSettings::studio(), LayerSet::COLOR, GPU);
         let settings = RenderSettings { sky, ..RenderSettings::path() };
-        let path = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
+        let path = planned(1.0, 16, &settings, LayerSet::COLOR, GPU);
         assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 << 19));
         assert_eq!(bytes(&path, "sky shares"), 4 * (513 + 1025 * 512));
-        let low = Limits { max_storage_buffer_binding_size: 1 << 22, ..Limits::default() };
+        let low = Limits { max_storage_buffer_binding_size: 1 << 23, ..Limits::default() };
         let refused = path.check(&low, None).unwrap_err().to_string();
         assert!(refused.starts_with("the image of the sky"), "{refused}");
     }

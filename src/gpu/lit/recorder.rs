@@ -2,12 +2,14 @@
 
 use wgpu::CommandEncoder;
 
-use super::frame::{Area, LitFrame};
+use super::frame::{Area, LitFrame, LitTile};
 use super::pass::{Bound, Extent, Pass};
-use super::records::{GROUPS_OF_ONE, Stage};
+use super::records::{GROUPS_OF_ONE, PIXELS_PER_VARIATION, Stage};
 use super::round::{Step, Work};
-use crate::gpu::records::WORKGROUP_SIZE;
-use crate::gpu::tiles::Groups;
+use crate::gpu::tiles::{Groups, WORKGROUP_SIDE};
+
+/// How many paths a workgroup works on.
+const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 
 /// Of one submission: what is recorded holds once [`Recorder::take_stages`] has been queued.
 #[derive(Debug)]
@@ -36,7 +38,7 @@ impl<'a> Recorder<'a> {
         std::mem::take(&mut self.stages)
     }
 
-    /// The most workgroups that a dispatch may have, for each sample in flight if they are of pixels.
+    /// The most workgroups that a dispatch may have, in each of its [`Step::layers`].
     pub(in crate::gpu) fn groups(&self, step: &Step<'_>) -> Groups {
         let tile = &self.frame.tiles[self.tile];
         match step.work {
@@ -44,16 +46,14 @@ impl<'a> Recorder<'a> {
                 Groups { first: [0, 0], size: tile.frames[area as usize].traced_size }
             }
             Work::List(_) => {
-                let pixels = u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1]);
-                let paths = pixels * u64::from(self.frame.sizes.in_flight);
-                // No more than there is room for, so it fits.
-                Groups { first: [0, 0], size: [paths.div_ceil(WORKGROUP_SIZE) as u32, 1] }
+                // What goes on has met something where there is something to be seen.
+                let [x, y] = tile.frames[Area::Seen as usize].traced_size;
+                Groups { first: [0, 0], size: [x * y * step.turns, 1] }
             }
             Work::Advance => Groups { first: [0, 0], size: [1, 1] },
-            Work::Sums => Groups {
-                first: [0, 0],
-                size: tile.frames[Area::Whole as usize].traced_size,
-            },
+            Work::Sums => {
+                Groups { first: [0, 0], size: tile.frames[Area::Whole as usize].traced_size }
+            }
         }
     }
 
@@ -73,7 +73,7 @@ impl<'a> Recorder<'a> {
         let [x, y] = groups.size;
         let (group, extent) = match step.work {
             Work::Pixels(area) => {
-                (&tile.groups[area as usize], Extent::Groups([x, y, stage.count]))
+                (&tile.groups[area as usize], Extent::Groups([x, y, step.layers()]))
             }
             Work::List(area) => {
                 let group = &tile.groups[area as usize];
@@ -96,15 +96,21 @@ impl<'a> Recorder<'a> {
         self.dispatch(encoder, step.pass, stage, group, step.brick, extent);
     }
 
-    /// Records the sums of how much the samples of a tile vary.
-    pub(in crate::gpu) fn record_noise(&mut self, encoder: &mut CommandEncoder, noise: &Pass) {
+    /// Records the sums of how much the samples of a tile vary, of which every pixel has so many. Gives how many sums
+    /// there will be.
+    pub(in crate::gpu) fn record_noise(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        noise: &Pass,
+        samples: u32,
+    ) -> usize {
         let tile = &self.frame.tiles[self.tile];
-        let pixels = u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1]);
-        let groups = pixels.div_ceil(WORKGROUP_SIZE * super::records::PIXELS_PER_VARIATION);
-        let stage = Stage { sample: tile.samples, ..bytemuck::Zeroable::zeroed() };
+        let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
+        let stage = Stage { sample: samples, ..bytemuck::Zeroable::zeroed() };
         // Fewer than there are pixels, so it fits.
         let extent = Extent::Groups([groups as u32, 1, 1]);
         self.dispatch(encoder, noise, stage, &tile.sums, None, extent);
+        (groups * WORKGROUP_SIZE) as usize
     }
 
     fn dispatch(
@@ -122,4 +128,8 @@ impl<'a> Recorder<'a> {
         let bound = Bound { frame: group, stage: number, brick, look, sky: sky.as_ref() };
         pass.record(encoder, bound, extent);
     }
+}
+
+fn pixels(tile: &LitTile) -> u64 {
+    u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1])
 }

@@ -15,12 +15,11 @@ pub(in crate::gpu) struct Stage {
     pub(in crate::gpu) list: u32,
     pub(in crate::gpu) is_new: u32,
     pub(in crate::gpu) paths: u32,
-    pub(in crate::gpu) _pad: u32,
     pub(in crate::gpu) first: [u32; 2],
 }
 
 /// `LIST_OF_LIGHT` in `shaders/queue.wgsl`: the paths that look for light, or surfaces that are to be lit.
-pub(super) const LIST_OF_LIGHT: u32 = 2;
+pub(in crate::gpu) const LIST_OF_LIGHT: u32 = 2;
 
 /// How many lists of paths there are.
 pub(super) const LISTS: u64 = 3;
@@ -84,7 +83,7 @@ pub(super) const LIGHT_SLOTS: u64 = 10;
 pub(super) const MEDIUM_SLOTS: u64 = 11;
 
 /// `vec4f`s of a pixel's sums: `shaders/film_sums.wgsl`.
-pub(super) const FILM_SLOTS: u64 = 3;
+pub(in crate::gpu) const FILM_SLOTS: u64 = 3;
 
 /// How many pixels one number of `shaders/noise.wgsl` sums up.
 pub(super) const PIXELS_PER_VARIATION: u64 = 64;

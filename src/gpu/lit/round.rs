@@ -23,10 +23,27 @@ pub(in crate::gpu) struct Step<'a> {
     /// Group 1, if the pass works on a brick.
     pub(super) brick: Option<&'a BindGroup>,
     pub(super) work: Work,
+    /// How many samples are in flight.
+    pub(super) turns: u32,
     /// Whether it searches, and so may take long.
-    pub(super) is_search: bool,
+    is_search: bool,
     /// What has happened once it is done, and it is the last of its kind.
     pub(in crate::gpu) moment: Option<Moment>,
+}
+
+impl Step<'_> {
+    /// Whether it searches, and so may take long.
+    pub(in crate::gpu) fn is_search(&self) -> bool {
+        self.is_search
+    }
+
+    /// How often it takes the workgroups that it has along the two sides of a tile.
+    pub(in crate::gpu) fn layers(&self) -> u32 {
+        match self.work {
+            Work::Pixels(_) => self.turns,
+            Work::List(_) | Work::Advance | Work::Sums => 1,
+        }
+    }
 }
 
 /// What a dispatch works on.
@@ -73,7 +90,7 @@ impl<'a> Round<'a> {
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
         };
-        let mut steps = Steps { round: *self, steps: Vec::new() };
+        let mut steps = Steps { round: *self, turns: count, steps: Vec::new() };
         let first = &self.scene.bricks()[0].surface_group;
         steps.push(&self.passes.start, stage, Some(first), Work::Pixels(Area::Whole));
         steps.mark(Moment::Started);
@@ -100,17 +117,19 @@ struct StudioPasses<'a> {
 
 struct Steps<'a> {
     round: Round<'a>,
+    turns: u32,
     steps: Vec<Step<'a>>,
 }
 
 impl<'a> Steps<'a> {
     fn push(&mut self, pass: &'a Pass, stage: Stage, brick: Option<&'a BindGroup>, work: Work) {
-        self.steps.push(Step { pass, stage, brick, work, is_search: false, moment: None });
+        let (turns, is_search, moment) = (self.turns, false, None);
+        self.steps.push(Step { pass, stage, brick, work, turns, is_search, moment });
     }
 
     fn push_search(&mut self, pass: &'a Pass, stage: Stage, brick: &'a BindGroup, work: Work) {
-        let brick = Some(brick);
-        self.steps.push(Step { pass, stage, brick, work, is_search: true, moment: None });
+        let (turns, is_search, moment) = (self.turns, true, None);
+        self.steps.push(Step { pass, stage, brick: Some(brick), work, turns, is_search, moment });
     }
 
     fn mark(&mut self, moment: Moment) {

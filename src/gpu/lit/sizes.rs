@@ -81,12 +81,6 @@ impl LitSizes {
     pub(in crate::gpu) fn variation_bytes(&self) -> u64 {
         8 * 64 * self.pixels().div_ceil(64 * PIXELS_PER_VARIATION)
     }
-
-    /// How many slots of a path's state there are.
-    pub(in crate::gpu) fn slots(&self) -> usize {
-        // At most eleven.
-        self.slots as usize
-    }
 }
 
 fn slots(mode: Mode) -> u64 {

@@ -1,0 +1,194 @@
+//! Dispatches of lit pictures, gathered into submissions that are neither too short nor too long.
+
+use std::time::Instant;
+
+use wgpu::{CommandEncoder, SubmissionIndex};
+
+use super::error::GpuError;
+use super::headless::Headless;
+use super::lit::{LitFrame, LitPasses, MOST_STAGES, Moment, Recorder, Step};
+use super::scene_buffers::SceneBuffers;
+use super::tiles::Groups;
+
+/// Told after every submission; an error ends the work.
+pub(super) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
+
+/// While the device works on one submission, the next is recorded.
+pub(super) struct Flow<'a> {
+    headless: &'a Headless,
+    frame: &'a LitFrame,
+    scene: &'a SceneBuffers,
+    recorder: Recorder<'a>,
+    encoder: Option<CommandEncoder>,
+    /// Workgroups of searches in the encoder.
+    gathered: u64,
+    /// The tile and the samples that will be summed up there once the encoder has been submitted.
+    deposits: Vec<(usize, u32)>,
+    submitted: Option<Submitted>,
+    /// When the submission before that was done.
+    last_done: Instant,
+    /// How many samples are summed up in each tile, as far as is submitted.
+    pub(super) samples: Vec<u32>,
+}
+
+struct Submitted {
+    index: SubmissionIndex,
+    at: Instant,
+    groups: u64,
+}
+
+impl<'a> Flow<'a> {
+    pub(super) fn new(
+        headless: &'a Headless,
+        frame: &'a LitFrame,
+        passes: &'a LitPasses,
+        scene: &'a SceneBuffers,
+    ) -> Self {
+        Self {
+            headless,
+            frame,
+            scene,
+            recorder: Recorder::new(frame, passes.advance(), headless.is_indirect()),
+            encoder: None,
+            gathered: 0,
+            deposits: Vec::new(),
+            submitted: None,
+            last_done: Instant::now(),
+            samples: vec![0; frame.tiles.len()],
+        }
+    }
+
+    /// What is recorded next, beside dispatches.
+    pub(super) fn encoder(&mut self) -> &mut CommandEncoder {
+        let headless = self.headless;
+        self.encoder.get_or_insert_with(|| headless.encoder())
+    }
+
+    /// Records the dispatches of some samples of a tile, up to `end`, and submits what is enough.
+    pub(super) fn round(
+        &mut self,
+        tile: usize,
+        steps: &[Step<'a>],
+        end: u32,
+        after: &mut After<'_>,
+    ) -> Result<(), GpuError> {
+        self.begin(tile);
+        for step in steps {
+            self.step(step, after)?;
+            if step.moment == Some(Moment::Deposited) {
+                self.deposits.push((tile, end));
+            }
+        }
+        Ok(())
+    }
+
+    /// Turns to a tile, of which no path is followed yet.
+    pub(super) fn begin(&mut self, tile: usize) {
+        self.recorder.tile = tile;
+        let frame = self.frame;
+        frame.record_clear_lists(self.encoder());
+    }
+
+    /// Records a dispatch, in slices if it takes long.
+    pub(super) fn step(&mut self, step: &Step<'a>, after: &mut After<'_>) -> Result<(), GpuError> {
+        // A slice of a list needs one more.
+        if self.recorder.dispatches() + 2 > MOST_STAGES {
+            self.submit(after)?;
+        }
+        let (whole, layers) = (self.recorder.groups(step), u64::from(step.layers()));
+        let pace = self.scene.pace().groups();
+        if !step.is_search() || whole.count() * layers <= pace {
+            self.record(step, None);
+            if step.is_search() {
+                self.gathered += whole.count() * layers;
+            }
+            return if self.gathered >= pace { self.submit(after) } else { Ok(()) };
+        }
+        self.submit(after)?;
+        let mut left = vec![whole];
+        while let Some(slice) =
+            Groups::take(&mut left, (self.scene.pace().groups() / layers).max(1))
+        {
+            self.record(step, Some(slice));
+            self.gathered = slice.count() * layers;
+            self.submit(after)?;
+        }
+        Ok(())
+    }
+
+    fn record(&mut self, step: &Step<'a>, slice: Option<Groups>) {
+        let headless = self.headless;
+        let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
+        self.recorder.record(encoder, step, slice);
+    }
+
+    /// Submits what was gathered, and waits until what was submitted before is done.
+    fn submit(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+        let Some(encoder) = self.encoder.take() else {
+            return Ok(());
+        };
+        let queue = self.headless.queue();
+        self.frame.queue_stages(queue, &self.recorder.take_stages());
+        let at = Instant::now();
+        let index = self.headless.submit(encoder);
+        for (tile, samples) in self.deposits.drain(..) {
+            self.samples[tile] = samples;
+        }
+        let groups = std::mem::take(&mut self.gathered);
+        let before = self.submitted.replace(Submitted { index, at, groups });
+        self.wait_for(before)?;
+        after()
+    }
+
+    /// Submits what was gathered, and waits until all is done and the buffers are mapped.
+    pub(super) fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
+        self.submit(&mut || Ok(()))?;
+        let last = self.submitted.take();
+        if let Some(Submitted { index, .. }) = &last {
+            self.headless.wait(mapped, index.clone())?;
+        }
+        self.wait_for(last)
+    }
+
+    /// Drops what was gathered, and waits until what was submitted is done.
+    pub(super) fn abandon(&mut self) -> Result<(), GpuError> {
+        self.encoder = None;
+        self.deposits.clear();
+        self.recorder.take_stages();
+        let last = self.submitted.take();
+        self.wait_for(last)
+    }
+
+    fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
+        let Some(Submitted { index, at, groups }) = submitted else {
+            return Ok(());
+        };
+        self.headless.wait(&[], index)?;
+        // It began when it was submitted, or when the one before was done.
+        let elapsed = at.max(self.last_done).elapsed();
+        self.last_done = Instant::now();
+        let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
+        self.scene.took(Groups { first: [0, 0], size }, elapsed);
+        Ok(())
+    }
+
+    /// How much the samples of all pixels vary: sums of variances, and of luminances. All must have as many samples.
+    pub(super) fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
+        let mut sums = [0.0; 2];
+        for (tile, samples) in self.samples.clone().into_iter().enumerate() {
+            self.recorder.tile = tile;
+            let (headless, frame) = (self.headless, self.frame);
+            let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
+            let written = self.recorder.record_noise(encoder, passes.noise(), samples);
+            frame.record_copy_variations(encoder);
+            self.finish(&[frame.variations_back.buffer()])?;
+            frame.variations_back.read(|found: &[[f32; 2]]| {
+                for [variance, light] in &found[..written] {
+                    sums[0] += f64::from(*variance);
+                    sums[1] += f64::from(*light);
+                }
+            })?;
+        }
+        Ok(sums)
+    }
+}

@@ -1,0 +1,170 @@
+//! Lit pictures on a device of our own, batch by batch of samples.
+
+use std::ops::Range;
+
+use super::error::GpuError;
+use super::frame::iteration_limit;
+use super::headless::Headless;
+use super::lit::sums::{self, Totals};
+use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, Round};
+use super::lit_flow::Flow;
+use super::progress::{Decision, Picture, Progress, Watch, go_on};
+use super::scene_buffers::SceneBuffers;
+use super::tiles::tiles;
+use crate::camera::View;
+use crate::image::{Image, Layer, LayerSet};
+use crate::outline;
+use crate::render::{PrimaryLook, RenderSettings};
+
+/// How many samples are taken after so many. After each batch there is a picture that could be kept.
+fn batch(done: u32, total: u32) -> u32 {
+    done.clamp(1, 32).min(total - done)
+}
+
+impl Headless {
+    /// Renders a lit picture of a scene that is on this device.
+    pub(super) fn render_lit(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watch: &mut Watch<'_>,
+    ) -> Result<Picture, GpuError> {
+        settings.check_with(scene.colors())?;
+        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+        let wanted = settings.layers_for(layers);
+        let mut image = self.data_layers(scene, view, wanted)?;
+        let lit = Lit::new(settings, scene.summary(), view.camera);
+        let (samples, totals) = self.with_lit_passes(scenes.key(view, &lit), |passes| {
+            let work = Work { headless: self, passes, scenes, view, settings, lit: &lit };
+            work.gather(&mut image, watch)
+        })?;
+        if settings.is_denoised {
+            image = self.denoise(&image)?;
+        }
+        if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
+            outline::draw(&mut image, &lines);
+        }
+        image.keep(layers);
+        let noise = totals.noise(samples);
+        Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+    }
+
+    /// The layers that are not averaged: of the ray through each pixel's centre.
+    fn data_layers(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        layers: LayerSet,
+    ) -> Result<Image, GpuError> {
+        let by_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
+        if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
+            return Ok(Image::new(view.film.width(), view.film.height(), layers)?);
+        }
+        self.render_primary(scene, view, &PrimaryLook::default(), layers, &mut go_on)
+    }
+}
+
+/// All that a lit picture is made of.
+struct Work<'a> {
+    headless: &'a Headless,
+    passes: &'a LitPasses,
+    scenes: LitScene<'a>,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+    lit: &'a Lit,
+}
+
+impl Work<'_> {
+    /// Takes samples until there are enough of them or the caller says so, and writes their means. Gives how many
+    /// every pixel has.
+    fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
+        let Self { headless, passes, scenes, view, settings, lit } = *self;
+        let (device, queue) = (headless.device(), headless.queue());
+        let total = settings.sampling.samples;
+        let sizes = LitSizes::new(&device.limits(), &view.film, lit.mode, total);
+        let (seen, limit) = (scenes.seen(view, settings), iteration_limit(device));
+        let tiles = tiles(&view.film, sizes.tile);
+        let records = tiles.map(|tile| (tile, scenes.frames(view, seen, tile, limit)));
+        let frame = LitFrame::new(device, queue, passes, sizes, lit, records)?;
+        let mut flow = Flow::new(headless, &frame, passes, scenes.all);
+        let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
+        let mut wants_noise = false;
+        while progress.samples < total {
+            let first = progress.samples;
+            let end = first + batch(first, total);
+            let mut decision = Decision::GoOn;
+            match self.batch(&frame, &mut flow, first..end, &mut |part| {
+                progress.part = part;
+                decision = watch(&progress);
+                matches!(decision, Decision::GoOn | Decision::MeasureNoise)
+            }) {
+                Err(GpuError::Stopped) if decision == Decision::Finish && first > 0 => {
+                    flow.abandon()?;
+                    break;
+                }
+                done => done?,
+            }
+            progress.samples = end;
+            if wants_noise || decision == Decision::MeasureNoise {
+                let [variance, light] = flow.variations(passes)?;
+                let pixels = view.film.pixel_count();
+                progress.noise = Totals { opacity: 0.0, variance, light, pixels }.noise(end);
+            }
+            progress.part = f64::from(end) / f64::from(total);
+            match watch(&progress) {
+                Decision::GoOn => {}
+                Decision::MeasureNoise => wants_noise = true,
+                Decision::Finish => break,
+                Decision::Stop => return Err(GpuError::Stopped),
+            }
+        }
+        let mut totals = Totals::default();
+        for (number, tile) in frame.tiles.iter().enumerate() {
+            let samples = flow.samples[number];
+            frame.record_copy_film(flow.encoder(), number);
+            flow.finish(&[frame.film_back.buffer()])?;
+            frame.film_back.read(|found| {
+                totals.add(&sums::write(image, tile.tile, found, samples));
+            })?;
+        }
+        Ok((progress.samples, totals))
+    }
+
+    /// Takes some samples of every pixel. `go_on` is told how much of all work is done.
+    fn batch<'a>(
+        &'a self,
+        frame: &'a LitFrame,
+        flow: &mut Flow<'a>,
+        samples: Range<u32>,
+        go_on: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<(), GpuError> {
+        let Self { passes, scenes, lit, .. } = *self;
+        // No more than there are samples or pixels in a tile, so it fits.
+        let room = frame.sizes.paths() as u32;
+        let round = Round { passes, lit, scene: scenes.all, occluders: scenes.occluders, room };
+        let (total, tiles) = (f64::from(self.settings.sampling.samples), frame.tiles.len());
+        let count = f64::from(samples.end - samples.start);
+        for tile in 0..tiles {
+            let mut start = samples.start;
+            while start < samples.end {
+                let end = samples.end.min(start + frame.sizes.in_flight);
+                let in_tile = f64::from(start - samples.start) / count;
+                let done = count * (tile as f64 + in_tile) / tiles as f64;
+                let part = (f64::from(samples.start) + done) / total;
+                flow.round(tile, &round.steps(start..end)?, end, &mut || match go_on(part) {
+                    true => Ok(()),
+                    false => Err(GpuError::Stopped),
+                })?;
+                start = end;
+            }
+        }
+        frame.record_copy_spent(flow.encoder());
+        flow.finish(&[frame.spent_back.buffer()])?;
+        match frame.spent_back.read(|words: &[u32]| words[0])? {
+            0 => Ok(()),
+            _ => Err(GpuError::Steps),
+        }
+    }
+}

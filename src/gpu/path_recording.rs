@@ -1,0 +1,259 @@
+//! What a device did with paths, for the checker: their state after every pass on its way back to the host, and the
+//! numbers that the device was given.
+
+use std::ops::Range;
+
+use super::error::GpuError;
+use super::frame::iteration_limit;
+use super::headless::Headless;
+use super::lit::records::{FILM_SLOTS, Look};
+use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round};
+use super::lit_flow::Flow;
+use super::progress::{Decision, Progress, Watch};
+use super::readback::ReadableBuffer;
+use super::recording::requested_view;
+use super::scene_buffers::SceneBuffers;
+use super::tiles::Tile;
+use crate::camera::View;
+use crate::film::Film;
+use crate::lighting::SkyLight;
+use crate::render::{Integrator, RenderSettings};
+use crate::verify::{
+    PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLook, UploadedSky,
+};
+
+/// The longest side of the rectangle whose paths are recorded, in pixels: a sample of eight surfaces then takes
+/// 130 MB of the host's memory.
+const LONGEST_SIDE: u32 = 256;
+
+/// What is kept of the samples of a tile.
+struct Keeper<'a> {
+    frame: &'a LitFrame,
+    paths: ReadableBuffer,
+    pixels: usize,
+    slots: [Kept; PathState::SLOTS],
+    sample: RecordedSample,
+}
+
+impl Keeper<'_> {
+    /// Reads what a pass has changed.
+    fn keep(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
+        let frame = self.frame;
+        if moment == Moment::Deposited {
+            frame.record_copy_film(flow.encoder(), 0);
+            frame.record_copy_spent(flow.encoder());
+            flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()])?;
+            let used = FILM_SLOTS as usize * self.pixels;
+            self.sample.sums = frame.film_back.read(|sums: &[[u32; 4]]| {
+                let sums = sums[..used].chunks_exact(FILM_SLOTS as usize);
+                // Of one sample, rounding has left nothing out.
+                sums.map(|sum| [sum[0], sum[2]]).collect()
+            })?;
+            return match frame.spent_back.read(|words: &[u32]| words[0])? {
+                0 => Ok(()),
+                _ => Err(GpuError::Steps),
+            };
+        }
+        self.paths.record_copy(flow.encoder(), &frame.paths);
+        flow.finish(&[self.paths.buffer()])?;
+        let pixels = self.pixels;
+        let (states, hits) = self.paths.read(|vectors: &[[u32; 4]]| {
+            let slot = |which: usize, index: usize| vectors[which * pixels + index];
+            let state = |index| PathState {
+                slots: self.slots.map(|kept| match kept {
+                    Kept::At(which) => slot(which, index),
+                    Kept::Always(bits) => bits,
+                }),
+            };
+            let states: Vec<PathState> = (0..pixels).map(state).collect();
+            let hits: Vec<[u32; 4]> = (0..pixels).map(|index| slot(HIT, index)).collect();
+            (states, hits)
+        })?;
+        let open = |states: &[PathState]| {
+            states.iter().map(|state| state.slots[PathState::PENDING][3]).collect()
+        };
+        match (moment, self.sample.surfaces.last_mut()) {
+            (Moment::Extended, _) => {
+                self.sample.surfaces.push(RecordedSurface { hits, ..RecordedSurface::default() });
+            }
+            (Moment::Scattered, Some(surface)) => {
+                surface.open = open(&states);
+                surface.scattered = states;
+            }
+            (Moment::Occluded, Some(surface)) => surface.open = open(&states),
+            _ => self.sample.start = states,
+        }
+        Ok(())
+    }
+}
+
+/// `HIT` of `shaders/path_state.wgsl`.
+const HIT: usize = 6;
+
+/// Where a slot of a [`PathState`] is.
+#[derive(Clone, Copy, Debug)]
+enum Kept {
+    /// On the device.
+    At(usize),
+    /// Nowhere, because the scene needs no such slot; this is what is in it.
+    Always([u32; 4]),
+}
+
+/// Where all slots are, in the order of [`PathState`].
+fn kept_slots(mode: Mode) -> [Kept; PathState::SLOTS] {
+    let none = Kept::Always([0; 4]);
+    let nowhere = Kept::Always([0, 0, 1.0_f32.to_bits(), 0]);
+    let of_light =
+        if mode.looks_for_light() { [7, 8, 9].map(Kept::At) } else { [nowhere, none, none] };
+    let medium = if mode.has_medium() { Kept::At(10) } else { none };
+    std::array::from_fn(|slot| match slot {
+        0..=5 => Kept::At(slot),
+        6..=8 => of_light[slot - 6],
+        _ => medium,
+    })
+}
+
+impl Headless {
+    /// Follows some samples of a scene's paths, and keeps their state after every pass: everything by which
+    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. Of a film with a side of
+    /// more than 256 pixels, those of a rectangle in its middle.
+    ///
+    /// # Errors
+    /// [`GpuError::NotPaths`] if the integrator is not `path`; as [`Headless::render_uploaded`]; [`GpuError::Stopped`]
+    /// if `watch` says anything but to go on.
+    pub fn record_paths(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        samples: Range<u32>,
+        watch: &mut Watch<'_>,
+    ) -> Result<PathRecording, GpuError> {
+        settings.check_with(scene.colors())?;
+        let Integrator::Path(path) = &settings.integrator else {
+            return Err(GpuError::NotPaths);
+        };
+        let lit = Lit::new(settings, scene.summary(), view.camera);
+        let scenes = LitScene { all: scene, occluders: scene };
+        let tile = middle_of(&view.film);
+        let (camera, uploaded) = requested_view(scene.space(), view.camera);
+        let mut recording = PathRecording {
+            camera,
+            uploaded,
+            film: view.film,
+            origin: tile.origin,
+            size: tile.size,
+            settings: settings.clone(),
+            max_depth: path.max_depth,
+            look: uploaded_look(&lit.look),
+            tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
+            sky: uploaded_sky(settings),
+            samples: Vec::new(),
+        };
+        self.with_lit_passes(scenes.key(view, &lit), |passes| {
+            let (seen, limit) = (scenes.seen(view, settings), iteration_limit(self.device()));
+            let frames = scenes.frames(view, seen, tile, limit);
+            let sizes = LitSizes::of_one_sample(tile.size, lit.mode);
+            let tiles = std::iter::once((tile, frames));
+            let frame = LitFrame::new(self.device(), self.queue(), passes, sizes, &lit, tiles)?;
+            recording.samples =
+                self.record_samples(passes, scenes, &frame, &lit, samples, watch)?;
+            Ok(recording)
+        })
+    }
+
+    fn record_samples(
+        &self,
+        passes: &LitPasses,
+        LitScene { all, occluders }: LitScene<'_>,
+        frame: &LitFrame,
+        lit: &Lit,
+        samples: Range<u32>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Vec<RecordedSample>, GpuError> {
+        // A rectangle of at most LONGEST_SIDE squared.
+        let room = frame.sizes.paths() as u32;
+        let round = Round { passes, lit, scene: all, occluders, room };
+        let mut keeper = Keeper {
+            frame,
+            paths: ReadableBuffer::new(
+                self.device(),
+                "pinhole paths read-back",
+                frame.paths.size(),
+            ),
+            pixels: room as usize,
+            slots: kept_slots(lit.mode),
+            sample: RecordedSample::default(),
+        };
+        let total = samples.end.saturating_sub(samples.start);
+        let mut recorded = Vec::new();
+        for (done, sample) in (0..).zip(samples) {
+            let part = f64::from(done) / f64::from(total);
+            let progress = Progress { samples: done, total, part, noise: None };
+            let mut after = || match watch(&progress) {
+                Decision::GoOn | Decision::MeasureNoise => Ok(()),
+                Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
+            };
+            keeper.sample = RecordedSample { sample, ..RecordedSample::default() };
+            let mut flow = Flow::new(self, frame, passes, all);
+            frame.record_clear_film(flow.encoder(), 0);
+            flow.begin(0);
+            for step in round.steps(sample..sample + 1)? {
+                flow.step(&step, &mut after)?;
+                if let Some(moment) = step.moment {
+                    keeper.keep(&mut flow, moment)?;
+                    after()?;
+                }
+            }
+            recorded.push(std::mem::take(&mut keeper.sample));
+        }
+        Ok(recorded)
+    }
+}
+
+/// The rectangle in the middle of a film.
+fn middle_of(film: &Film) -> Tile {
+    let film = [film.width(), film.height()];
+    let size = film.map(|side| side.min(LONGEST_SIDE));
+    let origin = [0, 1].map(|axis| (film[axis] - size[axis]) / 2);
+    Tile { origin, size, in_target: [0, 0] }
+}
+
+fn uploaded_look(look: &Look) -> UploadedLook {
+    let mut filter_table: Vec<f32> = look.filter_table.iter().flatten().copied().collect();
+    // Rows of four; the last has one.
+    filter_table.truncate(257);
+    UploadedLook {
+        background: look.background,
+        flags: look.flags,
+        light_count: look.light_count,
+        zenith: look.zenith,
+        horizon: look.horizon,
+        nadir: look.nadir,
+        roulette_from: look.roulette_from,
+        source_count: look.source_count,
+        light_sampling: look.light_sampling,
+        ground_normal: look.ground_normal,
+        ground_point: look.ground_point,
+        ground_color: look.ground_color,
+        seed: look.seed,
+        emitter_first: look.emitter_first,
+        emitter_count: look.emitter_count,
+        material_first: look.material_first,
+        environment_size: look.environment_size,
+        environment_rotation: look.environment_rotation,
+        environment_strength: look.environment_strength,
+        lamp_sources: look.lamp_sources,
+        filter_table,
+    }
+}
+
+fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
+    match &settings.sky.light {
+        SkyLight::Image { environment, .. } => Some(UploadedSky {
+            texels: environment.texels().to_vec(),
+            shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
+        }),
+        SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
+    }
+}
