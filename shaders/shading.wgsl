@@ -1,4 +1,4 @@
-// The colour of a surface. Twin: `Shading` in src/settings.rs.
+// The colour of a surface. Twin: `Shading` in src/render/integrator.rs.
 
 const SHADING_FLAT: u32 = 0u;
 const SHADING_HEADLIGHT: u32 = 1u;
