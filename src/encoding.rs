@@ -70,8 +70,8 @@ impl Encoding {
 
     /// The same, transparent where no sphere is or not.
     ///
-    /// A transparent picture is rendered over a black background
-    /// ([`Settings::with_background`](crate::Settings::with_background)), so that what no sphere covers adds
+    /// Render a transparent picture with
+    /// [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent), so that what no sphere covers adds
     /// nothing and the layer of colour is premultiplied by that of alpha, which must be there.
     #[must_use]
     pub fn with_transparent(self, transparent: bool) -> Self {

@@ -81,8 +81,8 @@ pub(super) struct LightFlags {
     ao: Option<u32>,
     outline: Option<f32>,
     denoise: bool,
-    /// As many samples as it takes, unless there are `samples`.
-    is_open_ended: bool,
+    /// The flag that asks for as many samples as it takes, unless there are `samples`.
+    open_ended_by: Option<&'static str>,
 }
 
 impl LightFlags {
@@ -106,12 +106,12 @@ impl LightFlags {
             IntegratorArg::Path => IntegratorKind::Path,
         });
         let filter = args.filter.map(Into::into);
-        Ok(Self { integrator, samples, seed, filter, ao, outline, denoise, is_open_ended: false })
+        Ok(Self { integrator, samples, seed, filter, ao, outline, denoise, open_ended_by: None })
     }
 
-    /// The same, for a picture that takes as many samples as it takes.
-    pub(super) fn open_ended(self) -> Self {
-        Self { is_open_ended: true, ..self }
+    /// The same, for a picture that takes as many samples as it takes if there is such a flag.
+    pub(super) fn with_open_end(self, flag: Option<&'static str>) -> Self {
+        Self { open_ended_by: flag, ..self }
     }
 
     /// How the picture is made, of a scene that may say so as well.
@@ -129,9 +129,9 @@ impl LightFlags {
             ("--ao", self.ao.is_some()),
             ("--outline", self.outline.is_some()),
             ("--denoise", self.denoise),
-            ("--time or --noise", self.is_open_ended),
         ];
-        given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag)
+        let given = given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag);
+        given.chain(self.open_ended_by)
     }
 
     /// Flags come before what a scene says.
@@ -144,7 +144,8 @@ impl LightFlags {
             )));
         }
         let sampling = &mut settings.sampling;
-        let most = if self.is_open_ended { Sampling::MAX_SAMPLES } else { sampling.samples };
+        let most =
+            if self.open_ended_by.is_some() { Sampling::MAX_SAMPLES } else { sampling.samples };
         sampling.samples = self.samples.unwrap_or(most);
         sampling.seed = self.seed.unwrap_or(sampling.seed);
         sampling.filter = self.filter.unwrap_or(sampling.filter);

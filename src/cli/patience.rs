@@ -55,9 +55,10 @@ impl Patience {
         Ok(Self { time, noise, keep_partial })
     }
 
-    /// Whether the number of samples follows from this.
-    pub(super) fn is_open_ended(&self) -> bool {
-        self.time.is_some() || self.noise.is_some()
+    /// The flag from which the number of samples follows.
+    pub(super) fn open_end(&self) -> Option<&'static str> {
+        let by_noise = self.noise.map(|_| "--noise");
+        self.time.map(|_| "--time").or(by_noise)
     }
 
     /// Whether a signal leaves the picture as it is.
@@ -173,7 +174,7 @@ impl Watching {
         let taken = progress.part * f64::from(progress.total) * self.pixels as f64;
         let noise =
             progress.noise.map_or(String::new(), |noise| format!(", noise {:.2}%", 100.0 * noise));
-        let of_total = if self.patience.is_open_ended() {
+        let of_total = if self.patience.open_end().is_some() {
             String::new()
         } else {
             format!(" of {}", progress.total)

@@ -45,8 +45,7 @@ impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         let outputs = Outputs::new(&args.output, &args.layers)?;
         let patience = Patience::new(&args.patience)?;
-        let light = LightFlags::new(&args.light)?;
-        let light = if patience.is_open_ended() { light.open_ended() } else { light };
+        let light = LightFlags::new(&args.light)?.with_open_end(patience.open_end());
         Ok(Self {
             source: Source::new(&args.input)?.with_light(light),
             patience,

@@ -103,8 +103,10 @@ pub enum GpuError {
     /// The host asked to stop.
     #[error("stopped before the picture was finished")]
     Stopped,
-    /// Only paths can be recorded.
-    #[error("a studio has no paths that could be recorded; choose the integrator `path`")]
+    /// Only the integrator `path` has paths that can be recorded.
+    #[error(
+        "primary rays and studios have no paths that could be recorded; choose the integrator `path`"
+    )]
     NotPaths,
     /// Only primary rays can be recorded here.
     #[error(

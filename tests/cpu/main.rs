@@ -40,6 +40,7 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod settings;
 mod soundness;
 mod stereo;
 mod structures;

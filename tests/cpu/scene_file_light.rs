@@ -58,6 +58,30 @@ fn without_light_nothing_is_lit() {
     assert_eq!(parse("background = 'red'\nshading = 'flat'\n").integrator(), None);
 }
 
+/// What a file says of light is no obstacle to who asks for a picture without.
+#[test]
+fn primary_rays_take_what_concerns_them() {
+    let text = "integrator = 'primary'\nshading = 'flat'\nbackground = 'red'\n";
+    let kind = IntegratorKind::Primary;
+    assert_eq!(parse(text).integrator(), Some(kind));
+    let background = LinearRgb::from_srgb8([255, 0, 0]);
+    let expected = RenderSettings { background, ..RenderSettings::default() };
+    let integrator = Integrator::Primary(pinhole::Shading::Flat);
+    assert_eq!(lighting(text), RenderSettings { integrator, ..expected.clone() });
+    let lit = "background = 'red'\n[studio]\n[sampling]\nsamples = 9\ndenoise = true\n[ground]\n[sun]\ntoward = [0, 1, 0]\n";
+    assert_eq!(lighting_by(lit, kind), expected);
+    // Materials and opacity are the scene's.
+    let clear = format!("integrator = 'primary'\n{SPHERE}opacity = 0.5\n");
+    assert_eq!(lighting(&clear), RenderSettings::default());
+}
+
+/// A studio is not lit by a sky, and a file that has both is as good as one without the sky.
+#[test]
+fn a_studio_leaves_the_sky_out() {
+    let both = "integrator = 'studio'\n[sky]\nkind = 'constant'\n[path]\nmax_depth = 3\n";
+    assert_eq!(lighting(both), RenderSettings { lights: Vec::new(), ..RenderSettings::studio() });
+}
+
 #[test]
 fn what_is_about_light_asks_for_it() {
     let (studio, path) = (Some(IntegratorKind::Studio), Some(IntegratorKind::Path));
@@ -484,6 +508,18 @@ fn what_is_wrong_is_named_with_a_remedy() {
         (
             "shading = 'flat'\n[studio]\n",
             "line 1, column 11: `shading` is for pictures without light, and this file asks for light; drop one",
+        ),
+        (
+            "integrator = 'primary'\n[sampling]\nsamples = 4\n",
+            "line 2, column 1: `[sampling]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
+        ),
+        (
+            "integrator = 'primary'\n[ground]\n[path]\n",
+            "line 3, column 1: `[path]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
+        ),
+        (
+            "integrator = 'primary'\n[[lights]]\nkind = 'head'\n",
+            "line 2, column 1: `[[lights]]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
         ),
         ("material = 'a'\n", "line 1, column 12: `material` concerns `data`, which is not given"),
         ("[elements.Fe]\n", "line 1, column 1: `elements` concerns `data`, which is not given"),

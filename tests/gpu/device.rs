@@ -47,13 +47,8 @@ fn unknown_name(headless: &'static Headless) {
 fn destroyed(_: &'static Headless) {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     headless.device().destroy();
-    let View { scene, camera, film, settings } = View::three_spheres();
-    let result = headless.render(
-        &scene,
-        &pinhole::View::new(camera.as_ref(), film),
-        &settings,
-        LayerSet::COLOR,
-    );
+    let view = View::three_spheres();
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR);
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
@@ -67,10 +62,8 @@ fn callers_fault(_: &'static Headless) {
         usage: wgpu::BufferUsages::empty(),
         mapped_at_creation: false,
     });
-    let View { scene, camera, film, settings } = View::three_spheres();
-    headless
-        .render(&scene, &pinhole::View::new(camera.as_ref(), film), &settings, LayerSet::COLOR)
-        .unwrap();
+    let view = View::three_spheres();
+    headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
 }
 
 /// A picture of several submissions; `watch` is told after each but the last.
@@ -129,13 +122,8 @@ fn stopped(headless: &'static Headless) {
 
 /// Twelve bytes a pixel or more of the host: for the largest film, more than it can address.
 fn no_memory(headless: &'static Headless) {
-    let View { scene, camera, settings, .. } = View::three_spheres();
     let film = Film::new(Film::MAX_SIDE, Film::MAX_SIDE).unwrap();
-    let result = headless.render(
-        &scene,
-        &pinhole::View::new(camera.as_ref(), film),
-        &settings,
-        LayerSet::COLOR,
-    );
+    let view = View { film, ..View::three_spheres() };
+    let result = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR);
     assert!(matches!(result, Err(GpuError::Image(_))), "{result:?}");
 }

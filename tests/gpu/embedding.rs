@@ -26,6 +26,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("embedding::a_host_learns_that_rays_were_given_up", given_up),
         trial("embedding::unfit_targets_are_refused", unfit_targets),
         trial("embedding::what_is_not_ready_is_refused", not_ready),
+        trial("embedding::a_lit_picture_in_a_hosts_frame_is_refused", lit_frame),
     ]
 }
 
@@ -164,14 +165,7 @@ fn foreign_frame(_: &'static Headless) {
     let target_view = view_of(&target);
     let targets = Targets { color: &target_view, data: None };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    frame
-        .set_view(
-            &host.queue,
-            &scene,
-            &pinhole::View::new(view.camera.as_ref(), view.film),
-            &view.settings,
-        )
-        .unwrap();
+    frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
 
     // The host's own work in the same encoder, on the same texture: a clear before, a copy after.
     let mut encoder = host.encoder();
@@ -193,10 +187,7 @@ fn several_bands(_: &'static Headless) {
     let target = host.texture(size_of_film(&view.film), wgpu::TextureFormat::Rgba8Unorm);
     let targets = Targets { color: &view_of(&target), data: None };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    let View { camera, film, settings, .. } = &view;
-    frame
-        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
-        .unwrap();
+    frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let bytes = host.submit_and_read(encoder, &target);
@@ -312,10 +303,7 @@ fn data_layers(_: &'static Headless) {
         DataTargets { depth: &view_of(&depth), normal: &view_of(&normal), id: &view_of(&id) };
     let targets = Targets { color: &view_of(&color), data: Some(data) };
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
-    let View { camera, film, settings, .. } = &view;
-    frame
-        .set_view(&host.queue, &scene, &pinhole::View::new(camera.as_ref(), *film), settings)
-        .unwrap();
+    frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let ids = host.submit_and_read(encoder, &id);
@@ -355,6 +343,25 @@ fn hosts_handler(_: &'static Headless) {
     let error = Frame::new(&renderer, &host.device, &targets).map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Device { .. }), "{error}");
     assert_eq!(*reached.lock().unwrap(), Vec::<String>::new());
+}
+
+/// Frames have primary rays only; that is said, and nothing is recorded.
+fn lit_frame(_: &'static Headless) {
+    let host = Host::new();
+    let view = three_spheres();
+    let size = size_of_film(&view.film);
+    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
+    let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &view.scene).unwrap();
+    let target = host.texture(size, wgpu::TextureFormat::Rgba8Unorm);
+    let targets = Targets { color: &view_of(&target), data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    for settings in [RenderSettings::studio(), RenderSettings::path()] {
+        let refused = frame.set_view(&host.queue, &scene, &view.seen(), &settings);
+        let integrator = settings.integrator.name();
+        assert_eq!(refused, Err(GpuError::NotPrimary { integrator }));
+    }
+    let mut encoder = host.encoder();
+    assert_eq!(renderer.record(&mut encoder, &scene, &frame), Err(GpuError::NoView));
 }
 
 fn not_ready(_: &'static Headless) {

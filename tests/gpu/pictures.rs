@@ -25,8 +25,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 fn render(headless: &Headless, view: &View, layers: LayerSet) -> Image {
-    let View { scene, camera, film, settings } = view;
-    headless.render(scene, &pinhole::View::new(camera.as_ref(), *film), settings, layers).unwrap()
+    headless.render(&view.scene, &view.seen(), &view.settings, layers).unwrap()
 }
 
 fn exact_colors(headless: &'static Headless) {

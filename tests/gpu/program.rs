@@ -36,10 +36,9 @@ fn run(folder: &Path, arguments: &[&str]) -> Vec<u8> {
 fn demo(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["demo", "--backend", "gpu"]);
-    let View { scene, camera, film, settings } = View::three_spheres();
-    let expected = headless
-        .render(&scene, &pinhole::View::new(camera.as_ref(), film), &settings, LayerSet::COLOR)
-        .unwrap();
+    let view = View::three_spheres();
+    let expected =
+        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
     let expected: Vec<u8> = expected.color().iter().flat_map(|c| color::to_srgb8(*c)).collect();
     let picture = image::open(folder.path().join("three-spheres.png")).unwrap().to_rgb8();
     assert!(picture.into_raw() == expected, "the demo's picture is not the library's");
@@ -58,10 +57,8 @@ fn layers(headless: &'static Headless) {
     arguments.extend(["--adapter", adapter]);
     run(folder.path(), &arguments);
 
-    let View { scene, camera, film, settings } = View::three_spheres_orthographic();
-    let image = headless
-        .render(&scene, &pinhole::View::new(camera.as_ref(), film), &settings, LayerSet::DATA)
-        .unwrap();
+    let view = View::three_spheres_orthographic();
+    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).unwrap();
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     let depth = read("depth.npy");
     let depth: Vec<f32> = npyz::NpyFile::new(&depth[..]).unwrap().into_vec().unwrap();
@@ -82,10 +79,8 @@ fn exr(headless: &'static Headless) {
     }
     run(folder.path(), &arguments);
 
-    let View { scene, camera, film, settings } = View::three_spheres();
-    let image = headless
-        .render(&scene, &pinhole::View::new(camera.as_ref(), film), &settings, LayerSet::ALL)
-        .unwrap();
+    let view = View::three_spheres();
+    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
     let mut expected = Cursor::new(Vec::new());
     let encoding = Encoding::default();
     io::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();

@@ -45,6 +45,9 @@ fn flags_out_of_range() {
         ("--integrator patth", ["patth", "path"]),
         ("--ao --integrator path", ["--ao", "`studio`"]),
         ("--outline 2 --integrator path", ["--outline", "`studio`"]),
+        ("--integrator primary --samples 4", ["--samples concerns", "made by `primary`"]),
+        ("--integrator primary --denoise", ["--denoise concerns", "made by `primary`"]),
+        ("--integrator primary --time 1s", ["--time concerns", "made by `primary`"]),
         ("--keep-partial", ["--keep-partial", "lit pictures"]),
         ("--time 1s", ["--time needs an adapter", "--samples"]),
         ("--noise 0.1", ["--noise needs an adapter", "--samples"]),
@@ -205,6 +208,40 @@ fn layers_of_samples() {
     assert!(read::<f32>(&folder, "v.npy").iter().any(|variance| *variance > 0.0));
     assert!(read::<f32>(&folder, "a.npy").iter().any(|alpha| *alpha > 0.0 && *alpha < 1.0));
     assert_eq!(read::<u32>(&folder, "i.npy")[9 * 24 + 12], 0);
+}
+
+/// What was only a default can be asked for; of a lit scene it is the picture without light.
+#[test]
+fn primary_rays_are_an_integrator() {
+    let lit = scene("[studio]\n[studio.occlusion]\n[sampling]\nsamples = 3\n");
+    let asked = scene("integrator = 'primary'\n");
+    let clear = format!("{asked}opacity = 0.5\n");
+    let folder = Folder::with(&[
+        ("scene.toml", SCENE),
+        ("lit.toml", &lit),
+        ("asked.toml", &asked),
+        ("clear.toml", &clear),
+    ]);
+    let render = |arguments: &str| {
+        let run = folder.run(&format!("render {arguments} -o out.png --backend cpu")).succeeded();
+        (folder.read("out.png"), run.stderr)
+    };
+    for transparent in ["", " --transparent"] {
+        let plain = render(&format!("scene.toml{transparent}"));
+        assert_eq!(plain.1, "");
+        for view in
+            ["scene.toml --integrator primary", "lit.toml --integrator primary", "asked.toml"]
+        {
+            assert!(render(&format!("{view}{transparent}")) == plain, "{view}{transparent}");
+        }
+        let (picture, said) = render(&format!("clear.toml{transparent}"));
+        assert!(picture == plain.0, "opacity shows");
+        assert!(said.starts_with("note: primary rays ignore opacity"), "{said}");
+    }
+    let run = folder.run("render asked.toml -o out.png --backend cpu --samples 2");
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("--samples concerns the integrators `studio` and `path`"));
+    assert!(render("asked.toml --integrator studio --samples 1") != render("asked.toml"));
 }
 
 #[test]

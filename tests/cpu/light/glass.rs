@@ -5,7 +5,7 @@ use pinhole::lighting::{Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{DepthCue, Integrator, LightSampling, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 
-use super::{Shot, blocks, furnace, gray, paths, rgb, white};
+use super::{Shot, blocks, by, furnace, gray, paths, rgb, white};
 
 const TINT: [f32; 3] = [0.9, 0.5, 0.1];
 
@@ -80,10 +80,8 @@ fn opacity_hides_twice() {
         let path = paths(1024, LightSampling::Multiple);
         let sky = Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false };
         let studio = Integrator::Studio(Studio::default());
-        for (lighting, tolerance) in
-            [(RenderSettings { integrator: studio, ..path.clone() }, 1e-6), (path, 2e-3)]
-        {
-            let lighting = RenderSettings { sky: sky.clone(), background, ..lighting };
+        let path = RenderSettings { sky: sky.clone(), background, ..path };
+        for (lighting, tolerance) in [(by(studio, &path), 1e-6), (path, 2e-3)] {
             let image = shot.render(&lighting);
             let found = blocks(&image, 1)[0];
             for (found, wanted) in found.into_iter().zip(wanted(behind)) {
@@ -118,9 +116,8 @@ fn a_studio_sees_through() {
     for (max_surfaces, seen) in [(64, 1.0 / 64.0), (7, 1.0 / 64.0), (6, 0.0), (3, 0.0)] {
         let studio = Studio { ambient: LinearRgb::BLACK, max_surfaces, ..Studio::default() };
         let lighting = RenderSettings {
-            integrator: Integrator::Studio(studio),
             lights: vec![sun],
-            ..paths(1, LightSampling::Chance)
+            ..by(Integrator::Studio(studio), &paths(1, LightSampling::Chance))
         };
         let image = shot.render(&lighting);
         for (color, alpha) in image.color().iter().zip(image.alpha().unwrap()) {
@@ -143,10 +140,7 @@ fn the_depth_cue() {
     {
         let cue = DepthCue { near, far, color: rgb([0.0, 1.0, 0.0]) };
         let studio = Studio { depth_cue: Some(cue), ..Studio::default() };
-        let lighting = RenderSettings {
-            integrator: Integrator::Studio(studio),
-            ..paths(1, LightSampling::Chance)
-        };
+        let lighting = by(Integrator::Studio(studio), &paths(1, LightSampling::Chance));
         let [[red, green, _]] = blocks(&shot.render(&lighting), 1)[..] else { panic!() };
         assert!((red - 3.0 * (1.0 - fade)).abs() < 1e-4, "{near}, {far}: {red}");
         assert!((green - (3.0 - 2.0 * fade)).abs() < 1e-4, "{near}, {far}: {green}");

@@ -5,7 +5,7 @@ use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere, cpu};
 
-use super::{Shot, blocks, gray, paths, rgb, standard_errors, white};
+use super::{Shot, blocks, by, gray, paths, rgb, standard_errors, white};
 
 fn ground(color: LinearRgb) -> Ground {
     Ground {
@@ -22,10 +22,10 @@ fn light(kind: LightKind) -> Light {
 
 /// Lights alone, with shadows.
 fn studio(samples: u32, lights: &[LightKind]) -> RenderSettings {
+    let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
     RenderSettings {
-        integrator: Integrator::Studio(Studio { ambient: LinearRgb::BLACK, ..Studio::default() }),
         lights: lights.iter().copied().map(light).collect(),
-        ..paths(samples, LightSampling::Multiple)
+        ..by(Integrator::Studio(studio), &paths(samples, LightSampling::Multiple))
     }
 }
 
@@ -66,8 +66,9 @@ fn a_sphere_lamp_over_a_plane() {
         LightKind::Sphere { center: LAMP, radius: LAMP_RADIUS, radiance: rgb([2.0, 1.0, 0.0]) };
     let in_studio = RenderSettings { ground: Some(ground(gray(0.5))), ..studio(64, &[lamp]) };
     let on_paths = RenderSettings {
-        integrator: paths(64, LightSampling::Chance).integrator,
-        ..in_studio.clone()
+        lights: in_studio.lights.clone(),
+        ground: in_studio.ground,
+        ..paths(64, LightSampling::Chance)
     };
     let shot = plane(&[]);
     for lighting in [in_studio, on_paths] {
@@ -151,8 +152,9 @@ fn a_point_light_and_a_light_at_the_eye() {
     ];
     let in_studio = RenderSettings { ground: Some(ground(gray(0.5))), ..studio(16, &lights) };
     let on_paths = RenderSettings {
-        integrator: paths(16, LightSampling::Multiple).integrator,
-        ..in_studio.clone()
+        lights: in_studio.lights.clone(),
+        ground: in_studio.ground,
+        ..paths(16, LightSampling::Multiple)
     };
     for lighting in [in_studio, on_paths] {
         let image = shot.render(&lighting);

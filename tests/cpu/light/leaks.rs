@@ -5,7 +5,7 @@ use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 
-use super::{Shot, furnace, gray, paths, white};
+use super::{Shot, by, furnace, gray, paths, white};
 
 const SCALES: [f64; 5] = [1e-4, 1e-2, 1.0, 1e3, 1e6];
 
@@ -98,9 +98,8 @@ fn a_lamp_in_a_shell_lights_nothing() {
             let kind = LightKind::Sphere { center: place.into(), radius, radiance: gray(1e6) };
             let studio = Studio { ambient: LinearRgb::BLACK, ..Studio::default() };
             let lighting = RenderSettings {
-                integrator: Integrator::Studio(studio),
                 lights: vec![Light { kind, frame: LightFrame::World }],
-                ..paths(4, LightSampling::Multiple)
+                ..by(Integrator::Studio(studio), &paths(4, LightSampling::Multiple))
             };
             let image = shot.render(&lighting);
             let lit = image.color().iter().filter(|c| **c != [0.0; 3]).count();
@@ -145,10 +144,7 @@ fn open_surfaces_hide_nothing_of_themselves() {
     for scale in SCALES {
         for place in PLACES {
             let studio = Studio { ambient: LinearRgb::WHITE, occlusion, ..Studio::default() };
-            let lighting = RenderSettings {
-                integrator: Integrator::Studio(studio),
-                ..paths(4, LightSampling::Multiple)
-            };
+            let lighting = by(Integrator::Studio(studio), &paths(4, LightSampling::Multiple));
             let one = placed(&[white([0.0; 3], 1.0)], scale, place);
             let image = Shot::new(&one, place, 0.6 * scale, 24).render(&lighting);
             assert!(image.color().iter().all(|c| *c == [1.0; 3]), "{scale:e} at {place:?}");

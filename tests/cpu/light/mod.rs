@@ -51,6 +51,13 @@ pub(crate) fn furnace(samples: u32) -> RenderSettings {
     RenderSettings { sky, ..paths(samples, LightSampling::Multiple) }
 }
 
+/// The same by another integrator; the sky is for paths alone.
+pub(crate) fn by(integrator: Integrator, settings: &RenderSettings) -> RenderSettings {
+    let is_lit_by_sky = matches!(integrator, Integrator::Path(_));
+    let sky = if is_lit_by_sky { settings.sky.clone() } else { Sky::default() };
+    RenderSettings { integrator, sky, ..settings.clone() }
+}
+
 /// A scene with a view of it.
 pub(crate) struct Shot {
     pub(crate) scene: Scene,

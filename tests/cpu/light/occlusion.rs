@@ -7,15 +7,12 @@ use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, RenderSettings, Sphere};
 
-use super::{Shot, paths, white};
+use super::{Shot, by, paths, white};
 
 fn studio(samples: u32, occlusion: Occlusion) -> RenderSettings {
     let studio =
         Studio { ambient: LinearRgb::WHITE, occlusion: Some(occlusion), ..Studio::default() };
-    RenderSettings {
-        integrator: Integrator::Studio(studio),
-        ..paths(samples, LightSampling::Chance)
-    }
+    by(Integrator::Studio(studio), &paths(samples, LightSampling::Chance))
 }
 
 /// The cosine-weighted share of directions around a normal in which a sphere is: by midpoints over its cone, of which

@@ -7,7 +7,7 @@ use pinhole::lighting::{Ground, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, SettingsError, Studio};
 use pinhole::{Film, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu, image::NO_ID};
 
-use super::{Shot, furnace, gray, paths, rgb, white};
+use super::{Shot, by, furnace, gray, paths, rgb, white};
 
 /// Layers are the means of samples and what one ray says, to the last bit of f32.
 #[test]
@@ -19,7 +19,7 @@ fn layers_are_means_of_samples() {
     let mut lighting = furnace(7);
     lighting.sampling.filter = PixelFilter::BlackmanHarris;
     for integrator in [lighting.integrator.clone(), Integrator::Studio(Studio::default())] {
-        let lighting = RenderSettings { integrator, ..lighting.clone() };
+        let lighting = by(integrator, &lighting);
         let image = shot.render(&lighting);
         let picture = shot.picture(&lighting);
         for index in 0..144 {
@@ -165,7 +165,7 @@ fn albedo_is_that_of_the_first_surface() {
     for (integrator, wanted) in
         [(path.integrator.clone(), [0.5, 0.0, 0.0]), (studio, [0.0, 0.5, 0.0])]
     {
-        let lighting = RenderSettings { integrator, ..path.clone() };
+        let lighting = by(integrator, &path);
         assert_eq!(shot.render(&lighting).albedo().unwrap(), [wanted; 4]);
     }
     for is_shadow_catcher in [false, true] {
@@ -176,7 +176,7 @@ fn albedo_is_that_of_the_first_surface() {
             is_shadow_catcher,
         });
         let integrator = Integrator::Studio(Studio::default());
-        let lighting = RenderSettings { integrator, ground, ..path.clone() };
+        let lighting = RenderSettings { ground, ..by(integrator, &path) };
         let image = Shot::from(4.0, &[], [0.0; 3], 0.1, 2).render(&lighting);
         let wanted = if is_shadow_catcher { [0.0; 3] } else { [0.25; 3] };
         assert_eq!(image.albedo().unwrap(), [wanted; 4]);
@@ -206,12 +206,8 @@ fn where_there_is_nothing() {
         (studio, true, [0.1, 0.2, 0.3]),
     ] {
         for is_transparent in [false, true] {
-            let lighting = RenderSettings {
-                integrator: integrator.clone(),
-                sky: sky(is_visible),
-                is_transparent,
-                ..base.clone()
-            };
+            let lighting = RenderSettings { sky: sky(is_visible), is_transparent, ..base.clone() };
+            let lighting = by(integrator.clone(), &lighting);
             let image = shot.render(&lighting);
             let at = |i: usize, j: usize| {
                 (image.color()[j * 16 + i], image.alpha().unwrap()[j * 16 + i])

@@ -3,7 +3,11 @@
 pub(crate) mod scenes;
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::{Image, LayerSet, cpu};
+use pinhole::accel::{AccelChoice, Structure};
+use pinhole::camera::PinholeCamera;
+use pinhole::gpu::{Decision, GpuError, Headless, Progress};
+use pinhole::render::{RenderSettings, Sampling};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere, View, cpu};
 
 use crate::headless;
 use crate::trial;
@@ -27,6 +31,9 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::a_picture_does_not_depend_on_tiles_structures_or_order", structures),
         trial("light::batches_do_not_change_samples", batches),
         trial("light::denoising_is_the_reference's", denoising),
+        trial("light::shadows_have_a_structure_of_the_kind_that_is_asked_for", occluders),
+        trial("light::a_studio_that_lacks_its_occluders_is_an_error", no_occluders),
+        trial("light::only_primary_rays_are_recorded", not_recorded),
     ];
     agreements.chain(others).collect()
 }
@@ -69,15 +76,13 @@ fn agree(view: &LitView) -> Result<(), Failed> {
 }
 
 /// A grid, a tree and a list, and bricks, on a device of WebGPU's limits.
-fn structures(_: &'static pinhole::gpu::Headless) {
-    use pinhole::accel::AccelChoice;
-    use pinhole::gpu::{Decision, Progress};
+fn structures(_: &'static Headless) {
     let device = headless().unwrap();
     for (name, view) in [scenes::studios().swap_remove(2), scenes::paths().swap_remove(2)] {
         let LitView { scene, settings, .. } = &view;
         let pictures = [AccelChoice::List, AccelChoice::Tree, AccelChoice::Grid].map(|choice| {
-            let accel = device.plan_accel(scene, choice).build(scene.spheres());
-            let buffers = device.upload(scene, &accel.into()).unwrap();
+            let plan = device.plan(scene, &view.seen(), settings, LayerSet::COLOR, choice, 0);
+            let buffers = device.upload(scene, &plan.build(scene)).unwrap();
             let go_on = &mut |_: &Progress| Decision::GoOn;
             device
                 .render_uploaded(&buffers, &view.seen(), settings, LayerSet::COLOR, go_on)
@@ -90,9 +95,7 @@ fn structures(_: &'static pinhole::gpu::Headless) {
 }
 
 /// A picture that is finished early is the one that was asked for with so many samples.
-fn batches(device: &'static pinhole::gpu::Headless) {
-    use pinhole::accel::AccelChoice;
-    use pinhole::gpu::{Decision, Progress};
+fn batches(device: &'static Headless) {
     let (_, mut view) = scenes::paths().swap_remove(1);
     view.settings.sampling.samples = 1000;
     let LitView { scene, settings, .. } = &view;
@@ -110,7 +113,7 @@ fn batches(device: &'static pinhole::gpu::Headless) {
     assert_eq!(early.image, whole);
 }
 
-fn denoising(device: &'static pinhole::gpu::Headless) {
+fn denoising(device: &'static Headless) {
     let (_, mut view) = scenes::paths().swap_remove(1);
     view.settings.sampling.samples = 4;
     let noisy = render(&view).unwrap();
@@ -130,4 +133,91 @@ fn denoising(device: &'static pinhole::gpu::Headless) {
             .sum::<f64>()
     };
     assert!(error(&quiet) < 0.5 * error(&noisy), "{} of {}", error(&quiet), error(&noisy));
+}
+
+/// Spheres of which every other lets light pass, enough for any structure to be worth it.
+fn translucent() -> Scene {
+    let spheres: Vec<Sphere> = (0..400)
+        .map(|i| {
+            let center = [f64::from(i % 20), f64::from(i / 20), 0.0];
+            let sphere = Sphere::new(center, 0.4, LinearRgb::from_srgb8([128; 3]));
+            if i % 2 == 0 { sphere.with_opacity(0.5) } else { sphere }
+        })
+        .collect();
+    Scene::new(&spheres).unwrap()
+}
+
+fn occluders(device: &'static Headless) {
+    let scene = translucent();
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let view = View::new(&camera, Film::new(32, 32).unwrap());
+    let mut studio = RenderSettings::studio();
+    studio.sampling.samples = 2;
+    let mut images = Vec::new();
+    for (choice, structure) in [
+        (AccelChoice::Tree, Structure::WideTree),
+        (AccelChoice::BinaryTree, Structure::BinaryTree),
+        (AccelChoice::List, Structure::List),
+    ] {
+        let plan = device.plan(&scene, &view, &studio, LayerSet::COLOR, choice, 0);
+        let occluders = plan.occluders.as_ref().unwrap();
+        assert_eq!((plan.accel.structure, occluders.structure), (structure, structure));
+        assert_eq!(occluders.statistics.count, 200);
+        let structures = plan.build(&scene);
+        assert_eq!(structures.occluders.as_ref().unwrap().structure(), structure);
+        let buffers = device.upload(&scene, &structures).unwrap();
+        let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
+        // Records of bricks, and the words that stand for colours.
+        assert!(buffers.bytes() <= planned + 400, "{} of {planned}", buffers.bytes());
+        let go_on = &mut |_: &_| Decision::GoOn;
+        images.push(device.render_uploaded(&buffers, &view, &studio, LayerSet::COLOR, go_on));
+    }
+    assert!(images[0].is_ok() && images.iter().all(|image| *image == images[0]));
+    for settings in [RenderSettings::default(), RenderSettings::path()] {
+        let choice = AccelChoice::Tree;
+        let plan = device.plan(&scene, &view, &settings, LayerSet::COLOR, choice, 0);
+        assert!(plan.occluders.is_none(), "{}", settings.integrator.name());
+    }
+    // Where all are opaque, one structure is enough.
+    let opaque =
+        Scene::from_f32(scene.spheres().to_vec(), LinearRgb::from_srgb8([128; 3])).unwrap();
+    let plan = device.plan(&opaque, &view, &studio, LayerSet::COLOR, AccelChoice::Tree, 0);
+    assert!(plan.occluders.is_none());
+}
+
+fn no_occluders(device: &'static Headless) {
+    let scene = translucent();
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let view = View::new(&camera, Film::new(8, 8).unwrap());
+    let accel = device.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = device.upload(&scene, &accel.into()).unwrap();
+    let render = |settings: RenderSettings| {
+        let settings =
+            RenderSettings { sampling: Sampling { samples: 1, ..settings.sampling }, ..settings };
+        let go_on = &mut |_: &_| Decision::GoOn;
+        device.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, go_on)
+    };
+    let error = render(RenderSettings::studio()).unwrap_err();
+    assert_eq!(error, GpuError::NoOccluders);
+    assert!(error.to_string().contains("RenderPlan::build"), "{error}");
+    // Others have no use for them.
+    assert_eq!(render(RenderSettings::path()).unwrap().samples, 1);
+    let primary = render(RenderSettings::default()).unwrap();
+    assert_eq!((primary.samples, primary.noise, primary.hits), (1, None, None));
+}
+
+fn not_recorded(device: &'static Headless) {
+    let scene = translucent();
+    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let view = View::new(&camera, Film::new(8, 8).unwrap());
+    let accel = device.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = device.upload(&scene, &accel.into()).unwrap();
+    let go_on = &mut |_: &_| Decision::GoOn;
+    let refused = |integrator| Some(GpuError::NotPrimary { integrator });
+    let recording = device.record(&buffers, &view, &RenderSettings::path(), go_on);
+    assert_eq!(recording.err(), refused("path"));
+    let certificate = device.verify(&scene, &view, &RenderSettings::studio());
+    assert_eq!(certificate.err(), refused("studio"));
+    let paths = device.record_paths(&buffers, &view, &RenderSettings::default(), 0..1, go_on);
+    assert_eq!(paths.err(), Some(GpuError::NotPaths));
 }

@@ -1,0 +1,191 @@
+//! Settings: what contradicts itself is refused, what is odd is noted, and primary rays are one of the integrators.
+
+use glam::DVec3;
+use pinhole::camera::{PinholeCamera, Pose};
+use pinhole::image::NO_ID;
+use pinhole::lighting::{Ground, Light, Sky, SkyLight};
+use pinhole::render::{PathTracing, Sampling, SettingsError, SettingsNote, Studio};
+use pinhole::{
+    Film, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, View,
+    cpu, glam,
+};
+
+fn grey() -> LinearRgb {
+    LinearRgb::from_srgb8([128; 3])
+}
+
+fn one(sphere: Sphere) -> Scene {
+    Scene::new(&[sphere]).unwrap()
+}
+
+fn sphere() -> Sphere {
+    Sphere::new([0.0; 3], 1.0, grey())
+}
+
+fn camera() -> PinholeCamera {
+    let pose = Pose::looking_at([0.0, 0.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
+}
+
+fn visible_sky() -> Sky {
+    Sky { light: SkyLight::Constant(LinearRgb::WHITE), is_visible: true }
+}
+
+fn ground(is_shadow_catcher: bool) -> Option<Ground> {
+    Some(Ground { point: DVec3::ZERO, normal: DVec3::Y, color: grey(), is_shadow_catcher })
+}
+
+#[test]
+fn what_an_integrator_ignores_is_named() {
+    let scene = one(sphere());
+    let refused = |settings: RenderSettings| settings.check(&scene).unwrap_err().to_string();
+    let primary = RenderSettings::default;
+    for (settings, what) in [
+        (RenderSettings { lights: Light::key_and_fill().to_vec(), ..primary() }, "the lights"),
+        (RenderSettings { ground: ground(false), ..primary() }, "the ground"),
+        (RenderSettings { is_denoised: true, ..primary() }, "denoising"),
+    ] {
+        assert_eq!(
+            refused(settings),
+            format!(
+                "the integrator `primary` does not use {what}; leave out {what}, or choose the integrator \
+                 `studio` or `path`"
+            )
+        );
+    }
+    for (settings, integrator) in [(primary(), "primary"), (RenderSettings::studio(), "studio")] {
+        assert_eq!(
+            refused(RenderSettings { sky: visible_sky(), ..settings }),
+            format!(
+                "the integrator `{integrator}` does not use the sky; leave out the sky, or choose the integrator \
+                 `path`"
+            )
+        );
+    }
+    let sampling = Sampling { samples: 4, ..Sampling::default() };
+    assert_eq!(
+        refused(RenderSettings { sampling, ..primary() }),
+        "the integrator `primary` traces one ray through the center of each pixel, and 4 samples are asked for; \
+         ask for 1, or choose the integrator `studio` or `path`"
+    );
+    let caught = RenderSettings { ground: ground(true), ..RenderSettings::path() };
+    assert_eq!(caught.check(&scene), Err(SettingsError::Catcher));
+    assert!(refused(caught).contains("`studio`"));
+}
+
+#[test]
+fn what_belongs_together_is_accepted() {
+    let scene = one(sphere());
+    let accepted = [
+        RenderSettings::default(),
+        RenderSettings { is_transparent: true, ..RenderSettings::default() },
+        RenderSettings::studio(),
+        RenderSettings { ground: ground(true), is_denoised: true, ..RenderSettings::studio() },
+        RenderSettings::path(),
+        RenderSettings { sky: visible_sky(), ground: ground(false), ..RenderSettings::path() },
+    ];
+    for settings in accepted {
+        assert_eq!(settings.check(&scene), Ok(()), "{settings:?}");
+    }
+    // Light that is created concerns lit pictures alone.
+    let bright = one(Sphere::new([0.0; 3], 1.0, LinearRgb::new([2.0; 3]).unwrap()));
+    assert_eq!(RenderSettings::default().check(&bright), Ok(()));
+    for settings in [RenderSettings::studio(), RenderSettings::path()] {
+        let refused = settings.check(&bright);
+        assert!(matches!(refused, Err(SettingsError::Albedo { .. })), "{refused:?}");
+    }
+}
+
+#[test]
+fn every_renderer_checks_first() {
+    let (scene, camera) = (one(sphere()), camera());
+    let view = View::new(&camera, Film::new(4, 4).unwrap());
+    let wrong = RenderSettings { is_denoised: true, ..RenderSettings::default() };
+    let error = cpu::render(&scene, &view, &wrong, LayerSet::COLOR).unwrap_err();
+    assert!(matches!(error, cpu::RenderError::Settings(SettingsError::Unused { .. })), "{error}");
+    assert!(cpu::SampledPicture::new(&scene, &view, &wrong).is_err());
+}
+
+#[test]
+fn what_is_odd_is_noted() {
+    let matt = one(sphere());
+    let clear = one(sphere().with_opacity(0.5));
+    let metal = one(sphere().with_material(Material::Conductor { roughness: 0.3 }));
+    let dark = RenderSettings {
+        integrator: Integrator::Studio(Studio { ambient: LinearRgb::BLACK, ..Studio::default() }),
+        lights: Vec::new(),
+        ..RenderSettings::studio()
+    };
+    let (primary, studio, path) =
+        (RenderSettings::default(), RenderSettings::studio(), RenderSettings::path());
+    for (settings, scene, notes) in [
+        (&primary, &matt, vec![]),
+        (&primary, &metal, vec![]),
+        (&primary, &clear, vec![SettingsNote::OpacityIgnored]),
+        (&studio, &clear, vec![]),
+        (&studio, &metal, vec![SettingsNote::MattInStudio]),
+        (&path, &metal, vec![]),
+        (&dark, &matt, vec![SettingsNote::NoLight]),
+        (&dark, &metal, vec![SettingsNote::NoLight, SettingsNote::MattInStudio]),
+    ] {
+        assert_eq!(settings.notes(scene), notes, "{}", settings.integrator.name());
+    }
+}
+
+/// Where nothing is hit, a transparent picture has neither colour nor alpha; elsewhere it is as it was.
+#[test]
+fn primary_rays_may_have_no_background() {
+    let (scene, camera) = (one(sphere()), camera());
+    let view = View::new(&camera, Film::new(9, 9).unwrap());
+    let opaque = RenderSettings { background: grey(), ..RenderSettings::default() };
+    let clear = RenderSettings { is_transparent: true, ..opaque.clone() };
+    let [opaque, clear] =
+        [opaque, clear].map(|s| cpu::render(&scene, &view, &s, LayerSet::ALL).unwrap());
+    for (pixel, id) in opaque.id().unwrap().iter().enumerate() {
+        let (color, alpha) = (clear.color()[pixel], clear.alpha().unwrap()[pixel]);
+        if *id == NO_ID {
+            assert_eq!((opaque.color()[pixel], color, alpha), (grey().to_array(), [0.0; 3], 0.0));
+        } else {
+            assert_eq!((color, alpha), (opaque.color()[pixel], 1.0));
+        }
+    }
+    assert!(opaque.id().unwrap().contains(&NO_ID) && opaque.id().unwrap().contains(&0));
+}
+
+#[test]
+fn samples_of_primary_rays_are_the_picture() {
+    let (scene, camera) = (one(sphere()), camera());
+    let view = View::new(&camera, Film::new(5, 5).unwrap());
+    let settings = RenderSettings {
+        integrator: Integrator::Primary(Shading::Flat),
+        ..RenderSettings::default()
+    };
+    let picture = cpu::SampledPicture::new(&scene, &view, &settings).unwrap();
+    let image = picture.render(LayerSet::ALL).unwrap();
+    assert_eq!(image, cpu::render(&scene, &view, &settings, LayerSet::ALL).unwrap());
+    for (index, color) in image.color().iter().enumerate() {
+        let pixel = [index as u32 % 5, index as u32 / 5];
+        let sample = picture.sample(pixel, 0);
+        assert_eq!(sample.color.map(|c| c as f32), *color);
+        assert_eq!(sample.alpha as f32, image.alpha().unwrap()[index]);
+        assert_eq!(sample, picture.sample(pixel, 7));
+    }
+}
+
+#[test]
+fn what_is_left_by_primary_rays_is_accepted() {
+    let scene = one(sphere());
+    let mut lit = RenderSettings {
+        integrator: Integrator::Path(PathTracing::default()),
+        sky: visible_sky(),
+        ground: ground(false),
+        background: grey(),
+        is_denoised: true,
+        ..RenderSettings::path()
+    };
+    let left = lit.by_primary_rays();
+    assert_eq!(left, RenderSettings { background: grey(), ..RenderSettings::default() });
+    assert_eq!(left.check(&scene), Ok(()));
+    lit.integrator = Integrator::Primary(Shading::Flat);
+    assert_eq!(lit.by_primary_rays().integrator, lit.integrator);
+}
