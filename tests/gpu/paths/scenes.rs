@@ -34,6 +34,7 @@ pub(crate) fn all() -> Vec<Named> {
         ("sun", sun),
         ("image", image),
         ("opacity", opacity),
+        ("translucent_glass", translucent_glass),
         ("from_inside", from_inside),
         ("many", many),
         ("tiny", || scaled(1e-4, DVec3::ZERO)),
@@ -257,6 +258,17 @@ pub(crate) fn opacity() -> LitView {
         .map(|(i, sphere)| sphere.with_opacity(i as f32 / 8.0))
         .collect();
     view(&spheres, Lighting { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
+}
+
+/// Tinted glass that lets some paths pass as if there were nothing, and what is in it.
+pub(crate) fn translucent_glass() -> LitView {
+    let view = glass();
+    let spheres: Vec<_> = grid(|i| glass_of(1.5, 0.2 * (i % 2) as f32, Some(0.7)))
+        .into_iter()
+        .chain([ball([0.0, 0.0, 0.0], 0.3, rgb(0.9, 0.3, 0.2))])
+        .map(|sphere| sphere.with_opacity(0.6))
+        .collect();
+    LitView { scene: Scene::new(&spheres).unwrap(), ..view }
 }
 
 pub(crate) fn from_inside() -> LitView {
