@@ -35,6 +35,7 @@ pub(crate) fn all() -> Vec<Named> {
         ("image", image),
         ("opacity", opacity),
         ("translucent_glass", translucent_glass),
+        ("coincident_emitters", coincident_emitters),
         ("from_inside", from_inside),
         ("many", many),
         ("tiny", || scaled(1e-4, DVec3::ZERO)),
@@ -269,6 +270,23 @@ pub(crate) fn translucent_glass() -> LitView {
         .map(|sphere| sphere.with_opacity(0.6))
         .collect();
     LitView { scene: Scene::new(&spheres).unwrap(), ..view }
+}
+
+/// Emitters in the place of other spheres: of those that come before them they are never met, and never looked for.
+pub(crate) fn coincident_emitters() -> LitView {
+    let mut spheres = lamps();
+    let emissive = |strength| Material::Emissive { strength };
+    let twin = |i: usize| ball(spheres[i].center, spheres[i].radius, rgb(0.3, 0.9, 0.5));
+    let copies = [
+        // Of a matt sphere, and of an emitter.
+        twin(3).with_material(emissive(4.0)),
+        twin(4).with_material(emissive(7.0)),
+        // A matt one in the place of an emitter.
+        twin(0),
+    ];
+    spheres.splice(0..0, [twin(7).with_material(emissive(2.0)), twin(2).with_opacity(0.0)]);
+    spheres.extend(copies);
+    LitView { scene: Scene::new(&spheres).unwrap(), ..emitters() }
 }
 
 pub(crate) fn from_inside() -> LitView {
