@@ -238,6 +238,17 @@ impl AccelPlan {
 }
 
 impl Structure {
+    /// What to choose for another structure of the same family.
+    #[must_use]
+    pub const fn choice(self) -> AccelChoice {
+        match self {
+            Self::List => AccelChoice::List,
+            Self::Grid(_) | Self::NestedGrid(_) => AccelChoice::Grid,
+            Self::WideTree => AccelChoice::Tree,
+            Self::BinaryTree => AccelChoice::BinaryTree,
+        }
+    }
+
     /// What to choose where rays take too many steps in this one, as among very many spheres in one place; a
     /// list always ends.
     #[must_use]

@@ -17,7 +17,7 @@ use super::records::Frame;
 use super::scene_buffers::SceneBuffers;
 use super::seen::Seen;
 use super::tiles::{Groups, Tile, tiles};
-use crate::accel::{Accel, AccelChoice};
+use crate::accel::Accel;
 use crate::camera::Camera;
 use crate::film::Film;
 use crate::image::{Image, Layer, LayerSet};
@@ -95,7 +95,8 @@ fn batch(done: u32, total: u32) -> u32 {
 }
 
 impl Headless {
-    /// Copies a scene to the device for lit pictures.
+    /// Copies a scene to the device for lit pictures. What casts shadows in a studio, if that is not all, gets a
+    /// structure of the same family.
     ///
     /// # Errors
     /// As [`Headless::upload`].
@@ -104,7 +105,8 @@ impl Headless {
         let opaque = match scene.opaque() {
             None => None,
             Some(opaque) => {
-                let accel = self.plan(&opaque, AccelChoice::Auto).build(opaque.spheres());
+                let choice = accel.structure().choice();
+                let accel = self.plan(&opaque, choice).build(opaque.spheres());
                 Some(self.upload(&opaque, &accel)?)
             }
         };

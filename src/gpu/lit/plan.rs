@@ -6,7 +6,7 @@ use super::film::BYTES_PER_PIXEL;
 use super::look::Lit;
 use super::records::{FILM_SLOTS, PATH_SLOTS};
 use super::tile::{lit_tile_size, sky_image};
-use crate::accel::{AccelChoice, AccelPlan, PlannedBuffer};
+use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::camera::Camera;
 use crate::film::Film;
 use crate::gpu::headless::Headless;
@@ -114,7 +114,8 @@ impl Headless {
     ) -> RenderPlan {
         let limits = self.device().limits();
         let device = (&limits, self.adapter_info().device_type);
-        let opaque = scene.opaque().map(|opaque| self.plan(&opaque, AccelChoice::Auto));
+        let choice = accel.structure.choice();
+        let opaque = scene.opaque().map(|opaque| self.plan(&opaque, choice));
         let plans = (accel, opaque);
         RenderPlan::of_lit(scene, view, lighting, layers, plans, device, host_bytes_per_pixel)
     }
@@ -123,6 +124,7 @@ impl Headless {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::AccelChoice;
     use crate::camera::{PinholeCamera, Pose};
     use crate::color::LinearRgb;
     use crate::environment::Environment;
