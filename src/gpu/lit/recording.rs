@@ -18,7 +18,7 @@ use crate::gpu::frame::iteration_limit;
 use crate::gpu::headless::Headless;
 use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::recording::requested_view;
-use crate::gpu::records::Hit;
+use crate::gpu::records::{Hit, SceneSpace};
 use crate::gpu::tiles::Tile;
 use crate::lighting::{Integrator, Lighting, SkyLight};
 use crate::scene::Scene;
@@ -145,9 +145,9 @@ impl Headless {
         watch: &mut LitWatch<'_>,
     ) -> Result<PathRecording, GpuError> {
         lighting.check(scene)?;
-        let Integrator::Path(path) = &lighting.integrator else {
+        if lighting.studio().is_some() {
             return Err(GpuError::NotPaths);
-        };
+        }
         let lit = Lit::new(lighting, scene, camera);
         let searched = [&buffers.all; 2];
         let key = LitKey {
@@ -157,20 +157,7 @@ impl Headless {
             occluders: buffers.all.structure(),
         };
         let tile = middle_of(film);
-        let (camera_asked, uploaded) = requested_view(buffers.all.space(), camera);
-        let mut recording = PathRecording {
-            camera: camera_asked,
-            uploaded,
-            film: *film,
-            origin: tile.origin,
-            size: tile.size,
-            lighting: lighting.clone(),
-            max_depth: path.max_depth,
-            look: uploaded_look(&lit.look),
-            tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
-            sky: uploaded_sky(lighting),
-            samples: Vec::new(),
-        };
+        let mut recording = new_recording(buffers.all.space(), (camera, film), lighting, &lit);
         self.with_lit_renderer(key, |renderer| {
             let (device, queue) = (self.device(), self.queue());
             let tile_buffers =
@@ -197,6 +184,33 @@ impl Headless {
             }
             Ok(recording)
         })
+    }
+}
+
+/// A recording without samples: what the device is given.
+fn new_recording(
+    space: &SceneSpace,
+    (camera, film): (&dyn Camera, &Film),
+    lighting: &Lighting,
+    lit: &Lit,
+) -> PathRecording {
+    let (requested, uploaded) = requested_view(space, camera);
+    let Tile { origin, size, .. } = middle_of(film);
+    PathRecording {
+        camera: requested,
+        uploaded,
+        film: *film,
+        origin,
+        size,
+        lighting: lighting.clone(),
+        max_depth: match &lighting.integrator {
+            Integrator::Path(path) => path.max_depth,
+            Integrator::Studio(_) => 0,
+        },
+        look: uploaded_look(&lit.look),
+        tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
+        sky: uploaded_sky(lighting),
+        samples: Vec::new(),
     }
 }
 
@@ -244,5 +258,44 @@ fn uploaded_sky(lighting: &Lighting) -> Option<UploadedSky> {
             shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
         }),
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/support/random_light.rs"]
+#[allow(dead_code, reason = "tests of devices use all of it")]
+mod random_light;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::{AccelChoice, AccelPlan};
+    use crate::verify::Checker;
+
+    /// What the host makes of random scenes for a device, the checker takes for what was asked for.
+    #[test]
+    fn what_is_uploaded_is_what_was_asked_for() {
+        // Tables of energies take most of the time.
+        for seed in 1000..1016 {
+            let view = random_light::view(seed);
+            let (camera, lighting) = (view.camera.as_ref(), &view.lighting);
+            lighting.check(&view.scene).unwrap();
+            let checker = Checker::new(&view.scene).unwrap();
+            let spheres = view.scene.spheres();
+            let plan = AccelPlan::new(spheres, AccelChoice::List, 1 << 27);
+            let (min, max) = plan.build(spheres).bounds();
+            let space = SceneSpace { origin: view.scene.origin(), min, max };
+            let lit = Lit::new(lighting, &view.scene, camera);
+            let mut recording = new_recording(&space, (camera, &view.film), lighting, &lit);
+            let certificate = checker.certify_paths(&recording);
+            assert_eq!(certificate.upload, None, "seed {seed}: {}", view.name);
+            // That says something: with another roughness, which is at most 1, it does not.
+            if seed % 8 == 0 {
+                let material = recording.look.material_first as usize;
+                recording.tables[material][2] = 1.001_f32.to_bits();
+                let certificate = checker.certify_paths(&recording);
+                assert!(certificate.upload.is_some(), "seed {seed}: {}", view.name);
+            }
+        }
     }
 }
