@@ -136,7 +136,7 @@ mod recorded {
         let plan = |accel| headless.plan_record(scene, accel, film, encoding);
         let done =
             with_scene(&headless, &input, choice(args.accel.accel), plan, |buffers, watch| {
-                headless.record(buffers, camera, film, settings, watch)
+                headless.record_and_render(buffers, camera, film, settings, watch)
             })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);

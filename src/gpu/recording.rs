@@ -20,7 +20,8 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::verify::{
-    Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay,
+    UploadedView,
 };
 
 /// A camera, and the numbers that kernels get of it and of the scene's box.
@@ -61,6 +62,7 @@ fn new_recording(
         settings: *settings,
         pixels: vec![untraced; image.color().len()],
         image,
+        rendered: Rendered::None,
     })
 }
 
@@ -89,7 +91,27 @@ impl Headless {
         })
     }
 
-    /// Renders a picture and decides whether it is one that a conforming device may have made.
+    /// As [`Headless::record`], and renders the view once more as [`Headless::render_uploaded`] does, with kernels
+    /// that keep no rays, for [`Recording::rendered`].
+    ///
+    /// # Errors
+    /// As [`Headless::render_uploaded`].
+    pub fn record_and_render(
+        &self,
+        scene: &SceneBuffers,
+        camera: &dyn Camera,
+        film: &Film,
+        settings: &Settings,
+        watch: &mut Watch<'_>,
+    ) -> Result<Recording, GpuError> {
+        let mut recording = self.record(scene, camera, film, settings, watch)?;
+        let layers = LayerSet::DATA;
+        recording.compare(self.render_uploaded(scene, camera, film, settings, layers, watch)?);
+        Ok(recording)
+    }
+
+    /// Renders a picture and decides whether it is one that a conforming device may have made: as
+    /// [`Headless::render`] makes it, and as [`Headless::record`] does, stage by stage.
     ///
     /// # Errors
     /// If it cannot be rendered, as with [`Headless::render`], or if there is no memory to check it. A picture
@@ -103,7 +125,7 @@ impl Headless {
     ) -> Result<Certificate, GpuError> {
         let go_on = |_| ControlFlow::Continue(());
         let recording = self.with_uploaded(scene, film, |buffers| {
-            self.record(buffers, camera, film, settings, &mut { go_on })
+            self.record_and_render(buffers, camera, film, settings, &mut { go_on })
         })?;
         Ok(Checker::new(scene)?.certify(&recording))
     }
