@@ -5,6 +5,7 @@
 //! cargo bench --bench verify -- cost        # the checker against the CPU reference
 //! cargo bench --bench verify -- fences      # tracing with and without fences, by turns
 //! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
+//! cargo bench --bench verify -- lit-campaign 500    # paths of so many random lit scenes; ends at a violation
 //! ```
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
@@ -16,12 +17,15 @@ use pinhole::generate::{Kind, Standard};
 use pinhole::glam::DVec3;
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, ShaderEdit, Structures};
-use pinhole::verify::{Certificate, Checker, Recording, Verdict};
+use pinhole::verify::{Certificate, Checker, PathCertificate, Recording, Verdict};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 #[path = "../tests/support/spheres.rs"]
 #[allow(dead_code, reason = "tests use all of them")]
 mod spheres;
+
+#[path = "../tests/support/random_light.rs"]
+mod random_light;
 
 fn main() {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
@@ -41,6 +45,10 @@ fn main() {
     // Only if it is named: it takes minutes.
     if wanted.iter().any(|wanted| wanted == "campaign") {
         campaign(&headless);
+    }
+    if let Some(at) = wanted.iter().position(|wanted| wanted == "lit-campaign") {
+        let count = wanted.get(at + 1).map_or(500, |count| count.parse().unwrap());
+        lit_campaign(&headless, count);
     }
 }
 
@@ -269,4 +277,33 @@ fn campaign(headless: &Headless) {
         }
     }
     println!("{rays} rays in {pictures} pictures, {:.0} s\n", started.elapsed().as_secs_f64());
+}
+
+/// The scenes of the seeds from 0 on.
+fn lit_campaign(headless: &Headless, count: u64) {
+    let mut all = PathCertificate::default();
+    let (mut undecided, mut worst) = (0, 0.0);
+    let started = Instant::now();
+    for seed in 0..count {
+        let random_light::RandomView { scene, camera, film, settings, name } =
+            random_light::view(seed);
+        let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
+        let buffers = headless.upload(&scene, &accel.into()).unwrap();
+        let go_on = &mut |_: &_| Decision::GoOn;
+        let view = View::new(camera.as_ref(), film);
+        let recording = headless.record_paths(&buffers, &view, &settings, 0..2, go_on).unwrap();
+        let certificate = Checker::new(&scene).unwrap().certify_paths(&recording);
+        assert!(certificate.is_legal(), "seed {seed}: {name}: {certificate}");
+        let stages = certificate.stages();
+        let share = stages.undecided as f64 / stages.checked as f64;
+        if share > worst {
+            worst = share;
+            println!("seed {seed}: {name}: {certificate}");
+        }
+        undecided += u64::from(stages.undecided > 0);
+        all.join(certificate);
+    }
+    let seconds = started.elapsed().as_secs_f64();
+    println!("{count} scenes, {undecided} with undecided stages, {seconds:.0} s: {all}");
+    println!("{:#?}\n", [all.start, all.extend, all.scatter, all.occlude, all.settle]);
 }

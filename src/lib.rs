@@ -38,6 +38,10 @@
 //! light. Depth is measured along the ray. `CONTRIBUTING.md` has the rest.
 #![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
 
+// Scenes that tests share name this crate from outside.
+#[cfg(test)]
+extern crate self as pinhole;
+
 pub use glam;
 
 pub mod accel;

@@ -146,7 +146,7 @@ mod recorded {
                     progress::tracing(progress.part);
                     interrupt::decide()
                 };
-                headless.record(&buffers, view, settings, watch)
+                headless.record_and_render(&buffers, view, settings, watch)
             })
         })?;
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;

@@ -105,6 +105,8 @@ struct Page<'a> {
     rows: Vec<Row>,
     worst_depth: String,
     worst_normal: String,
+    /// In how many pixels `render` makes another picture, if that is known.
+    rendered_otherwise: Option<String>,
     /// Width and height of the pictures, and how many pixels along an axis are one of theirs.
     shown: [u32; 2],
     step: u32,
@@ -141,6 +143,7 @@ pub(super) fn page(
         rows: rows(certificate),
         worst_depth: format!("{:.4}", certificate.worst_depth),
         worst_normal: format!("{:.4}", certificate.worst_normal),
+        rendered_otherwise: report.rendered_otherwise.map(|count| grouped(count as u64)),
         shown: whole.shown(),
         step: whole.step,
         frame: Frame::new(size),

@@ -24,6 +24,8 @@ pub(super) struct Report {
     pub(super) decided_fraction: f64,
     pub(super) worst_depth: f64,
     pub(super) worst_normal: f64,
+    /// In how many pixels `render` makes another picture; none if that is not known.
+    pub(super) rendered_otherwise: Option<usize>,
     pub(super) upload: Option<String>,
     pub(super) violations: Vec<Listed>,
     /// Of a scene whose light is followed along paths.
@@ -100,6 +102,7 @@ impl Report {
             decided_fraction: certificate.decided_fraction(),
             worst_depth: certificate.worst_depth,
             worst_normal: certificate.worst_normal,
+            rendered_otherwise: certificate.rendered_otherwise,
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
             paths: paths.map(PathReport::from),

@@ -12,6 +12,7 @@ use super::lit_flow::Flow;
 use super::progress::{Decision, Progress, Watch};
 use super::readback::ReadableBuffer;
 use super::recording::requested_view;
+use super::records::SceneSpace;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Tile;
 use crate::camera::View;
@@ -130,26 +131,13 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<PathRecording, GpuError> {
         settings.check_with(scene.colors())?;
-        let Integrator::Path(path) = &settings.integrator else {
+        if !matches!(settings.integrator, Integrator::Path(_)) {
             return Err(GpuError::NotPaths);
-        };
+        }
         let lit = Lit::new(settings, scene.summary(), view.camera);
         let scenes = LitScene { all: scene, occluders: scene };
         let tile = middle_of(&view.film);
-        let (camera, uploaded) = requested_view(scene.space(), view.camera);
-        let mut recording = PathRecording {
-            camera,
-            uploaded,
-            film: view.film,
-            origin: tile.origin,
-            size: tile.size,
-            settings: settings.clone(),
-            max_depth: path.max_depth,
-            look: uploaded_look(&lit.look),
-            tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
-            sky: uploaded_sky(settings),
-            samples: Vec::new(),
-        };
+        let mut recording = new_recording(scene.space(), view, settings, &lit);
         self.with_lit_passes(scenes.key(view, &lit), |passes| {
             let (seen, limit) = (scenes.seen(view, settings), iteration_limit(self.device()));
             let frames = scenes.frames(view, seen, tile, limit);
@@ -211,6 +199,33 @@ impl Headless {
     }
 }
 
+/// A recording without samples: what the device is given.
+fn new_recording(
+    space: &SceneSpace,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    lit: &Lit,
+) -> PathRecording {
+    let (camera, uploaded) = requested_view(space, view.camera);
+    let Tile { origin, size, .. } = middle_of(&view.film);
+    PathRecording {
+        camera,
+        uploaded,
+        film: view.film,
+        origin,
+        size,
+        settings: settings.clone(),
+        max_depth: match &settings.integrator {
+            Integrator::Path(path) => path.max_depth,
+            Integrator::Primary(_) | Integrator::Studio(_) => 0,
+        },
+        look: uploaded_look(&lit.look),
+        tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
+        sky: uploaded_sky(settings),
+        samples: Vec::new(),
+    }
+}
+
 /// The rectangle in the middle of a film.
 fn middle_of(film: &Film) -> Tile {
     let film = [film.width(), film.height()];
@@ -255,5 +270,46 @@ fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
             shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
         }),
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/support/random_light.rs"]
+#[allow(dead_code, reason = "tests of devices use all of it")]
+mod random_light;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::{AccelChoice, AccelPlan};
+    use crate::gpu::scene_summary::SceneSummary;
+    use crate::verify::Checker;
+
+    /// What the host makes of random scenes for a device, the checker takes for what was asked for.
+    #[test]
+    fn what_is_uploaded_is_what_was_asked_for() {
+        // Tables of energies take most of the time.
+        for seed in 1000..1016 {
+            let random = random_light::view(seed);
+            let view = View::new(random.camera.as_ref(), random.film);
+            random.settings.check(&random.scene).unwrap();
+            let checker = Checker::new(&random.scene).unwrap();
+            let spheres = random.scene.spheres();
+            let plan = AccelPlan::new(spheres, AccelChoice::List, 1 << 27);
+            let (min, max) = plan.build(spheres).bounds();
+            let space = SceneSpace { origin: random.scene.origin(), min, max };
+            let summary = SceneSummary::of(&random.scene);
+            let lit = Lit::new(&random.settings, &summary, view.camera);
+            let mut recording = new_recording(&space, &view, &random.settings, &lit);
+            let certificate = checker.certify_paths(&recording);
+            assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);
+            // That says something: with another roughness, which is at most 1, it does not.
+            if seed % 8 == 0 {
+                let material = recording.look.material_first as usize;
+                recording.tables[material][2] = 1.001_f32.to_bits();
+                let certificate = checker.certify_paths(&recording);
+                assert!(certificate.upload.is_some(), "seed {seed}: {}", random.name);
+            }
+        }
     }
 }

@@ -104,7 +104,8 @@ impl RenderPlan {
         Self::planned(request, accel, device, false)
     }
 
-    /// As [`RenderPlan::of_primary`], of all layers and with every ray and hit, and of checking them.
+    /// As [`RenderPlan::of_primary`], of all layers and with every ray and hit, of rendering the same once more without
+    /// them, and of checking both.
     pub(super) fn of_recording(
         request: &PictureRequest<'_>,
         accel: AccelPlan,
@@ -133,8 +134,9 @@ impl RenderPlan {
         let in_host = |bytes| device.in_host(bytes);
         // One brick's copy is waiting for the device at a time.
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
-        // Rays, hits, and verdicts, which are gathered from parts.
-        let judged = (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64;
+        // Rays, hits, and verdicts, which are gathered from parts; and the same view without a recording.
+        let judged =
+            (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
         let per_pixel = layers
             .bytes_per_pixel()
             .saturating_add(host_bytes_per_pixel)
@@ -358,7 +360,7 @@ mod tests {
         // A ray, and both read back.
         assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));
         assert_eq!(recording.host_peak, HostPeak::Checking);
-        assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2) << 20) + 40_000);
+        assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2 + 32) << 20) + 40_000);
         assert_eq!(recording.check(&Limits::default(), None), Ok(()));
     }
 

@@ -20,7 +20,8 @@ use crate::image::{Image, LayerSet, NO_ID};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
-    Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay,
+    UploadedView,
 };
 
 /// A camera, and the numbers that kernels get of it and of the scene's box.
@@ -61,6 +62,7 @@ fn new_recording(
         look,
         pixels: vec![untraced; image.color().len()],
         image,
+        rendered: Rendered::None,
     })
 }
 
@@ -93,7 +95,26 @@ impl Headless {
         })
     }
 
-    /// Renders a picture of primary rays and decides whether it is one that a conforming device may have made.
+    /// As [`Headless::record`], and renders the view once more as [`Headless::render_uploaded`] does, with kernels
+    /// that keep no rays, for [`Recording::rendered`].
+    ///
+    /// # Errors
+    /// As [`Headless::record`].
+    pub fn record_and_render(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        watch: &mut Watch<'_>,
+    ) -> Result<Recording, GpuError> {
+        let mut recording = self.record(scene, view, settings, watch)?;
+        let picture = self.render_uploaded(scene, view, settings, LayerSet::DATA, watch)?;
+        recording.compare(picture.image);
+        Ok(recording)
+    }
+
+    /// Renders a picture of primary rays and decides whether it is one that a conforming device may have made: as
+    /// [`Headless::render`] makes it, and as [`Headless::record`] does, stage by stage.
     ///
     /// # Errors
     /// If it cannot be rendered, as with [`Headless::record`], or if there is no memory to check it. That a picture
@@ -109,7 +130,7 @@ impl Headless {
         }
         let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
         let recording = self.with_uploaded(scene, plan, |buffers| {
-            self.record(buffers, view, settings, &mut go_on)
+            self.record_and_render(buffers, view, settings, &mut go_on)
         })?;
         Ok(Checker::new(scene)?.certify(&recording))
     }

@@ -46,6 +46,9 @@ pub struct Certificate {
     pub verdicts: Vec<Verdict>,
     /// The first of them, in the order of pixels.
     pub violations: Vec<Violation>,
+    /// In how many pixels the picture of [`Headless::render`](crate::gpu::Headless::render) has other values than the
+    /// recording's, which then are judged by themselves; `None` if there is no such picture.
+    pub rendered_otherwise: Option<usize>,
     /// What the device was given is not what was asked for: then nothing that it made of it counts.
     pub upload: Option<UploadError>,
     /// Of all hits, how far the distance is at most from the middle of what is legal, in parts of half the
@@ -86,6 +89,9 @@ impl fmt::Display for Certificate {
         }
         writeln!(f, "{:<12}{:>12.4}  of its bound", "worst depth", self.worst_depth)?;
         write!(f, "{:<12}{:>12.4}  of its bound", "worst normal", self.worst_normal)?;
+        if let Some(count) = self.rendered_otherwise {
+            write!(f, "\n{:<12}{count:>12}  pixels differ from the recorded ones", "rendered")?;
+        }
         if let Some(error) = &self.upload {
             write!(f, "\nupload: {error}")?;
         }

@@ -6,7 +6,7 @@ use super::certificate::{Certificate, KEPT, Verdict};
 use super::hit::LegalHits;
 use super::line::Line;
 use super::pixel::PixelCheck;
-use super::recording::Recording;
+use super::recording::{Recording, Rendered};
 use super::upload;
 use super::violation::Violation;
 use crate::parallel::{map_parts, ranges};
@@ -27,6 +27,7 @@ pub struct Checker<'a> {
 struct Part {
     verdicts: Vec<Verdict>,
     violations: Vec<Violation>,
+    rendered_otherwise: usize,
     worst_depth: f64,
     worst_normal: f64,
 }
@@ -63,6 +64,7 @@ impl<'a> Checker<'a> {
             size,
             verdicts: Vec::new(),
             violations: Vec::new(),
+            rendered_otherwise: None,
             upload: upload::check(self.scene, &self.candidates, recording).err(),
             worst_depth: 0.0,
             worst_normal: 0.0,
@@ -75,9 +77,14 @@ impl<'a> Checker<'a> {
             model: CameraModel::new(camera.kind, uploaded, film),
             recording,
         };
+        let is_compared = recording.rendered != Rendered::None;
+        certificate.rendered_otherwise = is_compared.then_some(0);
         let pixels = ranges(recording.pixels.len(), CHUNK);
         for part in map_parts(pixels, |range| judge(&check, range, size[0])) {
             certificate.verdicts.extend(part.verdicts);
+            if let Some(count) = &mut certificate.rendered_otherwise {
+                *count += part.rendered_otherwise;
+            }
             let room = KEPT.saturating_sub(certificate.violations.len());
             certificate.violations.extend(part.violations.into_iter().take(room));
             certificate.worst_depth = certificate.worst_depth.max(part.worst_depth);
@@ -93,7 +100,11 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> P
     for index in range {
         // A film's sides are u32.
         let pixel = [(index % width as usize) as u32, (index / width as usize) as u32];
-        let verdict = match check.judge(index, pixel, &mut legal) {
+        let judged = check.judge(index, pixel, &mut legal);
+        let rendered = check.judge_rendered(index, pixel, &mut legal);
+        part.rendered_otherwise += usize::from(rendered.is_some());
+        let judged = judged.and_then(|judged| rendered.unwrap_or(Ok(())).map(|()| judged));
+        let verdict = match judged {
             Ok(judged) => {
                 part.worst_depth = part.worst_depth.max(judged.depth);
                 part.worst_normal = part.worst_normal.max(judged.normal);

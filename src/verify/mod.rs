@@ -11,6 +11,10 @@
 //! add up: the camera's ray, the nearest hit, and what is made of it. The checker shares no code with the
 //! kernels' twins and knows nothing of the structure that found the spheres.
 //!
+//! The picture of [`Headless::render`](crate::gpu::Headless::render) comes from kernels that keep no rays. It is
+//! compared with the recording's, value by value; a pixel in which it is another is judged by itself, against every ray
+//! that a device may make of that pixel.
+//!
 //! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/fence.wgsl` keeps a compiler from
 //! looking through it, and the square root of zero is zero: both of which
 //! [`Headless::self_test`](crate::gpu::Headless::self_test) checks. And of spheres that are the same to the bit the
@@ -42,6 +46,7 @@ mod number;
 mod paths;
 mod pixel;
 mod recording;
+mod rendered;
 mod rounding;
 #[cfg(feature = "run-file")]
 pub mod run_file;
@@ -58,7 +63,9 @@ pub use paths::{
     PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation,
     RecordedSample, RecordedSurface, StageCounts, UploadedLook, UploadedSky,
 };
-pub use recording::{NO_HIT, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+pub use recording::{
+    NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+};
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
 pub(crate) use rounding::{DIVIDE_ULP, SQRT_ULP, gamma};

@@ -8,8 +8,9 @@ use super::line::Line;
 use super::recording::{NO_HIT, Recording, TracedPixel, TracedRay};
 use super::rounding::{Interval, unit_error};
 use super::shading::{LegalNormals, exactly, legal_color, legal_depth};
+use super::sphere::Slack;
 use super::violation::ViolationKind;
-use crate::image::NO_ID;
+use crate::image::{Image, NO_ID};
 use crate::math::wide;
 
 /// What pixels are judged by.
@@ -29,11 +30,24 @@ pub(super) struct Judged {
 }
 
 /// The layers of a pixel.
-struct Layers {
+#[derive(PartialEq)]
+pub(super) struct Layers {
     color: [f32; 3],
-    depth: f32,
-    normal: [f32; 3],
-    id: u32,
+    pub(super) depth: f32,
+    pub(super) normal: [f32; 3],
+    pub(super) id: u32,
+}
+
+impl Layers {
+    /// A picture that is judged has all layers.
+    pub(super) fn of(image: &Image, index: usize) -> Self {
+        Self {
+            color: image.color()[index],
+            depth: image.depth().map_or(f32::NAN, |layer| layer[index]),
+            normal: image.normal().map_or([f32::NAN; 3], |layer| layer[index]),
+            id: image.id().map_or(NO_ID, |layer| layer[index]),
+        }
+    }
 }
 
 impl PixelCheck<'_> {
@@ -45,7 +59,7 @@ impl PixelCheck<'_> {
         legal: &mut LegalHits,
     ) -> Result<Judged, ViolationKind> {
         let TracedPixel { ray, t, id } = self.recording.pixels[index];
-        let layers = self.layers(index);
+        let layers = Layers::of(&self.recording.image, index);
         let camera_ray = self.model.ray(pixel);
         let Some(ray) = ray else {
             let exact = camera_ray.entered(&self.model, camera_ray.line.direction);
@@ -91,21 +105,14 @@ impl PixelCheck<'_> {
         Ok(Judged { verdict, depth, normal })
     }
 
-    fn layers(&self, index: usize) -> Layers {
-        let image = &self.recording.image;
-        // A recording has all layers.
-        Layers {
-            color: image.color()[index],
-            depth: image.depth().map_or(f32::NAN, |layer| layer[index]),
-            normal: image.normal().map_or([f32::NAN; 3], |layer| layer[index]),
-            id: image.id().map_or(NO_ID, |layer| layer[index]),
-        }
-    }
-
     fn check_miss(&self, layers: &Layers, t: f32) -> Result<(), ViolationKind> {
         if t.to_bits() != NO_HIT.to_bits() {
             return Err(ViolationKind::MissDistance { found: t });
         }
+        self.check_layers_of_miss(layers)
+    }
+
+    pub(super) fn check_layers_of_miss(&self, layers: &Layers) -> Result<(), ViolationKind> {
         if layers.id != NO_ID {
             return Err(ViolationKind::Id { found: layers.id, traced: NO_ID });
         }
@@ -136,9 +143,21 @@ impl PixelCheck<'_> {
         if !depths.contains(layers.depth.into()) {
             return Err(ViolationKind::Depth { found: layers.depth, legal: depths });
         }
-        let scene = self.checker.scene;
+        self.check_shading(layers, line, entered.slack(), entered.direction)
+    }
+
+    /// Judges normal and colour, of a sphere that was hit. How far the normal is from the exact one, of how far it
+    /// may be.
+    pub(super) fn check_shading(
+        &self,
+        layers: &Layers,
+        line: &Line,
+        slack: Slack,
+        direction: [Interval; 3],
+    ) -> Result<f64, ViolationKind> {
+        let (scene, id) = (self.checker.scene, layers.id);
         let sphere = scene.spheres()[id as usize];
-        let normals = LegalNormals::new(line, sphere, entered.slack());
+        let normals = LegalNormals::new(line, sphere, slack);
         let normal = wide(layers.normal);
         let fraction = normals.fraction(normal);
         let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
@@ -149,7 +168,7 @@ impl PixelCheck<'_> {
         }
         let color = scene.color(id).to_array();
         let shading = self.recording.look.shading;
-        check_color(layers.color, legal_color(shading, color, normal, entered.direction))?;
+        check_color(layers.color, legal_color(shading, color, normal, direction))?;
         Ok(fraction)
     }
 }

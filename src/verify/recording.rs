@@ -21,6 +21,29 @@ pub struct Recording {
     pub pixels: Vec<TracedPixel>,
     /// All layers.
     pub image: Image,
+    /// The picture that the device makes of the same view when nothing is recorded.
+    pub rendered: Rendered,
+}
+
+/// A picture of the same view by the kernels that keep no rays, as [`Headless::render`](crate::gpu::Headless::render)
+/// makes it. The kernels are others, and so may round otherwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Rendered {
+    /// There is none.
+    #[default]
+    None,
+    /// It has the values of the recording's picture, in all layers.
+    Same,
+    /// It has others somewhere. All layers.
+    Other(Box<Image>),
+}
+
+impl Recording {
+    /// Takes a picture of the same view by kernels that keep no rays, and keeps it if it is another.
+    pub fn compare(&mut self, rendered: Image) {
+        let is_same = rendered == self.image;
+        self.rendered = if is_same { Rendered::Same } else { Rendered::Other(Box::new(rendered)) };
+    }
 }
 
 /// A camera, in f64 and in the world.

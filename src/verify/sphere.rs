@@ -126,6 +126,12 @@ impl SphereTest {
         self.c - self.c_error <= 0.0
     }
 
+    /// Without what is granted beyond the kernel's own lines: that an answer may know better than to take the
+    /// direction's length to be one.
+    pub(super) fn as_the_kernel(self) -> Self {
+        Self { bend: 0.0, ..self }
+    }
+
     /// Half the chord, exactly.
     pub(super) fn exact_half(&self) -> f64 {
         self.discriminant.max(0.0).sqrt()

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::candidates::Candidates;
-use super::recording::{Recording, RequestedCamera, UploadedView};
+use super::recording::{Recording, Rendered, RequestedCamera, UploadedView};
 use super::rounding::{Interval, U};
 use crate::bounds::Bounds;
 use crate::math::wide;
@@ -69,14 +69,17 @@ pub(super) fn check(
     recording: &Recording,
 ) -> Result<(), UploadError> {
     check_view(scene, candidates, &recording.camera, &recording.uploaded)?;
-    let Recording { film, pixels, image, .. } = recording;
+    let Recording { film, pixels, image, rendered, .. } = recording;
     let film = [film.width(), film.height()];
-    let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
-    if size != film || count != recording.film.pixel_count() {
-        return Err(UploadError::Size { pixels: count, image: size, film });
-    }
-    if image.depth().is_none() || image.normal().is_none() || image.id().is_none() {
-        return Err(UploadError::Layers);
+    let rendered = if let Rendered::Other(image) = rendered { Some(&**image) } else { None };
+    for image in [image].into_iter().chain(rendered) {
+        let (count, size) = (pixels.len() as u64, [image.width(), image.height()]);
+        if size != film || count != recording.film.pixel_count() {
+            return Err(UploadError::Size { pixels: count, image: size, film });
+        }
+        if image.depth().is_none() || image.normal().is_none() || image.id().is_none() {
+            return Err(UploadError::Layers);
+        }
     }
     Ok(())
 }

@@ -93,6 +93,9 @@ pub enum ViolationKind {
         /// What it may have.
         legal: Interval,
     },
+    /// Something in the picture of [`Headless::render`](crate::gpu::Headless::render), where that is not the
+    /// recording's; of a hit, distances are from the camera.
+    Rendered(Box<ViolationKind>),
 }
 
 impl ViolationKind {
@@ -107,6 +110,7 @@ impl ViolationKind {
             Self::Depth { .. } => "depth",
             Self::Normal { .. } => "normal",
             Self::Color { .. } => "color",
+            Self::Rendered(_) => "render",
         }
     }
 }
@@ -152,6 +156,7 @@ impl fmt::Display for ViolationKind {
             Self::Color { channel, found, legal } => {
                 write!(f, "{} is {found:?}; legal is {legal}", CHANNELS[*channel])
             }
+            Self::Rendered(kind) => write!(f, "{}: {kind}", kind.stage()),
         }
     }
 }

@@ -7,7 +7,9 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::film::YAxis;
 use pinhole::image::NO_ID;
 use pinhole::verify::run_file::{self, Provenance, RunFileError};
-use pinhole::verify::{Checker, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+use pinhole::verify::{
+    Checker, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,
+};
 use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading, Sphere, View, cpu};
 use sha2::{Digest, Sha256};
 
@@ -39,6 +41,7 @@ fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
         look: settings.primary().unwrap(),
         pixels: pixels.collect(),
         image,
+        rendered: Rendered::None,
     }
 }
 
@@ -76,7 +79,11 @@ fn small() -> Vec<u8> {
     let camera = PinholeCamera::new(pose, 2.0, [0.9, 0.6]).unwrap();
     let film = Film::new(3, 2).unwrap().with_y_axis(YAxis::Down);
     let scene = scene.unwrap();
-    written(&scene, &made(&scene, &camera, film))
+    let mut recording = made(&scene, &camera, film);
+    // With another background.
+    let (view, settings) = (View::new(&camera, film), shaded(Shading::Flat, LinearRgb::WHITE));
+    recording.compare(cpu::render(&scene, &view, &settings, LayerSet::DATA).unwrap());
+    written(&scene, &recording)
 }
 
 /// One pixel, and nothing in it.

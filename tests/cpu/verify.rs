@@ -12,10 +12,10 @@ use pinhole::film::YAxis;
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::verify::{
-    Certificate, Checker, NO_HIT, Recording, RequestedCamera, TracedPixel, UploadError,
+    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadError,
     UploadedView, Verdict, ViolationKind,
 };
-use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere};
 
 use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
@@ -58,6 +58,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
         look: PrimaryLook::default(),
         pixels: Vec::new(),
         image: Image::new(0, 0, LayerSet::DATA).unwrap(),
+        rendered: Rendered::None,
     }
 }
 
@@ -132,12 +133,22 @@ fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Fi
         (Habit::Random, 1),
         (Habit::Random, 2),
     ];
-    for (habit, seed) in habits {
+    let made = habits.map(|(habit, seed)| {
         let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(seed) };
-        let recording = device.record(scene, &given(scene, camera, film));
+        device.record(scene, &given(scene, camera, film))
+    });
+    let mut otherwise = 0;
+    for (number, (habit, _)) in habits.into_iter().enumerate() {
+        // Kernels that keep no rays may have another habit.
+        let mut recording = made[number].clone();
+        recording.compare(made[(number + 1) % made.len()].image.clone());
         let certificate = certify(scene, &recording);
         assert!(certificate.is_legal(), "{name}, {camera:?}, {habit:?}:\n{certificate}");
+        otherwise += certificate.rendered_otherwise.unwrap();
     }
+    // Which says something only if habits differ.
+    let is_seen = made[0].pixels.iter().any(|pixel| pixel.id != NO_ID);
+    assert_eq!(otherwise > 0, is_seen, "{name}, {camera:?}");
     habits.len() * film.pixel_count() as usize
 }
 
@@ -273,6 +284,82 @@ fn upload(spoil: impl Fn(&mut Recording)) -> Option<UploadError> {
     let (scene, mut recording) = legal_recording();
     spoil(&mut recording);
     certify(&scene, &recording).upload
+}
+
+/// What is found where a picture that was rendered beside the recording has another pixel, and in how many pixels that
+/// is another.
+fn rendered(of_hit: bool, spoil: impl Fn(&mut Layers)) -> (Vec<String>, Option<usize>) {
+    let (scene, mut recording) = legal_recording();
+    let Recording { image, pixels, .. } = &recording;
+    let mut layers = Layers {
+        color: image.color().to_vec(),
+        depth: image.depth().unwrap().to_vec(),
+        normal: image.normal().unwrap().to_vec(),
+        id: image.id().unwrap().to_vec(),
+        at: 0,
+    };
+    let which = |index: &usize| (pixels[*index].id != NO_ID) == of_hit;
+    let count = (0..pixels.len()).filter(which).count();
+    layers.at = (0..pixels.len()).filter(which).nth(count / 2).unwrap();
+    spoil(&mut layers);
+    let Layers { color, depth, normal, id, .. } = layers;
+    let size = [image.width(), image.height()];
+    recording.compare(Image::from_layers(size, color, depth, normal, id).unwrap());
+    let certificate = certify(&scene, &recording);
+    assert_eq!(certificate.violations.len(), certificate.count(Verdict::Violation));
+    let found = certificate.violations.iter().map(|violation| {
+        assert_eq!(violation.kind.stage(), "render");
+        violation.kind.to_string()
+    });
+    (found.collect(), certificate.rendered_otherwise)
+}
+
+/// Of a picture, and a pixel of it.
+struct Layers {
+    color: Vec<[f32; 3]>,
+    depth: Vec<f32>,
+    normal: Vec<[f32; 3]>,
+    id: Vec<u32>,
+    at: usize,
+}
+
+impl Layers {
+    fn miss(&mut self) {
+        self.depth[self.at] = f32::INFINITY;
+        self.normal[self.at] = [0.0; 3];
+        self.id[self.at] = NO_ID;
+        self.color[self.at] = RenderSettings::default().background.to_array();
+    }
+}
+
+#[test]
+fn a_rendered_pixel_that_is_another_is_judged_by_itself() {
+    assert_eq!(rendered(true, |_| ()), (vec![], Some(0)));
+    let next = |depth: f32| depth.next_up();
+    assert_eq!(rendered(true, |l| l.depth[l.at] = next(l.depth[l.at])), (vec![], Some(1)));
+    // By value: a zero has no sign.
+    assert_eq!(rendered(false, |l| l.normal[l.at][1] = -0.0), (vec![], Some(0)));
+    for (of_hit, words, spoil) in [
+        (true, "hit: sphere ", (|l| l.depth[l.at] *= 1.001) as fn(&mut Layers)),
+        (true, "hit: sphere ", |l| l.depth[l.at] = f32::NAN),
+        (true, "hit: sphere 40 at ", |l| l.id[l.at] = 40),
+        (true, "hit: a miss; legal is sphere ", Layers::miss),
+        (true, "normal: ", |l| l.normal[l.at][0] += 1e-3),
+        (true, "color: green is ", |l| l.color[l.at][1] += 1e-3),
+        (false, "hit: sphere 3 at ", |l| l.id[l.at] = 3),
+        (false, "depth: ", |l| l.depth[l.at] = 1e30),
+        (false, "color: ", |l| l.color[l.at][2] = 0.5),
+    ] {
+        let (found, count) = rendered(of_hit, spoil);
+        assert_eq!((found.len(), count), (1, Some(1)), "{words}");
+        assert!(found[0].starts_with(words), "{} is not {words}", found[0]);
+    }
+    // Of another size, and without a layer.
+    let other = |[width, height]: [u32; 2], layers| {
+        upload(|recording| recording.compare(Image::new(width, height, layers).unwrap()))
+    };
+    assert!(matches!(other([47, 61], LayerSet::DATA), Some(UploadError::Size { .. })));
+    assert_eq!(other([61, 47], LayerSet::COLOR), Some(UploadError::Layers));
 }
 
 #[test]

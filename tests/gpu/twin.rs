@@ -140,7 +140,7 @@ fn check(view: &View) -> Result<(), Failed> {
 }
 
 fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> bool {
-    let Recording { camera, uploaded, film, look, pixels, image } = recording;
+    let Recording { camera, uploaded, film, look, pixels, image, rendered: _ } = recording;
     let index = (pixel.y * film.width() + pixel.x) as usize;
     let (id, depth) = (image.id().unwrap()[index], image.depth().unwrap()[index]);
     let traced = &pixels[index];

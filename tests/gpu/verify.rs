@@ -34,6 +34,11 @@ pub(crate) fn trials() -> Vec<Trial> {
         let name = format!("verify::faults::{}", fault.name);
         trials.push(Trial::test(name, move || is_found(&fault)));
     }
+    for (name, view, replace) in RENDER_FAULTS {
+        trials.push(Trial::test(format!("verify::faults::render_{name}"), move || {
+            fault_of_render_is_found(*view, replace)
+        }));
+    }
     for (name, spoil) in INPUT_FAULTS {
         trials.push(Trial::test(format!("verify::faults::input_{name}"), move || {
             input_fault_is_found(*spoil)
@@ -46,6 +51,9 @@ fn legal(view: &View) -> Result<(), Failed> {
     let View { scene, camera, film, settings } = view;
     let certificate =
         headless()?.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
+    if certificate.rendered_otherwise.is_none() {
+        return Err("what is rendered was not compared".into());
+    }
     if certificate.is_legal() { Ok(()) } else { Err(certificate.to_string().into()) }
 }
 
@@ -103,6 +111,54 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
         return Err(format!("the fault was not found:\n{certificate}").into());
     }
     Ok(())
+}
+
+/// A name, where it shows, and what is done.
+type RenderFault = (&'static str, fn() -> View, &'static str);
+
+/// What the kernels that keep no rays do instead of `return make_entry(pixel_in_tile);`.
+const RENDER_FAULTS: &[RenderFault] = &[
+    ("shifted_by_a_pixel", views::balls, "return make_entry(pixel_in_tile + vec2u(1u, 0u));"),
+    (
+        "origin_off_by_a_hundred_thousandth",
+        views::inside,
+        "var entry = make_entry(pixel_in_tile); entry.ray.origin += vec3f(1e-5); return entry;",
+    ),
+    (
+        "distance_forgotten",
+        views::balls,
+        "var entry = make_entry(pixel_in_tile); entry.distance = 0.0; return entry;",
+    ),
+    (
+        "half_of_the_picture_empty",
+        views::balls,
+        "var entry = make_entry(pixel_in_tile); entry.is_inside = entry.is_inside && \
+         pixel_in_tile.x < 48u; return entry;",
+    ),
+];
+
+/// A fault that only a picture without a recording has.
+fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Failed> {
+    let edit = ShaderEdit {
+        file: "entry_made.wgsl".into(),
+        find: "return make_entry(pixel_in_tile);".into(),
+        replace: replace.into(),
+    };
+    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+    let (faulty, view) = (Headless::open(&options)?, view());
+    let alone = certify(&view, &record(&faulty, &view, LIST)?);
+    if !alone.is_legal() || alone.rendered_otherwise.is_some() {
+        return Err(format!("the recording has the fault as well:\n{alone}").into());
+    }
+    let View { scene, camera, film, settings } = &view;
+    let certificate =
+        faulty.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
+    println!("{certificate}");
+    found(&certificate)?;
+    match certificate.violations.iter().find(|violation| violation.kind.stage() != "render") {
+        Some(elsewhere) => Err(format!("elsewhere: {elsewhere}").into()),
+        None => Ok(()),
+    }
 }
 
 /// Spoils what a device is given, or what is said that it was given; a sphere that is seen may be spoilt.

@@ -62,11 +62,17 @@ fn proved(headless: &'static Headless) {
     assert!(found.contains("\npicture: 800x600, pinhole camera"), "{found}");
     assert!(found.ends_with("\nlegal: every pixel is as a conforming device may have made it\n"));
 
+    assert!(found.contains("\nrendered               0  pixels differ from the recorded ones\n"));
+
     let again = replayed(&folder, "verify --replay run --json b.json --report again", 0);
     assert_eq!(String::from_utf8(again.stdout).unwrap(), found);
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     assert!(read("a.json") == read("b.json"), "the documents differ");
     assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
+    let json: serde_json::Value = serde_json::from_slice(&read("a.json")).unwrap();
+    assert_eq!(json["rendered_otherwise"], 0);
+    let page = String::from_utf8(read("page/report.html")).unwrap();
+    assert!(page.contains("with kernels that keep no rays: every pixel has the same values."));
     // The same on every structure; the run says which.
     table(&folder, "verify scene.toml --save tree --accel tree");
     let (first, second) = (read("run"), read("tree"));

@@ -3,6 +3,9 @@
 pub(crate) mod compare;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod maps;
+#[cfg(feature = "gpu")]
+#[allow(dead_code, reason = "each test program uses some of them")]
+pub(crate) mod random_light;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod spheres;
 

@@ -10,16 +10,13 @@ use crate::verify::sphere::Slack;
 use crate::verify::violation::ViolationKind;
 
 /// As in `shaders/enter.wgsl`.
-const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
+pub(super) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl CameraModel {
     /// Where a ray of this origin and direction enters and leaves the scene's box, for all origins within the
     /// error.
     fn slabs(&self, ray: &CameraRay, direction: DVec3) -> BoxCrossing {
-        let mut crossing = BoxCrossing {
-            enter: Interval { low: 0.0, high: 0.0 },
-            leave: Interval { low: f64::INFINITY, high: f64::INFINITY },
-        };
+        let mut crossing = BoxCrossing::default();
         for axis in 0..3 {
             let size = direction[axis].abs().max(SMALLEST_COMPONENT);
             let inverse = if direction[axis] < 0.0 { -1.0 / size } else { 1.0 / size };
@@ -30,13 +27,7 @@ impl CameraModel {
                     + (DIVIDE + 3.0 * U) * (away * inverse).abs();
                 Interval::around(away * inverse, PAD * error + FLUSH / size + FLUSH)
             };
-            let (a, b) = (plane(self.scene_min[axis]), plane(self.scene_max[axis]));
-            let near = Interval { low: a.low.min(b.low), high: a.high.min(b.high) };
-            let far = Interval { low: a.low.max(b.low), high: a.high.max(b.high) };
-            crossing.enter.low = crossing.enter.low.max(near.low);
-            crossing.enter.high = crossing.enter.high.max(near.high);
-            crossing.leave.low = crossing.leave.low.min(far.low);
-            crossing.leave.high = crossing.leave.high.min(far.high);
+            crossing.cut(plane(self.scene_min[axis]), plane(self.scene_max[axis]));
         }
         crossing
     }
@@ -44,9 +35,31 @@ impl CameraModel {
 
 /// Where a ray enters and leaves the scene's box.
 #[derive(Clone, Copy, Debug)]
-struct BoxCrossing {
-    enter: Interval,
-    leave: Interval,
+pub(super) struct BoxCrossing {
+    pub(super) enter: Interval,
+    pub(super) leave: Interval,
+}
+
+impl Default for BoxCrossing {
+    /// Of a box without walls.
+    fn default() -> Self {
+        Self {
+            enter: Interval { low: 0.0, high: 0.0 },
+            leave: Interval { low: f64::INFINITY, high: f64::INFINITY },
+        }
+    }
+}
+
+impl BoxCrossing {
+    /// Adds two opposite walls.
+    pub(super) fn cut(&mut self, a: Interval, b: Interval) {
+        let near = Interval { low: a.low.min(b.low), high: a.high.min(b.high) };
+        let far = Interval { low: a.low.max(b.low), high: a.high.max(b.high) };
+        self.enter.low = self.enter.low.max(near.low);
+        self.enter.high = self.enter.high.max(near.high);
+        self.leave.low = self.leave.low.min(far.low);
+        self.leave.high = self.leave.high.min(far.high);
+    }
 }
 
 /// What a ray of a device must be, given the direction that it had.

@@ -1,6 +1,7 @@
 //! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/film.wgsl` and
 //! `camera_*.wgsl`.
 
+mod any;
 mod entered;
 mod linear;
 mod round;
@@ -15,6 +16,7 @@ use crate::camera::CameraKind;
 use crate::film::Film;
 use crate::math::wide;
 
+pub(super) use any::AnyRay;
 pub(super) use entered::EnteredRay;
 
 /// The lens's centre, through which all rays of a recording go.

@@ -1,5 +1,7 @@
 //! Whether lights, emitters, materials and energies on a device are those that were asked for.
 
+use std::cmp::Ordering;
+
 use glam::Vec4;
 
 use super::material::ENERGIES;
@@ -138,7 +140,8 @@ fn check_emitters(
         let size = f64::from(scene.spheres()[id as usize][3]);
         (0.2126 * r + 0.7152 * g + 0.0722 * b) * size * size
     };
-    let ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
+    let mut ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
+    keep_first_of_place(&mut ids, scene.spheres());
     let total: f64 = ids.iter().map(|id| weight(*id)).sum();
     let all = 2_f64.powi(32);
     // Each has one pick by right, and picks are whole numbers.
@@ -162,6 +165,25 @@ fn check_emitters(
         before = end;
     }
     Ok(ids.len() as u32)
+}
+
+/// Of spheres with equal numbers the first is met, and none of the others; only what is met is looked for. Keeps of
+/// some ascending ids those of spheres that no earlier one of the scene equals.
+fn keep_first_of_place(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
+    // Compared by value: a zero has no sign, and none is no number.
+    let order = |a: &[f32; 4], b: &[f32; 4]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+    let sphere = |id: u32| &spheres[id as usize];
+    ids.sort_by(|a, b| order(sphere(*a), sphere(*b)));
+    ids.dedup_by(|later, first| order(sphere(*later), sphere(*first)).is_eq());
+    let mut is_hidden = vec![false; ids.len()];
+    for (id, at) in (0_u32..).zip(spheres) {
+        if let Ok(place) = ids.binary_search_by(|other| order(sphere(*other), at)) {
+            is_hidden[place] |= id < ids[place];
+        }
+    }
+    let mut hidden = is_hidden.into_iter();
+    ids.retain(|_| !hidden.next().unwrap_or_default());
+    ids.sort_unstable();
 }
 
 /// The ground's material, which is the first, and those of the palette.

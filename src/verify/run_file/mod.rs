@@ -20,9 +20,11 @@
 //! | `hit_id` | u32 (H, W) | of the same |
 //! | `color`, `normal` | f32 (H, W, 3) | layers of the picture |
 //! | `depth`, `id` | f32, u32 (H, W) | layers of the picture |
+//! | `rendered_color`, `rendered_normal`, `rendered_depth`, `rendered_id` | as those | layers of the picture without a recording, if that is another |
 //!
 //! Its metadata are texts: `pinhole_run`, the format's version, [`VERSION`]; `sha256`, of the whole file, with the
 //! digest's own 64 digits taken as zeros; `scene_sha256`, of the array `spheres`; `camera`, `y_axis`, `shading`;
+//! `rendered`, which is `same` or `other` if the view was also rendered without a recording;
 //! and the fields of [`Provenance`], with `limit_` before names of limits. The same run is the same file, to the
 //! byte.
 //!

@@ -13,7 +13,7 @@ use crate::parallel::try_map;
 use crate::render::{PrimaryLook, Shading};
 use crate::scene::Scene;
 use crate::text::shortened;
-use crate::verify::{Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
+use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 
 /// Reads a run file.
 ///
@@ -56,14 +56,6 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
         shading: named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?,
         background: color("background", background)?,
     };
-    let image = Image::from_layers(
-        [film.width(), film.height()],
-        file.items("color", &shape)?,
-        file.numbers("depth", &shape)?,
-        file.items("normal", &shape)?,
-        file.numbers("id", &shape)?,
-    )
-    .ok_or_else(|| contradiction("the layers are of different sizes"))?;
     Ok(Recording {
         camera: camera(file)?,
         uploaded: UploadedView {
@@ -79,8 +71,40 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
         film,
         look,
         pixels: pixels(file, &shape)?,
-        image,
+        image: image(file, &film, ["color", "depth", "normal", "id"])?,
+        rendered: rendered(file, &film)?,
     })
+}
+
+/// The layers of these names.
+fn image(
+    file: &Container<'_>,
+    film: &Film,
+    [color, depth, normal, id]: [&str; 4],
+) -> Result<Image, RunFileError> {
+    let shape = [film.height() as usize, film.width() as usize];
+    Image::from_layers(
+        [film.width(), film.height()],
+        file.items(color, &shape)?,
+        file.numbers(depth, &shape)?,
+        file.items(normal, &shape)?,
+        file.numbers(id, &shape)?,
+    )
+    .ok_or_else(|| contradiction("the layers are of different sizes"))
+}
+
+/// Files of earlier programs have none.
+fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError> {
+    const LAYERS: [&str; 4] =
+        ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
+    if !file.has_text("rendered") {
+        return Ok(Rendered::None);
+    }
+    match file.text("rendered")? {
+        "same" => Ok(Rendered::Same),
+        "other" => image(file, film, LAYERS).map(Box::new).map(Rendered::Other),
+        other => Err(contradiction(format!("`rendered` is `{}`", shortened(other)))),
+    }
 }
 
 fn film(file: &Container<'_>) -> Result<Film, RunFileError> {

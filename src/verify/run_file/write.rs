@@ -7,9 +7,9 @@ use super::container;
 use super::numbers::{Array, Flag};
 use super::{LIMIT, Provenance, scene_sha256};
 use crate::scene::Scene;
-use crate::verify::{Recording, TracedPixel};
+use crate::verify::{Recording, Rendered, TracedPixel};
 
-/// Writes a run file: 69 bytes a pixel and 16 or 20 a sphere, in small pieces.
+/// Writes a run file: 69 bytes a pixel, 101 if another picture was rendered, and 16 or 20 a sphere, in small pieces.
 ///
 /// # Errors
 /// If they cannot be written, or if the recording is of another size than its film or lacks a layer.
@@ -19,7 +19,7 @@ pub fn write(
     provenance: &Provenance,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let Recording { camera, uploaded, film, look, pixels, image } = recording;
+    let Recording { camera, uploaded, film, look, pixels, image, rendered } = recording;
     let shape = [film.height() as usize, film.width() as usize];
     let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id()) else {
         return Err(io::Error::other("the recording lacks a layer"));
@@ -41,6 +41,15 @@ pub fn write(
         ("shading", look.shading.name()),
     ] {
         texts.insert(key.to_owned(), text.to_owned());
+    }
+    match rendered {
+        Rendered::None => {}
+        Rendered::Same => {
+            texts.insert("rendered".to_owned(), "same".to_owned());
+        }
+        Rendered::Other(_) => {
+            texts.insert("rendered".to_owned(), "other".to_owned());
+        }
     }
     texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
 
@@ -78,6 +87,21 @@ pub fn write(
         Array::new("normal", &shape, normal, |normal| *normal),
         Array::new("id", &shape, id, |id| [*id]),
     ];
+    if let Rendered::Other(image) = rendered {
+        let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id())
+        else {
+            return Err(io::Error::other("the rendered picture lacks a layer"));
+        };
+        if [image.height(), image.width()].map(|n| n as usize) != shape {
+            return Err(io::Error::other("the rendered picture is of another size than its film"));
+        }
+        arrays.extend([
+            Array::new("rendered_color", &shape, image.color(), |color| *color),
+            Array::new("rendered_depth", &shape, depth, |depth| [*depth]),
+            Array::new("rendered_normal", &shape, normal, |normal| *normal),
+            Array::new("rendered_id", &shape, id, |id| [*id]),
+        ]);
+    }
     if let Some(places) = scene.color_indices() {
         arrays.push(Array::new("color_index", &[scene.len()], places, |place| [*place]));
     }

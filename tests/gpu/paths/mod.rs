@@ -2,6 +2,7 @@
 
 mod faults;
 mod inputs;
+mod random;
 mod scenes;
 
 use std::path::Path;
@@ -42,6 +43,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(name, move || input_fault_is_found(*spoil)));
     }
     trials.push(Trial::test("paths::faults::film_of_one_pixel_more", part_of_a_large_film));
+    trials.extend(random::trials());
     trials.push(trial("paths::refuses_a_studio", refuses_a_studio));
     trials.push(trial("paths::stops_when_told", stops_when_told));
     trials

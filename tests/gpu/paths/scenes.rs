@@ -39,6 +39,8 @@ pub(crate) fn all() -> Vec<Named> {
         ("sun", sun),
         ("image", image),
         ("opacity", opacity),
+        ("translucent_glass", translucent_glass),
+        ("coincident_emitters", coincident_emitters),
         ("from_inside", from_inside),
         ("many", many),
         ("tiny", || scaled(1e-4, DVec3::ZERO)),
@@ -262,6 +264,34 @@ pub(crate) fn opacity() -> LitView {
         .map(|(i, sphere)| sphere.with_opacity(i as f32 / 8.0))
         .collect();
     view(&spheres, RenderSettings { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
+}
+
+/// Tinted glass that lets some paths pass as if there were nothing, and what is in it.
+pub(crate) fn translucent_glass() -> LitView {
+    let view = glass();
+    let spheres: Vec<_> = grid(|i| glass_of(1.5, 0.2 * (i % 2) as f32, Some(0.7)))
+        .into_iter()
+        .chain([ball([0.0, 0.0, 0.0], 0.3, rgb(0.9, 0.3, 0.2))])
+        .map(|sphere| sphere.with_opacity(0.6))
+        .collect();
+    LitView { scene: Scene::new(&spheres).unwrap(), ..view }
+}
+
+/// Emitters in the place of other spheres: of those that come before them they are never met, and never looked for.
+pub(crate) fn coincident_emitters() -> LitView {
+    let mut spheres = lamps();
+    let emissive = |strength| Material::Emissive { strength };
+    let twin = |i: usize| ball(spheres[i].center, spheres[i].radius, rgb(0.3, 0.9, 0.5));
+    let copies = [
+        // Of a matt sphere, and of an emitter.
+        twin(3).with_material(emissive(4.0)),
+        twin(4).with_material(emissive(7.0)),
+        // A matt one in the place of an emitter.
+        twin(0),
+    ];
+    spheres.splice(0..0, [twin(7).with_material(emissive(2.0)), twin(2).with_opacity(0.0)]);
+    spheres.extend(copies);
+    LitView { scene: Scene::new(&spheres).unwrap(), ..emitters() }
 }
 
 pub(crate) fn from_inside() -> LitView {
