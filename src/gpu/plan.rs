@@ -2,6 +2,7 @@
 
 use wgpu::{DeviceType, Limits};
 
+use super::appearance;
 use super::bands::{BandBuffers, tile_size};
 use super::error::GpuError;
 use super::records;
@@ -234,12 +235,17 @@ impl HostPeak {
 /// The structure's, and what shading reads.
 pub(super) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
-    // A sphere that is copied into several cells has its colour as often as its id.
-    let ids = buffers.iter().find(|buffer| buffer.name == "ids");
-    if let (Some(ids), Some(_)) = (ids.copied(), scene.color_indices()) {
-        buffers.push(PlannedBuffer { name: "colors", ..ids });
+    // A sphere that is copied into several cells has its words as often as its id.
+    let ids = buffers.iter().find(|buffer| buffer.name == "ids").copied();
+    let words = appearance::words_per_sphere(scene.checked_appearance()).count();
+    if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = ids.filter(|_| words > 0) {
+        buffers.push(PlannedBuffer {
+            name: "colors",
+            bytes: words * bytes,
+            bytes_per_binding: words * bytes_per_binding,
+        });
     }
-    let palette = scene.palette().len().max(1) * size_of::<records::Color>();
+    let palette = appearance::palette_length(scene.appearance()) * size_of::<records::Color>();
     buffers.push(PlannedBuffer::one("palette", palette as u64));
     buffers
 }

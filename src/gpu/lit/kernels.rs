@@ -116,7 +116,12 @@ fn hidden_light(structure: Structure) -> Vec<Part> {
 /// In a studio, turns hits into surfaces.
 pub(super) fn surface_kernel() -> Kernel {
     let mut parts = shading();
-    parts.extend([part!("vertex.wgsl"), part!("material.wgsl"), part!("surface.wgsl")]);
+    parts.extend([
+        part!("appearance.wgsl"),
+        part!("vertex.wgsl"),
+        part!("material.wgsl"),
+        part!("surface.wgsl"),
+    ]);
     Kernel { entry_point: "surface", parts }
 }
 
@@ -124,6 +129,7 @@ pub(super) fn surface_kernel() -> Kernel {
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
+        part!("appearance.wgsl"),
         part!("vertex.wgsl"),
         part!("material.wgsl"),
         part!("microfacet.wgsl"),
@@ -146,6 +152,7 @@ pub(super) fn scatter_kernel(surfaces: Surfaces, sources: Sources, sky: SkyKind)
         part!("sampling.wgsl"),
         part!("disk.wgsl"),
         part!("warp.wgsl"),
+        part!("appearance.wgsl"),
         part!("vertex.wgsl"),
         part!("material.wgsl"),
         part!("surface_point.wgsl"),

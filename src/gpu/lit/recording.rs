@@ -145,7 +145,7 @@ impl Headless {
         samples: Range<u32>,
         watch: &mut Watch<'_>,
     ) -> Result<PathRecording, GpuError> {
-        settings.check_with(scene.colors())?;
+        settings.check_with(scene.appearance())?;
         let Integrator::Path(path) = &settings.integrator else {
             return Err(GpuError::NotPaths);
         };
