@@ -8,6 +8,7 @@ use crate::parallel;
 use crate::sphere::{self, Sphere};
 
 /// Offsets are shorter than this times them by no more than rounding.
+#[cfg(feature = "run-file")]
 const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;
 
 pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
@@ -67,6 +68,7 @@ pub(super) fn frame_origin(bounds: Bounds) -> DVec3 {
 }
 
 /// Checks spheres in a frame: what rounding the offset adds is no reason to refuse a sphere at the very edge.
+#[cfg(feature = "run-file")]
 pub(super) fn check_in_frame(spheres: &[[f32; 4]]) -> Result<(), SceneError> {
     let in_frame = |sphere: &[f32; 4]| {
         let [x, y, z, radius] = sphere.map(f64::from);
@@ -76,6 +78,7 @@ pub(super) fn check_in_frame(spheres: &[[f32; 4]]) -> Result<(), SceneError> {
 }
 
 /// The box in the world of spheres in a frame.
+#[cfg(any(feature = "gpu", feature = "run-file"))]
 pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
     let of_sphere = |s: &[f32; 4]| {
         let [x, y, z, radius] = s.map(f64::from);

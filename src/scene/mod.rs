@@ -21,6 +21,7 @@ mod color_map;
 mod frame;
 mod surfaces;
 
+#[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
 pub use appearance::{Appearance, Colors};
 pub(crate) use checked::SceneAppearance;

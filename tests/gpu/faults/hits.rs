@@ -162,6 +162,22 @@ pub(super) const SHADE: &[Row] = &[
         "looks[min(place + 1u,",
     ),
     (
+        "bytes_of_a_color_out_of_step",
+        views::own_colors,
+        LIST,
+        "appearance.wgsl",
+        "vec4u(0u, 1u, 2u, 3u)",
+        "vec4u(1u, 2u, 3u, 0u)",
+    ),
+    (
+        "one_byte_decoded_as_the_next",
+        views::own_colors,
+        LIST,
+        "appearance.wgsl",
+        "palette[at.x].r",
+        "palette[select(at.x, 101u, at.x == 100u)].r",
+    ),
+    (
         "cosine_squared",
         views::balls,
         LIST,

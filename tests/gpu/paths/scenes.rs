@@ -8,7 +8,7 @@ use pinhole::glam::DVec3;
 use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::material::Material;
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::{Film, LinearRgb, Scene, Sphere, View};
+use pinhole::{Appearance, Film, Finish, LinearRgb, Points, Scene, Sphere, View};
 
 /// A scene, and how it is lit and seen.
 pub(crate) struct LitView {
@@ -39,6 +39,7 @@ pub(crate) fn all() -> Vec<Named> {
         ("sun", sun),
         ("image", image),
         ("opacity", opacity),
+        ("own_colors", own_colors),
         ("from_inside", from_inside),
         ("many", many),
         ("tiny", || scaled(1e-4, DVec3::ZERO)),
@@ -262,6 +263,24 @@ pub(crate) fn opacity() -> LitView {
         .map(|(i, sphere)| sphere.with_opacity(i as f32 / 8.0))
         .collect();
     view(&spheres, RenderSettings { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
+}
+
+/// Every sphere has a color and an alpha of its own, and a finish of some.
+pub(crate) fn own_colors() -> LitView {
+    let spheres = mixed();
+    let colors: Vec<[u8; 4]> = (0..spheres.len() as u8)
+        .map(|i| [60 + 20 * i, 200 - 15 * i, 30 + 9 * i, if i % 4 == 2 { 100 + i } else { 255 }])
+        .collect();
+    let tinted = glass_of(1.5, 0.0, Some(0.8));
+    let finishes = spheres.iter().map(|sphere| match sphere.finish.material {
+        Material::Dielectric { .. } => Finish { material: tinted, ..sphere.finish },
+        _ => sphere.finish,
+    });
+    let indices = (0..spheres.len() as u32).collect();
+    let appearance = Appearance::from(colors).with_finishes(finishes.collect(), indices);
+    let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
+    let scene = Scene::from_parts(Points::F64(points.collect()), appearance).unwrap();
+    LitView { scene, ..everything() }
 }
 
 pub(crate) fn from_inside() -> LitView {
