@@ -18,12 +18,15 @@ struct Material {
 }
 
 fn material_of(vertex: Vertex) -> Material {
-    // The ground is the first.
-    let place = select(vertex.material + 1u, 0u, vertex.sphere.w == 0.0);
-    let bits = tables[look.material_first + 2u * place];
+    let row = look.material_first + 2u * vertex.material;
+    let bits = tables[row];
     let numbers = bitcast<vec2f>(bits.yz);
-    let absorption = table(look.material_first + 2u * place + 1u).rgb;
-    return Material(bits.x, numbers.x, numbers.y, bits.w, absorption);
+    return Material(bits.x, numbers.x, numbers.y, bits.w, table(row + 1u).rgb);
+}
+
+// Without the alpha of the colour.
+fn opacity_of(material: u32) -> f32 {
+    return table(look.material_first + 2u * material + 1u).w;
 }
 
 // A table of an energy has so many numbers, and starts at the next multiple of four.

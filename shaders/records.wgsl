@@ -54,6 +54,13 @@ struct Brick {
     // How many places there are in the bricks before this one.
     first_place: u32,
     is_first: u32,
-    // The index of the last element of `color_indices`.
-    last_color: u32,
+    // The index of the last element of `looks`.
+    last_look: u32,
+    // Where the parts of a colour stand in `palette`: at a word of colour, moved right by so many bits times 0, 1, 2
+    // and 3, of which these bits count.
+    color_shift: u32,
+    color_mask: u32,
+    // Where words of material start in `looks`, and which of their bits count.
+    material_first: u32,
+    material_mask: u32,
 }

@@ -1,13 +1,6 @@
 // From hits to pixels. One dispatch per brick, each for the pixels whose nearest sphere it holds; the first
 // also for misses. Twin: src/cpu/shade.rs.
 
-@group(1) @binding(0) var<uniform> brick: Brick;
-@group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
-// Of each sphere, its place in the palette; one element if all have the first colour.
-@group(1) @binding(2) var<storage, read> color_indices: array<u32>;
-// Linear colours; the fourth component is unused.
-@group(1) @binding(3) var<storage, read> palette: array<vec4f>;
-
 @compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     zero_bits = frame.zero;
@@ -36,7 +29,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     }
     let entry = make_entry(invocation.xy);
     let normal = sphere_normal(entry.ray, intersect_sphere(entry.ray, spheres[place]));
-    let color = palette[color_indices[min(place, brick.last_color)]].rgb;
+    let color = paint_of(place).rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));
     // The distance that belongs to this `t`: another kernel's ray may enter the box a little elsewhere.
     write_layers(pixel, hit.distance + hit.t, normal, hit.id);

@@ -1,11 +1,5 @@
 // Where a ray meets a sphere or the ground, and what is there.
 
-@group(1) @binding(0) var<uniform> brick: Brick;
-@group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
-@group(1) @binding(2) var<storage, read> color_indices: array<u32>;
-// Linear colour, and opacity.
-@group(1) @binding(3) var<storage, read> palette: array<vec4f>;
-
 struct Vertex {
     position: vec3f,
     // Unit, on the side that is seen.
@@ -18,7 +12,7 @@ struct Vertex {
     sphere: vec4f,
     color: vec3f,
     opacity: f32,
-    // Its material's place in the palette.
+    // Its row in the table of materials; the ground has the first.
     material: u32,
 }
 
@@ -73,10 +67,11 @@ fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Ver
     let on_sphere = sphere.xyz + sphere.w * outward;
     let on_ray = entered.origin + hit.t * ray.direction;
     let position = fence3(select(on_sphere, on_ray, sphere.w > 64.0 * (hit.t + hit.distance)));
-    let material = color_indices[min(place, brick.last_color)];
     let normal = select(outward, -outward, is_back);
-    let paint = palette[material];
-    return Vertex(position, normal, is_back, hit.distance + hit.t, sphere, paint.rgb, paint.a, material);
+    let paint = paint_of(place);
+    let material = material_index(place) + 1u;
+    let opacity = paint.a * opacity_of(material);
+    return Vertex(position, normal, is_back, hit.distance + hit.t, sphere, paint.rgb, opacity, material);
 }
 
 fn ground_vertex(ray: Ray, behind: f32) -> Vertex {

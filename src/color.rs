@@ -39,7 +39,7 @@ impl LinearRgb {
     /// Decodes 8-bit sRGB.
     #[must_use]
     pub fn from_srgb8(bytes: [u8; 3]) -> Self {
-        Self(bytes.map(decode_srgb8))
+        Self(bytes.map(|byte| DECODED[usize::from(byte)]))
     }
 
     /// Red, green and blue.
@@ -128,9 +128,9 @@ fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-fn decode_srgb8(byte: u8) -> f32 {
-    decode_srgb(f64::from(byte) / 255.0) as f32
-}
+/// The linear values of all bytes of 8-bit sRGB.
+static DECODED: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| decode_srgb(byte as f64 / 255.0) as f32));
 
 /// The linear values half-way, in sRGB, between neighbouring bytes. Looking a value up in them is quicker
 /// than the inverse transfer function, and rounds to the nearest byte as well.

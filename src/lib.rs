@@ -92,9 +92,9 @@ pub use film::Film;
 pub use filter::PixelFilter;
 pub use image::{Image, LayerSet};
 pub use material::{Finish, Material};
-pub use points::Points;
+pub use points::{Points, Radii};
 pub use render::{Integrator, RenderSettings, Shading};
-pub use scene::Scene;
+pub use scene::{Appearance, ColorMap, Colors, Scene};
 pub use sphere::Sphere;
 pub use tone::ToneCurve;
 

@@ -6,12 +6,12 @@ use super::records::NO_HIT;
 use crate::camera::View;
 use crate::color::LinearRgb;
 use crate::image::{NO_ID, RowMut};
-use crate::scene::SceneColors;
+use crate::scene::SceneAppearance;
 
 /// What they follow from beside a tile's pixels.
 pub(super) struct Derived<'a> {
     pub(super) view: View<'a>,
-    pub(super) colors: &'a SceneColors,
+    pub(super) appearance: &'a SceneAppearance,
 }
 
 impl Derived<'_> {
@@ -57,7 +57,7 @@ impl Derived<'_> {
     }
 
     fn albedo(&self, id: u32) -> [f32; 3] {
-        let color = if id == NO_ID { None } else { self.colors.of(id) };
+        let color = if id == NO_ID { None } else { self.appearance.color(id) };
         color.map_or([0.0; 3], LinearRgb::to_array)
     }
 }

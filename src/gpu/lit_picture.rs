@@ -31,7 +31,7 @@ impl Headless {
         layers: LayerSet,
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
-        settings.check_with(scene.colors())?;
+        settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let wanted = settings.layers_for(layers);
         let mut image = self.data_layers(scene, view, wanted)?;

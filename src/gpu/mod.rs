@@ -8,6 +8,7 @@
 pub use wgpu;
 
 pub mod adapter;
+mod appearance;
 mod bands;
 #[cfg(test)]
 mod constant_tests;

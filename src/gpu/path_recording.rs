@@ -130,7 +130,7 @@ impl Headless {
         samples: Range<u32>,
         watch: &mut Watch<'_>,
     ) -> Result<PathRecording, GpuError> {
-        settings.check_with(scene.colors())?;
+        settings.check_with(scene.appearance())?;
         if !matches!(settings.integrator, Integrator::Path(_)) {
             return Err(GpuError::NotPaths);
         }

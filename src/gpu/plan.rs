@@ -2,6 +2,7 @@
 
 use wgpu::{DeviceType, Limits};
 
+use super::appearance;
 use super::bands::{BandBuffers, tile_size};
 use super::error::GpuError;
 use super::records;
@@ -236,12 +237,17 @@ impl HostPeak {
 /// The structure's, and what shading reads.
 pub(super) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
-    // A sphere that is copied into several cells has its colour as often as its id.
-    let ids = buffers.iter().find(|buffer| buffer.name == "ids");
-    if let (Some(ids), Some(_)) = (ids.copied(), scene.color_indices()) {
-        buffers.push(PlannedBuffer { name: "colors", ..ids });
+    // A sphere that is copied into several cells has its words as often as its id.
+    let ids = buffers.iter().find(|buffer| buffer.name == "ids").copied();
+    let words = appearance::words_per_sphere(scene.checked_appearance()).count();
+    if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = ids.filter(|_| words > 0) {
+        buffers.push(PlannedBuffer {
+            name: "colors",
+            bytes: words * bytes,
+            bytes_per_binding: words * bytes_per_binding,
+        });
     }
-    let palette = scene.palette().len().max(1) * size_of::<records::Color>();
+    let palette = appearance::palette_length(scene.appearance()) * size_of::<records::Color>();
     buffers.push(PlannedBuffer::one("palette", palette as u64));
     buffers
 }
@@ -278,6 +284,9 @@ mod tests {
     use crate::camera::PinholeCamera;
     use crate::color::LinearRgb;
     use crate::image::Layer;
+    use crate::material::Finish;
+    use crate::points::Points;
+    use crate::scene::{Appearance, Colors};
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
         planned(size, layers, device_type, false)
@@ -336,6 +345,31 @@ mod tests {
         assert_eq!(all.host_bytes, data.host_bytes + ((4 + 12 + 12 + 4 + 4) << 20));
         assert_eq!(all.tile_textures, data.tile_textures);
         assert_eq!(alpha.tile_textures, data.tile_textures);
+    }
+
+    /// Four bytes each, of ten million different ones, and as many for which of two finishes a sphere has.
+    #[test]
+    fn a_color_of_its_own_takes_four_bytes_a_sphere() {
+        let count = 10_000_000;
+        let spheres: Vec<[f32; 4]> = (0..count)
+            .map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4])
+            .collect();
+        let accel = AccelPlan::new(&spheres, AccelChoice::Auto, 1 << 27);
+        let colors = (0..count as u32).map(|i| (i | 0xff00_0000).to_le_bytes()).collect();
+        let mut appearance = Appearance::new(Colors::Rgba8(colors));
+        let ids = accel.buffers.iter().find(|buffer| buffer.name == "ids").unwrap().bytes;
+        assert_eq!(ids, 4 * count as u64);
+        let mut spheres = spheres;
+        for words in [1, 2] {
+            let scene = Scene::from_parts(Points::F32(spheres), appearance.clone()).unwrap();
+            let buffers = scene_buffers(&scene, &accel);
+            let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
+            assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
+            spheres = scene.spheres().to_vec();
+            let finishes = vec![Finish::default(), Finish { opacity: 0.5, ..Finish::default() }];
+            let indices = (0..count as u32).map(|i| i % 2).collect();
+            appearance = appearance.with_finishes(finishes, indices);
+        }
     }
 
     #[test]

@@ -63,7 +63,7 @@ impl Headless {
             scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers))?;
         let mut frame = Frame::new(renderer, device, &textures.targets())?;
         let traced = scoped(device, || ReadableTrace::new(device, &frame))?;
-        let derived = Derived { view: *view, colors: scene.colors() };
+        let derived = Derived { view: *view, appearance: scene.appearance() };
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, look);

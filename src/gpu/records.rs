@@ -53,7 +53,11 @@ pub(super) struct Brick {
     pub(super) place_count: u32,
     pub(super) first_place: u32,
     pub(super) is_first: u32,
-    pub(super) last_color: u32,
+    pub(super) last_look: u32,
+    pub(super) color_shift: u32,
+    pub(super) color_mask: u32,
+    pub(super) material_first: u32,
+    pub(super) material_mask: u32,
     pub(super) _pad: u32,
 }
 
@@ -84,7 +88,7 @@ impl SceneSpace {
 /// Centre in the scene's frame, and radius: one `vec4f`.
 pub(super) type Sphere = [f32; 4];
 
-/// Linear red, green and blue, and an unused component: one `vec4f`.
+/// Linear red, green and blue, and alpha: one `vec4f`.
 pub(super) type Color = [f32; 4];
 
 /// `NO_HIT` in `shaders/frame.wgsl`.
@@ -264,7 +268,11 @@ mod tests {
                 place_count,
                 first_place,
                 is_first,
-                last_color
+                last_look,
+                color_shift,
+                color_mask,
+                material_first,
+                material_mask
             }),
             layout!(SelfTest { zero, single, outer, inner }),
             layout!(Operands { a, b, p, q, factor, dividend, divisor, radicand, u, v }),

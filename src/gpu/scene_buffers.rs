@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
+use super::appearance::{self, Looks};
 use super::error::{GpuError, check_storage_size, scoped};
 use super::order::CenterBox;
 use super::pace::Pace;
@@ -15,10 +16,8 @@ use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
-use crate::color::LinearRgb;
-use crate::material::Finish;
 use crate::render::{PrimaryLook, RenderSettings};
-use crate::scene::{Scene, SceneColors};
+use crate::scene::{Scene, SceneAppearance};
 
 /// Tells scenes on devices apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,10 +102,9 @@ impl SceneBuffers {
         accel: &Accel,
         mut flush: impl FnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
-        let colors = &summary.colors;
-        let mut upload = Upload { renderer, device, queue, colors, first_place: 0, bytes: 0 };
-        let palette: Vec<records::Color> =
-            or_one(colors.palette().iter().zip(colors.finishes()).map(painted).collect());
+        let appearance = &summary.appearance;
+        let mut upload = Upload { renderer, device, queue, appearance, first_place: 0, bytes: 0 };
+        let palette = appearance::palette(appearance);
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
@@ -158,7 +156,7 @@ impl SceneBuffers {
     pub(super) fn primary_look(&self, settings: &RenderSettings) -> Result<PrimaryLook, GpuError> {
         let integrator = settings.integrator.name();
         let look = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
-        settings.check_with(&self.summary.colors)?;
+        settings.check_with(&self.summary.appearance)?;
         Ok(look)
     }
 
@@ -181,8 +179,8 @@ impl SceneBuffers {
         self.pace.lock().unwrap_or_else(PoisonError::into_inner).took(groups.count(), elapsed);
     }
 
-    pub(super) fn colors(&self) -> &SceneColors {
-        &self.summary.colors
+    pub(super) fn appearance(&self) -> &SceneAppearance {
+        &self.summary.appearance
     }
 
     pub(super) fn space(&self) -> &SceneSpace {
@@ -205,7 +203,7 @@ struct Upload<'a> {
     renderer: &'a Renderer,
     device: &'a Device,
     queue: &'a Queue,
-    colors: &'a SceneColors,
+    appearance: &'a SceneAppearance,
     first_place: u32,
     bytes: u64,
 }
@@ -226,16 +224,16 @@ impl Upload<'_> {
             .find(|(of, _)| *of == structure)
             .map(|(_, layout)| layout)
             .ok_or(GpuError::NoStructure { structure })?;
-        let colors: Vec<u32> = match self.colors.indices() {
-            Some(indices) => ids.iter().map(|id| indices[*id as usize]).collect(),
-            None => vec![0],
-        };
-        let colors = or_one(colors);
+        let looks = Looks::of(self.appearance, ids);
         let mut record = records::Brick {
             place_count: spheres.len() as u32,
             first_place: self.first_place,
             is_first: u32::from(self.first_place == 0),
-            last_color: colors.len() as u32 - 1,
+            last_look: looks.words.len() as u32 - 1,
+            color_shift: looks.color_shift,
+            color_mask: looks.color_mask,
+            material_first: looks.material_first,
+            material_mask: looks.material_mask,
             ..bytemuck::Zeroable::zeroed()
         };
         // A binding must not be empty.
@@ -258,7 +256,7 @@ impl Upload<'_> {
         self.first_place += record.place_count;
         for (what, bytes) in [
             ("the buffer of spheres", size_of_val(spheres)),
-            ("the buffer of colors", size_of_val(&colors[..])),
+            ("the buffer of colors", size_of_val(&looks.words[..])),
         ]
         .into_iter()
         .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
@@ -269,7 +267,7 @@ impl Upload<'_> {
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
             let spheres = self.storage("pinhole spheres", spheres);
             let ids = self.storage("pinhole ids", ids);
-            let colors = self.storage("pinhole colors", &colors);
+            let looks = self.storage("pinhole looks", &looks.words);
             let words: Vec<Buffer> =
                 words.iter().map(|words| self.storage("pinhole structure", words)).collect();
             let group = |label, layout, buffers: &[&Buffer]| {
@@ -292,7 +290,7 @@ impl Upload<'_> {
                 surface_group: group(
                     "pinhole surface",
                     &layouts.surface,
-                    &[&record, &spheres, &colors, palette],
+                    &[&record, &spheres, &looks, palette],
                 ),
             }
         })
@@ -349,19 +347,6 @@ fn tests_per_ray(accel: &Accel) -> usize {
         Structure::List => accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0),
         _ => 0,
     }
-}
-
-fn or_one<T: bytemuck::Zeroable>(mut values: Vec<T>) -> Vec<T> {
-    if values.is_empty() {
-        values.push(T::zeroed());
-    }
-    values
-}
-
-/// A colour, and its opacity.
-fn painted((color, finish): (&LinearRgb, &Finish)) -> records::Color {
-    let [r, g, b] = color.to_array();
-    [r, g, b, finish.opacity]
 }
 
 /// Binds a part of a buffer, in bytes.

@@ -7,14 +7,14 @@ use glam::DVec3;
 use crate::color::LinearRgb;
 use crate::lighting::emitters::Emitters;
 use crate::material::Finish;
-use crate::scene::{Scene, SceneColors};
+use crate::scene::{Scene, SceneAppearance};
 
 /// Palette, finishes and emissive spheres of a scene.
 #[derive(Debug)]
 pub(super) struct SceneSummary {
     /// Of the scene's frame, in the world.
     pub(super) origin: DVec3,
-    pub(super) colors: Arc<SceneColors>,
+    pub(super) appearance: Arc<SceneAppearance>,
     pub(super) emitters: Emitters,
     /// The spheres of `emitters`, in the same order.
     pub(super) emissive: Vec<EmissiveSphere>,
@@ -39,7 +39,7 @@ impl SceneSummary {
         };
         Self {
             origin: scene.origin(),
-            colors: Arc::clone(scene.colors()),
+            appearance: Arc::clone(scene.checked_appearance()),
             emissive: emitters.ids().iter().map(emissive).collect(),
             emitters,
         }
@@ -49,7 +49,7 @@ impl SceneSummary {
     pub(super) fn of_occluders(scene: &Scene) -> Self {
         Self {
             origin: scene.origin(),
-            colors: Arc::new(SceneColors::one(LinearRgb::WHITE)),
+            appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
             emitters: Emitters::default(),
             emissive: Vec::new(),
         }
@@ -57,6 +57,6 @@ impl SceneSummary {
 
     /// Whether every sphere is opaque.
     pub(super) fn is_opaque(&self) -> bool {
-        self.colors.finishes().iter().all(|finish| finish.opacity >= 1.0)
+        self.appearance.is_opaque()
     }
 }

@@ -138,6 +138,7 @@ pub(super) fn structure_parts(structure: Structure) -> Vec<Part> {
 pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: bool) -> Kernel {
     let mut parts = common_parts(camera);
     parts.extend([
+        part!("appearance.wgsl"),
         part!("shade.wgsl"),
         part!("shading.wgsl"),
         match color {

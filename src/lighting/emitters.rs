@@ -21,20 +21,15 @@ impl Emitters {
     /// times the square of their radius. A sphere with the centre and radius of one before it is never met, and none.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let brightness: Vec<f64> = scene
-            .palette()
-            .iter()
-            .zip(scene.finishes())
-            .map(|(color, finish)| brightness(color.to_array().map(f64::from), finish))
-            .collect();
-        if brightness.iter().all(|b| *b == 0.0) {
+        let shines = |finish: &Finish| matches!(finish.material, Material::Emissive { strength } if strength > 0.0);
+        if !scene.appearance().finishes().iter().any(shines) {
             return Self::default();
         }
-        let place = |id: usize| scene.color_indices().map_or(0, |places| places[id] as usize);
-        let mut weights: Vec<(u32, f64)> = (0..scene.len())
+        let mut weights: Vec<(u32, f64)> = (0..scene.len() as u32)
             .map(|id| {
-                let radius = f64::from(scene.spheres()[id][3]);
-                (id as u32, brightness[place(id)] * radius * radius)
+                let radius = f64::from(scene.spheres()[id as usize][3]);
+                let color = scene.color(id).to_array().map(f64::from);
+                (id, brightness(color, &scene.finish(id)) * radius * radius)
             })
             .filter(|(_, weight)| *weight > 0.0)
             .collect();

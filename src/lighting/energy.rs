@@ -71,7 +71,7 @@ pub struct EnergyTables {
 }
 
 impl EnergyTables {
-    /// The tables of materials, by their places in [`Scene::finishes`](crate::Scene::finishes).
+    /// The tables of materials, in the order of a list of finishes.
     #[must_use]
     pub fn of(finishes: &[Finish]) -> Self {
         let mut places = std::collections::HashMap::new();

@@ -8,7 +8,7 @@ use crate::lighting::{LightKind, Sky, SkyLight};
 use crate::material::Material;
 use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::range::RangeError;
-use crate::scene::{Scene, SceneColors};
+use crate::scene::{Scene, SceneAppearance};
 
 /// What is wrong with settings, or with a scene's materials.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -87,11 +87,11 @@ impl RenderSettings {
     /// # Errors
     /// The first thing that is wrong.
     pub fn check(&self, scene: &Scene) -> Result<(), SettingsError> {
-        self.check_with(scene.colors())
+        self.check_with(scene.checked_appearance())
     }
 
     /// As [`RenderSettings::check`], with what is known of the scene's materials.
-    pub(crate) fn check_with(&self, colors: &SceneColors) -> Result<(), SettingsError> {
+    pub(crate) fn check_with(&self, appearance: &SceneAppearance) -> Result<(), SettingsError> {
         self.check_is_used()?;
         if self.integrator.is_primary() {
             return Ok(());
@@ -123,7 +123,7 @@ impl RenderSettings {
             }
             check_albedo(ground.color, || "the ground".to_owned())?;
         }
-        check_materials(colors)
+        check_materials(appearance)
     }
 
     /// Refuses what the integrator would ignore.
@@ -275,23 +275,19 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
     Ok(())
 }
 
-fn check_materials(colors: &SceneColors) -> Result<(), SettingsError> {
-    for (place, (color, finish)) in colors.palette().iter().zip(colors.finishes()).enumerate() {
-        finish.check()?;
-        let what = || {
-            let id = colors
-                .indices()
-                .map_or(Some(0), |places| places.iter().position(|found| *found as usize == place));
-            id.map_or_else(|| "a material".to_owned(), |id| format!("sphere {id}"))
-        };
-        match finish.material {
-            Material::Emissive { strength } => {
-                check_brightness(color.to_array(), strength, what)?;
-            }
-            _ => check_albedo(*color, what)?,
-        }
+fn check_materials(appearance: &SceneAppearance) -> Result<(), SettingsError> {
+    appearance.finishes().iter().try_for_each(|finish| finish.check().map(drop))?;
+    // Then nothing is too bright either, because strengths have a bound.
+    if !appearance.may_exceed_one() {
+        return Ok(());
     }
-    Ok(())
+    (0..appearance.sphere_count() as u32).try_for_each(|id| {
+        let (color, what) = (appearance.color_of(id), || format!("sphere {id}"));
+        match appearance.finish_of(id).material {
+            Material::Emissive { strength } => check_brightness(color.to_array(), strength, what),
+            _ => check_albedo(color, what),
+        }
+    })
 }
 
 fn check_albedo(color: LinearRgb, what: impl Fn() -> String) -> Result<(), SettingsError> {

@@ -42,8 +42,9 @@ impl RenderSettings {
     /// What somebody who renders a scene with these settings should know although it is no error.
     #[must_use]
     pub fn notes(&self, scene: &Scene) -> Vec<SettingsNote> {
-        let any = |is_special: fn(&Finish) -> bool| scene.finishes().iter().any(is_special);
-        let is_translucent = || any(|finish| finish.opacity < 1.0);
+        let any =
+            |is_special: fn(&Finish) -> bool| scene.appearance().finishes().iter().any(is_special);
+        let is_translucent = || !scene.checked_appearance().is_opaque();
         let needs_paths = || {
             any(|finish| {
                 matches!(finish.material, Material::Conductor { .. } | Material::Dielectric { .. })
@@ -79,10 +80,14 @@ impl RenderSettings {
                 environment.has_light() && *strength > 0.0
             }
         };
-        let shines = |(color, finish): (&LinearRgb, &Finish)| match finish.material {
-            Material::Emissive { strength } => strength > 0.0 && !is_black(color),
+        let shines = |finish: &Finish| match finish.material {
+            Material::Emissive { strength } => strength > 0.0,
             _ => false,
         };
-        !is_lit && !from_around && !scene.palette().iter().zip(scene.finishes()).any(shines)
+        let is_lamp = |id: u32| shines(&scene.finish(id)) && !is_black(&scene.color(id));
+        let has_lamp = || {
+            scene.appearance().finishes().iter().any(shines) && (0..scene.len() as u32).any(is_lamp)
+        };
+        !is_lit && !from_around && !has_lamp()
     }
 }

@@ -63,9 +63,9 @@ fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
         filter_table: filter.to_vec(),
         ..UploadedLook::default()
     };
-    // The ground's material, and those of the palette.
-    let material = [[0, 0, (0.3_f32 * 0.3).to_bits(), 0], [0; 4]];
-    let tables = (0..=scene.palette().len()).flat_map(|_| material).collect();
+    // The ground's material, and those of the spheres, which are matt and opaque.
+    let material = [[0, 0, (0.3_f32 * 0.3).to_bits(), 0], [0, 0, 0, 1_f32.to_bits()]];
+    let tables = (0..=scene.appearance().finishes().len()).flat_map(|_| material).collect();
     PathRecording {
         camera: made.camera,
         uploaded: made.uploaded,

@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
 

@@ -14,7 +14,7 @@ use pinhole::{Film, LayerSet, LinearRgb, Scene, Shading, Sphere, View, cpu};
 use sha2::{Digest, Sha256};
 
 /// A recording by hand: the numbers are of no device, and every kind of number is there.
-fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
+pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
     let grey = LinearRgb::new([0.25, 0.5, 1.5]).unwrap();
     let settings = shaded(Shading::Flat, grey);
     let image = cpu::render(scene, &View::new(camera, film), &settings, LayerSet::DATA).unwrap();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pinhole::scene::SceneError;
 use pinhole::sphere::SphereError;
-use pinhole::{LinearRgb, Scene, Sphere, glam};
+use pinhole::{Colors, LinearRgb, Scene, Sphere, glam};
 
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {
     Sphere::new(center, radius, LinearRgb::WHITE)
@@ -101,8 +101,8 @@ fn arrays_make_the_scene_that_spheres_make() {
             assert_eq!(scene.origin(), expected.origin());
             assert_eq!(scene.bounds(), expected.bounds());
             assert_eq!(scene.spheres(), expected.spheres());
-            assert_eq!(scene.palette(), expected.palette());
-            assert_eq!((scene.color_indices(), expected.color_indices()), (None, None));
+            assert_eq!(scene.appearance(), expected.appearance());
+            assert_eq!(scene.appearance().colors(), &Colors::One(LinearRgb::WHITE));
             assert_eq!(scene.color(17), LinearRgb::WHITE);
         };
         let spheres = wide.iter().map(|&[x, y, z, r]| sphere([x, y, z], r)).collect();

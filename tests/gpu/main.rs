@@ -8,6 +8,7 @@
 mod support;
 
 mod agreement;
+mod appearance;
 mod compute;
 mod device;
 mod embedding;
@@ -63,6 +64,7 @@ fn main() {
     }
     let groups = [
         agreement::trials(),
+        appearance::trials(),
         lens::trials(),
         light::trials(),
         light_program::trials(),

@@ -3,7 +3,7 @@
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::{Film, LinearRgb, Scene, Shading, Sphere};
+use pinhole::{Appearance, Film, LinearRgb, Points, Scene, Shading, Sphere};
 
 use crate::support::spheres;
 use crate::support::{View, shaded};
@@ -45,6 +45,15 @@ fn random(count: usize, seed: u64) -> Vec<Sphere> {
 /// From outside, in several colours, and sky around them.
 pub(crate) fn balls() -> View {
     view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
+}
+
+/// Every sphere has a color of its own.
+pub(crate) fn own_colors() -> View {
+    let view = balls();
+    let colors = (0..view.scene.len()).map(|i| [i as u8, (i / 2) as u8, (i / 3) as u8, 255]);
+    let appearance = Appearance::from(colors.collect::<Vec<_>>());
+    let spheres = Points::F32(view.scene.spheres().to_vec());
+    View { scene: Scene::from_parts(spheres, appearance).unwrap(), ..view }
 }
 
 /// With pixels so small that slivers show.

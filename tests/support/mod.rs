@@ -1,5 +1,7 @@
 //! Shared by the CPU and the GPU tests.
 
+#[allow(dead_code, reason = "each test program uses some of it")]
+pub(crate) mod appearances;
 pub(crate) mod compare;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod maps;

@@ -91,7 +91,7 @@ impl<'a> Stage<'a> {
             emitters,
             sky_image,
             sources,
-            energies: EnergyTables::of(scene.finishes()),
+            energies: EnergyTables::of(scene.appearance().finishes()),
         }
     }
 
@@ -131,7 +131,7 @@ impl<'a> Stage<'a> {
 
     /// A sphere's table of energies, from `skip` entries after its first on.
     pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
-        let place = self.scene.color_indices().map_or(0, |places| places[id as usize] as usize);
+        let place = self.scene.checked_appearance().finish_index(id) as usize;
         let start = self.energies.starts()[place].map_or(0, |start| start as usize);
         self.energies.entries().get(start + skip..).unwrap_or_default()
     }

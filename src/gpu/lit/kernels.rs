@@ -148,7 +148,12 @@ fn hidden_light(structure: Structure) -> Vec<Part> {
 /// In a studio, turns hits into surfaces.
 pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
     let mut parts = shading(schedule);
-    parts.extend([part!("vertex.wgsl"), part!("material.wgsl"), part!("surface.wgsl")]);
+    parts.extend([
+        part!("appearance.wgsl"),
+        part!("vertex.wgsl"),
+        part!("material.wgsl"),
+        part!("surface.wgsl"),
+    ]);
     Kernel { entry_point: "surface", parts }
 }
 
@@ -156,6 +161,7 @@ pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
+        part!("appearance.wgsl"),
         part!("vertex.wgsl"),
         part!("material.wgsl"),
         part!("microfacet.wgsl"),
@@ -183,6 +189,7 @@ pub(super) fn scatter_kernel(
         part!("sampling.wgsl"),
         part!("disk.wgsl"),
         part!("warp.wgsl"),
+        part!("appearance.wgsl"),
         part!("vertex.wgsl"),
         part!("material.wgsl"),
         part!("surface_point.wgsl"),

@@ -47,7 +47,7 @@ impl Lit {
         let mut tables = Vec::new();
         let lights: Vec<LightKind> =
             lighting.lights.iter().filter_map(|light| light.in_world(camera)).collect();
-        let (emitters, finishes) = (&scene.emitters, scene.colors.finishes());
+        let emitters = &scene.emitters;
         let sources = SourceList::of(lighting, &lights, emitters);
         for (index, light) in lights.iter().enumerate() {
             let source = sources.lamps.get(index).copied().unwrap_or(0);
@@ -58,13 +58,14 @@ impl Lit {
             tables.extend(emitter_records(scene));
         }
         let material_first = tables.len() as u32;
-        let energies = EnergyTables::of(finishes);
-        let energy_first = material_first + 2 * (1 + finishes.len()) as u32;
+        let surfaces = scene.appearance.surfaces();
+        let finishes: Vec<Finish> = surfaces.iter().map(|surface| surface.finish).collect();
+        let energies = EnergyTables::of(&finishes);
+        let energy_first = material_first + 2 * (1 + surfaces.len()) as u32;
         tables.extend(material_record(LinearRgb::WHITE, &Finish::default(), 0));
-        let painted = scene.colors.palette().iter().zip(finishes).zip(energies.starts());
-        for ((color, finish), start) in painted {
+        for (surface, start) in surfaces.iter().zip(energies.starts()) {
             let energy = energy_first + start.unwrap_or(0) / 4;
-            tables.extend(material_record(*color, finish, energy));
+            tables.extend(material_record(surface.color, &surface.finish, energy));
         }
         tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
         let mut look = look_of(lighting, scene);
@@ -79,7 +80,7 @@ impl Lit {
             look,
             tables,
             most_surfaces: match &lighting.integrator {
-                Integrator::Studio(studio) if !scene.is_opaque() => studio.max_surfaces,
+                Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
                 Integrator::Path(path) => path.max_depth,
             },
@@ -152,7 +153,11 @@ fn mode_of(lighting: &RenderSettings, scene: &SceneSummary, sources: &SourceList
         Material::Conductor { .. } | Material::Dielectric { .. } => false,
     };
     Mode::Path(
-        if scene.colors.finishes().iter().all(is_matt) { Surfaces::Matt } else { Surfaces::Any },
+        if scene.appearance.finishes().iter().all(is_matt) {
+            Surfaces::Matt
+        } else {
+            Surfaces::Any
+        },
         if sources.count() == 0 { Sources::None } else { Sources::Any },
         match lighting.sky.light {
             SkyLight::Image { .. } => SkyKind::Image,
@@ -272,7 +277,7 @@ fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
 fn material_record(color: LinearRgb, finish: &Finish, energies: u32) -> [[f32; 4]; 2] {
     let record = |kind: u32, parameter: f32, roughness: f32, absorption: [f32; 3]| {
         let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
-        [[kind, parameter, roughness * roughness, energies], four(absorption, 0.0)]
+        [[kind, parameter, roughness * roughness, energies], four(absorption, finish.opacity)]
     };
     match finish.material {
         Material::Lambert { specular, roughness } => record(0, specular, roughness, [0.0; 3]),

@@ -50,7 +50,7 @@ impl Checker<'_> {
             checker: self,
             recording,
             model: CameraModel::new(recording.camera.kind, &recording.uploaded, &recording.film),
-            is_matt: self.scene.finishes().iter().all(is_matt),
+            is_matt: self.scene.appearance().finishes().iter().all(is_matt),
         };
         for sample in &recording.samples {
             let pixels = ranges(sample.start.len(), CHUNK);

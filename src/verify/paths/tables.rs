@@ -186,23 +186,24 @@ fn keep_first_of_place(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
     ids.sort_unstable();
 }
 
-/// The ground's material, which is the first, and those of the palette.
+/// The ground's material, which is the first, and those of the spheres.
 fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadError> {
-    let energies = EnergyTables::of(scene.finishes());
+    let surfaces = scene.checked_appearance().surfaces();
+    let finishes: Vec<Finish> = surfaces.iter().map(|surface| surface.finish).collect();
+    let energies = EnergyTables::of(&finishes);
     let ground = Finish::default();
     let finishes = std::iter::once((&ground, [1.0; 3], None)).chain(
-        scene
-            .finishes()
+        surfaces
             .iter()
-            .zip(scene.palette())
             .zip(energies.starts())
-            .map(|((finish, color), start)| (finish, color.to_array(), *start)),
+            .map(|(surface, start)| (&surface.finish, surface.color.to_array(), *start)),
     );
     for (index, (finish, color, start)) in finishes.enumerate() {
         let at = tables.look.material_first.saturating_add(2 * index as u32);
         let [kind, _, _, first] = tables.words(at);
         let [_, parameter, alpha, _] = tables.numbers(at);
-        let absorption = tables.vector(at.saturating_add(1));
+        let [x, y, z, opacity] = tables.numbers(at.saturating_add(1));
+        let absorption = [x, y, z];
         let (expected_kind, expected, roughness, absorbed) = match finish.material {
             Material::Lambert { specular, roughness } => (0, specular, roughness, [0.0; 3]),
             Material::Conductor { roughness } => (1, 1.0, roughness, [0.0; 3]),
@@ -219,6 +220,7 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadE
             && is_near(parameter, expected.into())
             && is_near(alpha, expected_alpha)
             && are_near(absorption, absorbed)
+            && is_near(opacity, finish.opacity.into())
             && start.is_none_or(|start| has_energies(tables, first, &energies, start, finish));
         if !is_right {
             return Err(PathUploadError::Table { what: "material", index });

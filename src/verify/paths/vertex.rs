@@ -102,9 +102,17 @@ impl Kernel<'_> {
         self.choices.decide((-behind).is_less(t)).then_some(t)
     }
 
-    fn paint(&self, color: [f32; 3], place: u32, opacity: f32) -> Paint {
+    /// `opacities` are those of the material and of the colour, which the kernel multiplies.
+    fn paint(&mut self, color: [f32; 3], place: u32, opacities: [f32; 2]) -> Paint {
         let [_, pass] = self.pair(3).map(crate::sampling::unit);
-        Paint { color, place, is_passed: pass >= f64::from(opacity) }
+        let [material, alpha] = opacities.map(f64::from);
+        // Without an error of its own: both have 24 bits.
+        let opacity = material * alpha;
+        let is_exact = f64::from(opacity as f32).to_bits() == opacity.to_bits();
+        let error = if is_exact { 0.0 } else { U * opacity + FLUSH };
+        let is_open = (pass - opacity).abs() <= error && !is_exact;
+        let is_passed = self.choices.decide((!is_open).then_some(pass >= opacity));
+        Paint { color, place, is_passed }
     }
 
     /// The point, which is compared, and then known exactly.
@@ -121,7 +129,7 @@ impl Kernel<'_> {
         distance: Number,
     ) -> Result<Vertex, Mismatch> {
         let look = self.look();
-        let paint = self.paint(look.ground_color, 0, 1.0);
+        let paint = self.paint(look.ground_color, 0, [1.0; 2]);
         let normal = Vector::had(look.ground_normal);
         let on_ray = origin + direction * distance;
         let above = (on_ray - Vector::had(look.ground_point)).dot(normal);
@@ -140,10 +148,13 @@ impl Kernel<'_> {
             let words = format!("there is no sphere {}", hit.id);
             return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
         };
-        let palette = self.scene.color_indices().map_or(0, |indices| indices[hit.id as usize]);
-        let finish = self.scene.finishes()[palette as usize];
-        let color = self.scene.palette()[palette as usize].to_array();
-        let paint = self.paint(color, palette + 1, finish.opacity);
+        let (appearance, place) = (
+            self.scene.checked_appearance(),
+            self.scene.checked_appearance().surface_index(hit.id) + 1,
+        );
+        let finish = appearance.finishes()[appearance.finish_index(hit.id) as usize];
+        let color = self.scene.color(hit.id).to_array();
+        let paint = self.paint(color, place, [finish.opacity, appearance.alpha(hit.id)]);
 
         let entered =
             Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);

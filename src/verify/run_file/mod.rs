@@ -8,8 +8,9 @@
 //! | `camera` | f64 (5, 3) | origin, right, up, forward and numbers of [`CameraVectors`](crate::camera::CameraVectors) |
 //! | `scene_origin` | f64 (3,) | of the scene's frame in the world |
 //! | `spheres` | f32 (n, 4) | centre in the frame, and radius |
-//! | `palette` | f32 (m, 3) | linear colours |
+//! | `palette` | f32 (m, 3) | linear colours, also those of a colour map |
 //! | `color_index` | u32 (n,) | places in the palette; absent if all spheres have the first colour |
+//! | `color_rgba8` | u8 (n, 4) | in their place, if spheres have colours of their own: sRGB, and alpha |
 //! | `background` | f32 (3,) | linear colour |
 //! | `view` | f32 (7, 3) | origin, right, up, forward, numbers, `scene_min`, `scene_max` of [`UploadedView`](super::UploadedView) |
 //! | `advance` | f32 (1,) | of the same |

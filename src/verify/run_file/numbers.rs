@@ -39,6 +39,7 @@ macro_rules! number {
 number!(f32, F32);
 number!(f64, F64);
 number!(u32, U32);
+number!(u8, U8);
 
 /// A truth value, or another byte in its place.
 #[derive(Clone, Copy)]

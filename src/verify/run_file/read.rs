@@ -11,7 +11,7 @@ use crate::film::{Film, YAxis};
 use crate::image::Image;
 use crate::parallel::try_map;
 use crate::render::{PrimaryLook, Shading};
-use crate::scene::Scene;
+use crate::scene::{Colors, Scene};
 use crate::text::shortened;
 use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 
@@ -26,23 +26,33 @@ pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
 }
 
 fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
-    let count = |name| file.shape(name).map(|shape| shape.first().copied().unwrap_or_default());
-    let spheres = count("spheres")?;
     let [origin] = file.fixed::<f64, 3, 1>("scene_origin")?;
-    let palette = file.items::<f32, 3>("palette", &[count("palette")?])?;
-    let palette = palette.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
-    let places = file.has("color_index").then(|| file.numbers::<u32>("color_index", &[spheres]));
-    let scene = Scene::from_parts(
-        DVec3::from(origin),
-        file.items::<f32, 4>("spheres", &[spheres])?,
-        palette,
-        places.transpose()?,
-    )
-    .map_err(|error| contradiction(format!("the scene: {error}")))?;
+    let count = file.shape("spheres")?.first().copied().unwrap_or_default();
+    let spheres = file.items::<f32, 4>("spheres", &[count])?;
+    let colors = colors(file, count)?;
+    let scene = Scene::from_frame(DVec3::from(origin), spheres, colors.into())
+        .map_err(|error| contradiction(format!("the scene: {error}")))?;
     if file.text("scene_sha256")? != scene_sha256(&scene) {
         return Err(contradiction("`scene_sha256` is of other spheres"));
     }
     Ok(scene)
+}
+
+fn colors(file: &Container<'_>, spheres: usize) -> Result<Colors, RunFileError> {
+    if file.has("color_rgba8") {
+        return Ok(Colors::Rgba8(file.items::<u8, 4>("color_rgba8", &[spheres])?));
+    }
+    let count = file.shape("palette")?.first().copied().unwrap_or_default();
+    let palette = file.items::<f32, 3>("palette", &[count])?;
+    let palette: Vec<_> =
+        palette.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
+    match palette.first() {
+        Some(color) if !file.has("color_index") => Ok(Colors::One(*color)),
+        None => Ok(Colors::Palette { palette, indices: Vec::new() }),
+        Some(_) => {
+            Ok(Colors::Palette { palette, indices: file.numbers("color_index", &[spheres])? })
+        }
+    }
 }
 
 fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::container;
 use super::numbers::{Array, Flag};
 use super::{LIMIT, Provenance, scene_sha256};
-use crate::scene::Scene;
+use crate::scene::{Colors, Scene};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
 /// Writes a run file: 69 bytes a pixel, 101 if another picture was rendered, and 16 or 20 a sphere, in small pieces.
@@ -68,12 +68,23 @@ pub fn write(
     let (origin, advance) = ([scene.origin()], [uploaded.advance]);
     let background = [look.background];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
+    let colors = scene.appearance().colors();
+    let entries: Vec<u32> = match colors {
+        Colors::Scalars { values, map } => values.iter().map(|v| map.index(*v) as u32).collect(),
+        _ => Vec::new(),
+    };
+    let (palette, places) = match colors {
+        Colors::One(color) => (Some(std::slice::from_ref(color)), None),
+        Colors::Palette { palette, indices } => (Some(&palette[..]), Some(&indices[..])),
+        Colors::Scalars { map, .. } => (Some(map.colors()), Some(&entries[..])),
+        Colors::Rgba8(_) => (None, None),
+    };
+    let places = places.filter(|places| !places.is_empty());
     // The widest numbers first, so that all are aligned.
     let mut arrays = vec![
         Array::new("camera", &[5], &camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
         Array::spheres(scene),
-        Array::new("palette", &[scene.palette().len()], scene.palette(), |c| c.to_array()),
         Array::new("background", &[], &background, |color| color.to_array()),
         Array::new("view", &[7], &view, |vector| *vector),
         Array::new("advance", &[1], &advance, |advance| [*advance]),
@@ -102,8 +113,16 @@ pub fn write(
             Array::new("rendered_id", &shape, id, |id| [*id]),
         ]);
     }
-    if let Some(places) = scene.color_indices() {
-        arrays.push(Array::new("color_index", &[scene.len()], places, |place| [*place]));
+    arrays.extend(
+        palette.map(|palette| {
+            Array::new("palette", &[palette.len()], palette, |color| color.to_array())
+        }),
+    );
+    arrays.extend(
+        places.map(|places| Array::new("color_index", &[places.len()], places, |place| [*place])),
+    );
+    if let Colors::Rgba8(colors) = colors {
+        arrays.push(Array::new("color_rgba8", &[colors.len()], colors, |color| *color));
     }
     let is_traced = |pixel: &TracedPixel| [Flag(pixel.ray.is_some().into())];
     arrays.push(Array::new("traced", &shape, pixels, is_traced));

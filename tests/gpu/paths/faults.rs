@@ -20,7 +20,7 @@ pub(crate) struct Fault {
 type Row = (&'static str, PathStage, fn() -> LitView, &'static str, &'static str, &'static str);
 
 pub(crate) fn all() -> impl Iterator<Item = Fault> {
-    [RAYS, SURFACES, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(
+    [RAYS, SURFACES, COLORS, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(
         |&(name, stage, view, file, find, replace)| Fault {
             name,
             stage,
@@ -31,6 +31,42 @@ pub(crate) fn all() -> impl Iterator<Item = Fault> {
         },
     )
 }
+
+/// What spheres look like.
+const COLORS: &[Row] = &[
+    (
+        "alpha_left_out",
+        Radiance,
+        scenes::own_colors,
+        "vertex.wgsl",
+        "paint.a * opacity_of(material)",
+        "opacity_of(material)",
+    ),
+    (
+        "opacity_of_a_material_left_out",
+        Radiance,
+        scenes::own_colors,
+        "vertex.wgsl",
+        "paint.a * opacity_of(material)",
+        "paint.a",
+    ),
+    (
+        "material_of_the_neighbor",
+        Radiance,
+        scenes::own_colors,
+        "appearance.wgsl",
+        "brick.material_first + place,",
+        "brick.material_first + place + 1u,",
+    ),
+    (
+        "one_byte_decoded_as_the_next",
+        Scatter,
+        scenes::own_colors,
+        "appearance.wgsl",
+        "palette[at.y].g",
+        "palette[select(at.y, 186u, at.y == 185u)].g",
+    ),
+];
 
 /// Where rays start, and what they meet.
 const RAYS: &[Row] = &[

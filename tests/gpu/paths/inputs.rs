@@ -98,6 +98,13 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
         }),
     ),
     (
+        "opacity_of_a_material",
+        Spoil::Said(|recording| {
+            let at = recording.look.material_first as usize + 2 * 3 + 1;
+            recording.tables[at][3] ^= 1 << 3;
+        }),
+    ),
+    (
         "emitter_more_likely",
         Spoil::Said(|recording| {
             let at = recording.look.emitter_first as usize + 1;

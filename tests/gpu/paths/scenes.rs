@@ -8,7 +8,7 @@ use pinhole::glam::DVec3;
 use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::material::Material;
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::{Film, LinearRgb, Scene, Sphere, View};
+use pinhole::{Appearance, Film, Finish, LinearRgb, Points, Scene, Sphere, View};
 
 /// A scene, and how it is lit and seen.
 pub(crate) struct LitView {
@@ -41,6 +41,7 @@ pub(crate) fn all() -> Vec<Named> {
         ("opacity", opacity),
         ("translucent_glass", translucent_glass),
         ("coincident_emitters", coincident_emitters),
+        ("own_colors", own_colors),
         ("from_inside", from_inside),
         ("many", many),
         ("tiny", || scaled(1e-4, DVec3::ZERO)),
@@ -292,6 +293,24 @@ pub(crate) fn coincident_emitters() -> LitView {
     spheres.splice(0..0, [twin(7).with_material(emissive(2.0)), twin(2).with_opacity(0.0)]);
     spheres.extend(copies);
     LitView { scene: Scene::new(&spheres).unwrap(), ..emitters() }
+}
+
+/// Every sphere has a color and an alpha of its own, and a finish of some.
+pub(crate) fn own_colors() -> LitView {
+    let spheres = mixed();
+    let colors: Vec<[u8; 4]> = (0..spheres.len() as u8)
+        .map(|i| [60 + 20 * i, 200 - 15 * i, 30 + 9 * i, if i % 4 == 2 { 100 + i } else { 255 }])
+        .collect();
+    let tinted = glass_of(1.5, 0.0, Some(0.8));
+    let finishes = spheres.iter().map(|sphere| match sphere.finish.material {
+        Material::Dielectric { .. } => Finish { material: tinted, ..sphere.finish },
+        _ => sphere.finish,
+    });
+    let indices = (0..spheres.len() as u32).collect();
+    let appearance = Appearance::from(colors).with_finishes(finishes.collect(), indices);
+    let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
+    let scene = Scene::from_parts(Points::F64(points.collect()), appearance).unwrap();
+    LitView { scene, ..everything() }
 }
 
 pub(crate) fn from_inside() -> LitView {

@@ -1,0 +1,118 @@
+//! Colours for numbers.
+
+use crate::color::LinearRgb;
+
+/// A table of colours for numbers of a range: the first is the colour of the range's low end, the last that of its
+/// high end, and the others lie evenly between.
+///
+/// A number has the nearest entry's colour, and one beyond the range has the colour of that end: of n entries, entry
+/// ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated, so that every renderer
+/// shows the same ones to the bit; a table of 256 entries is as fine as a display.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorMap {
+    colors: Vec<LinearRgb>,
+    range: [f32; 2],
+}
+
+/// Why there is no such colour map.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColorMapError {
+    /// The table is empty.
+    #[error("a color map needs at least one color")]
+    Empty,
+    /// The range has no ends, or they are the wrong way round.
+    #[error(
+        "the range of a color map is {range:?}; its ends must be finite, and the first less than the second"
+    )]
+    Range {
+        /// As given.
+        range: [f32; 2],
+    },
+}
+
+impl ColorMap {
+    /// A table of colours, and the numbers that its first and last entry stand for.
+    ///
+    /// # Errors
+    /// If there is no colour, or the ends are not finite, or the first is not less than the second.
+    pub fn new(colors: Vec<LinearRgb>, range: [f32; 2]) -> Result<Self, ColorMapError> {
+        if colors.is_empty() {
+            return Err(ColorMapError::Empty);
+        }
+        let [low, high] = range;
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            return Err(ColorMapError::Range { range });
+        }
+        Ok(Self { colors, range })
+    }
+
+    /// The table.
+    #[must_use]
+    pub fn colors(&self) -> &[LinearRgb] {
+        &self.colors
+    }
+
+    /// The numbers that the first and the last entry stand for.
+    #[must_use]
+    pub fn range(&self) -> [f32; 2] {
+        self.range
+    }
+
+    /// The entry of a number. Infinities have those of the ends, and NaN, which no scene takes, the first.
+    #[must_use]
+    pub fn index(&self, value: f32) -> usize {
+        let [low, high] = self.range.map(f64::from);
+        let last = self.colors.len() - 1;
+        let along = (f64::from(value) - low) / (high - low);
+        // The conversion makes 0 of what is negative and of NaN.
+        ((along * last as f64 + 0.5).floor() as usize).min(last)
+    }
+
+    /// The colour of a number.
+    #[must_use]
+    pub fn color(&self, value: f32) -> LinearRgb {
+        self.colors[self.index(value)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_has_the_nearest_entry() {
+        let colors = [0.0, 0.5, 1.0].map(LinearRgb::gray);
+        let map = ColorMap::new(colors.to_vec(), [-1.0, 3.0]).unwrap();
+        for (value, entry) in [
+            (-1.0, 0),
+            (-0.01, 0),
+            (0.0, 1),
+            (1.0, 1),
+            (1.99, 1),
+            (2.0, 2),
+            (3.0, 2),
+            (-9.0, 0),
+            (9.0, 2),
+            (f32::NEG_INFINITY, 0),
+            (f32::INFINITY, 2),
+            (f32::MAX, 2),
+        ] {
+            assert_eq!(map.index(value), entry, "{value}");
+            assert_eq!(map.color(value), colors[entry]);
+        }
+        let widest = ColorMap::new(colors.to_vec(), [f32::MIN, f32::MAX]).unwrap();
+        assert_eq!([f32::MIN, 0.0, f32::MAX].map(|value| widest.index(value)), [0, 1, 2]);
+        let one = ColorMap::new(vec![LinearRgb::WHITE], [0.0, 1.0]).unwrap();
+        assert_eq!(one.index(0.7), 0);
+    }
+
+    #[test]
+    fn what_is_no_map() {
+        assert_eq!(ColorMap::new(Vec::new(), [0.0, 1.0]), Err(ColorMapError::Empty));
+        for range in [[1.0, 1.0], [2.0, 1.0], [f32::NAN, 1.0], [0.0, f32::INFINITY]] {
+            let refused = ColorMap::new(vec![LinearRgb::WHITE], range);
+            assert!(matches!(refused, Err(ColorMapError::Range { .. })), "{range:?}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! From spheres in the world to f32 offsets in a frame.
+
+use glam::DVec3;
+
+use super::SceneError;
+use crate::bounds::Bounds;
+use crate::parallel;
+use crate::sphere::{self, Sphere};
+
+/// Offsets are shorter than this times them by no more than rounding.
+#[cfg(feature = "run-file")]
+const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;
+
+pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
+    let [x, y, z] = sphere.center;
+    [x, y, z, sphere.radius]
+}
+
+/// Checks how many there are and every one of them, and finds the box of all.
+pub(super) fn bounds_of_checked<T: Sync>(
+    spheres: &[T],
+    parts: impl Fn(&T) -> [f64; 4] + Sync,
+) -> Result<Option<Bounds>, SceneError> {
+    if spheres.len() >= u32::MAX as usize {
+        return Err(SceneError::TooMany { count: spheres.len() });
+    }
+    let of_chunk = |first: usize, chunk: &[T]| {
+        let mut bounds: Option<Bounds> = None;
+        for (place, item) in chunk.iter().enumerate() {
+            let sphere @ [x, y, z, radius] = parts(item);
+            sphere::check(sphere)
+                .map_err(|error| SceneError::Sphere { index: first + place, error })?;
+            let of_sphere = Bounds::of_sphere(DVec3::new(x, y, z), radius);
+            bounds = Some(bounds.map_or(of_sphere, |bounds| bounds.union(of_sphere)));
+        }
+        Ok(bounds)
+    };
+    // The chunks' answers come in input order, so that the first bad sphere is the one that is named.
+    let chunks: Result<Vec<_>, _> = parallel::map_chunks(spheres, of_chunk).into_iter().collect();
+    Ok(chunks?.into_iter().flatten().reduce(Bounds::union))
+}
+
+/// The spheres in a frame, in f32.
+pub(super) fn narrowed<T: Sync>(
+    spheres: &[T],
+    parts: impl Fn(&T) -> [f64; 4] + Sync,
+    origin: DVec3,
+) -> Result<Vec<[f32; 4]>, SceneError> {
+    parallel::try_map(spheres.len(), |i| moved(parts(&spheres[i]), origin))
+        .map_err(|_| SceneError::Memory { count: spheres.len() })
+}
+
+/// One sphere in a frame, in f32.
+pub(super) fn moved([x, y, z, radius]: [f64; 4], origin: DVec3) -> [f32; 4] {
+    let offset = (DVec3::new(x, y, z) - origin).as_vec3();
+    [offset.x, offset.y, offset.z, radius as f32]
+}
+
+/// Where the scene's frame lies: zero along an axis while the world's origin is about as near as the data
+/// is wide, else the data's middle.
+///
+/// The middle is rounded to f32. Then coordinates that were exact in f32 stay exact after the move,
+/// because neither of two f32 is more than twice the other (Sterbenz).
+pub(super) fn frame_origin(bounds: Bounds) -> DVec3 {
+    let width = bounds.size().max_element();
+    let along = |center: f64| if center.abs() <= width { 0.0 } else { f64::from(center as f32) };
+    DVec3::from(bounds.center().to_array().map(along))
+}
+
+/// Checks spheres in a frame: what rounding the offset adds is no reason to refuse a sphere at the very edge.
+#[cfg(feature = "run-file")]
+pub(super) fn check_in_frame(spheres: &[[f32; 4]]) -> Result<(), SceneError> {
+    let in_frame = |sphere: &[f32; 4]| {
+        let [x, y, z, radius] = sphere.map(f64::from);
+        [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
+    };
+    bounds_of_checked(spheres, in_frame).map(drop)
+}
+
+/// The box in the world of spheres in a frame.
+#[cfg(any(feature = "gpu", feature = "run-file"))]
+pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
+    let of_sphere = |s: &[f32; 4]| {
+        let [x, y, z, radius] = s.map(f64::from);
+        Bounds::of_sphere(origin + DVec3::new(x, y, z), radius)
+    };
+    let of_chunk = |_: usize, chunk: &[[f32; 4]]| chunk.iter().map(of_sphere).reduce(Bounds::union);
+    parallel::map_chunks(spheres, of_chunk).into_iter().flatten().reduce(Bounds::union)
+}

@@ -1,0 +1,335 @@
+//! Spheres, checked once: where they are, and apart from that what they look like.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::bounds::Bounds;
+use crate::color::LinearRgb;
+use crate::material::Finish;
+#[cfg(feature = "run-file")]
+use crate::math::MAX_LENGTH;
+use crate::parallel;
+use crate::points::Points;
+use crate::sphere::{Sphere, SphereError};
+use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
+
+mod appearance;
+mod checked;
+mod color_map;
+mod frame;
+mod surfaces;
+
+#[cfg(feature = "gpu")]
+pub(crate) use appearance::alpha_of;
+pub use appearance::{Appearance, Colors};
+pub(crate) use checked::SceneAppearance;
+pub use color_map::{ColorMap, ColorMapError};
+
+/// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it; and what they look like.
+///
+/// The frame is the world's own unless the data lies farther from the world's origin, along an axis, than
+/// it is wide; then the scene's origin is the middle of the data, so that f32 offsets keep its shape.
+/// Both the GPU and the CPU reference see the same f32 numbers.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    origin: DVec3,
+    spheres: Vec<[f32; 4]>,
+    /// Shared with those who need nothing else of the scene.
+    appearance: Arc<SceneAppearance>,
+    bounds: Option<Bounds>,
+}
+
+/// Which sphere a scene refuses, and why.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A sphere is out of range.
+    #[error("sphere {index}: {error}")]
+    Sphere {
+        /// Index in input order.
+        index: usize,
+        /// What is wrong with it.
+        error: SphereError,
+    },
+    /// There is no memory for so many.
+    #[error("there is no memory for {count} spheres; they need {} bytes", count * 16)]
+    Memory {
+        /// How many were given.
+        count: usize,
+    },
+    /// The frame's origin is NaN, infinite or too far away.
+    #[error("its origin {:?} is not finite, or too far away", origin.to_array())]
+    Origin {
+        /// The origin as given.
+        origin: DVec3,
+    },
+    /// A sphere has no colour.
+    #[error("sphere {index} has no color; the palette has {colors}")]
+    Color {
+        /// Index in input order.
+        index: usize,
+        /// How many colours there are.
+        colors: usize,
+    },
+    /// A sphere's finish is none of those that there are.
+    #[error("sphere {index} has no finish; there are {finishes}")]
+    Finish {
+        /// Index in input order.
+        index: usize,
+        /// How many finishes there are.
+        finishes: usize,
+    },
+    /// A sphere has the number NaN, for which a colour map has no colour.
+    #[error("sphere {index} has the number NaN, which has no color")]
+    Scalar {
+        /// Index in input order.
+        index: usize,
+    },
+    /// Something that every sphere has one of is there for fewer or more of them.
+    #[error(
+        "{}: there are {found} for {spheres} spheres",
+        if found < spheres { format!("sphere {found} has no {what}") } else { format!("{what} {spheres} has no sphere") }
+    )]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        spheres: usize,
+    },
+    /// More spheres than ids.
+    #[error("{count} spheres are too many; ids are u32 and {} means a miss", u32::MAX)]
+    TooMany {
+        /// How many were given.
+        count: usize,
+    },
+}
+
+impl Scene {
+    /// Checks the spheres and moves them into the scene's frame. A scene may be empty.
+    ///
+    /// # Errors
+    /// The first sphere, in input order, with a centre or radius that is out of range.
+    pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
+        let bounds = bounds_of_checked(spheres, f64_parts)?;
+        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        let narrow = narrowed(spheres, f64_parts, origin)?;
+        Ok(Self::in_frame(origin, narrow, appearance_of(spheres), bounds))
+    }
+
+    /// A scene of spheres, and of what they look like. Neither is copied, but for spheres in f64; only spheres far
+    /// from the world's origin are moved, in place.
+    ///
+    /// # Errors
+    /// As [`Scene::new`]; as [`Appearance::check`].
+    pub fn from_parts(points: Points, appearance: Appearance) -> Result<Self, SceneError> {
+        let count = points.len();
+        let (origin, spheres, bounds) = match points {
+            Points::F32(mut spheres) => {
+                let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
+                let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+                if origin != DVec3::ZERO {
+                    parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
+                }
+                (origin, spheres, bounds)
+            }
+            Points::F64(spheres) => {
+                let bounds = bounds_of_checked(&spheres, |s| *s)?;
+                let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+                (origin, narrowed(&spheres, |s| *s, origin)?, bounds)
+            }
+        };
+        appearance.check(count)?;
+        Ok(Self::in_frame(origin, spheres, appearance, bounds))
+    }
+
+    /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
+    /// not copied; only those far from the world's origin are moved, in place.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn from_f32(spheres: Vec<[f32; 4]>, color: LinearRgb) -> Result<Self, SceneError> {
+        Self::from_parts(Points::F32(spheres), color.into())
+    }
+
+    /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
+        let bounds = bounds_of_checked(spheres, |s| *s)?;
+        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+        let spheres = narrowed(spheres, |s| *s, origin)?;
+        Ok(Self::in_frame(origin, spheres, color.into(), bounds))
+    }
+
+    /// Of what has been checked.
+    fn in_frame(
+        origin: DVec3,
+        spheres: Vec<[f32; 4]>,
+        appearance: Appearance,
+        bounds: Option<Bounds>,
+    ) -> Self {
+        let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
+        Self { origin, spheres, appearance, bounds }
+    }
+
+    /// The same spheres, all of one finish.
+    #[must_use]
+    pub fn with_finish(mut self, finish: Finish) -> Self {
+        let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_finish(finish);
+        self.appearance = Arc::new(SceneAppearance::new(appearance, self.spheres.len()));
+        self
+    }
+
+    /// The opaque spheres in the same frame; `None` if that is all of them.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn opaque(&self) -> Option<Self> {
+        if self.appearance.is_opaque() {
+            return None;
+        }
+        let is_opaque = |id: &usize| self.finish(*id as u32).opacity >= 1.0;
+        let spheres: Vec<[f32; 4]> =
+            (0..self.len()).filter(is_opaque).map(|id| self.spheres[id]).collect();
+        let bounds = frame::bounds_in_frame(self.origin, &spheres);
+        Some(Self::in_frame(self.origin, spheres, LinearRgb::WHITE.into(), bounds))
+    }
+
+    /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
+    ///
+    /// # Errors
+    /// As [`Scene::from_parts`]; if the origin is out of range.
+    #[cfg(feature = "run-file")]
+    pub(crate) fn from_frame(
+        origin: DVec3,
+        spheres: Vec<[f32; 4]>,
+        appearance: Appearance,
+    ) -> Result<Self, SceneError> {
+        // False for NaN as well.
+        if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
+            return Err(SceneError::Origin { origin });
+        }
+        appearance.check(spheres.len())?;
+        frame::check_in_frame(&spheres)?;
+        let bounds = frame::bounds_in_frame(origin, &spheres);
+        Ok(Self::in_frame(origin, spheres, appearance, bounds))
+    }
+
+    /// Where the scene's frame lies in the world.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Centre (x, y, z) in the scene's frame, and radius, of every sphere, in input order.
+    #[must_use]
+    pub fn spheres(&self) -> &[[f32; 4]] {
+        &self.spheres
+    }
+
+    /// What the spheres look like.
+    #[must_use]
+    pub fn appearance(&self) -> &Appearance {
+        &self.appearance
+    }
+
+    /// The same, with what follows from it.
+    pub(crate) fn checked_appearance(&self) -> &Arc<SceneAppearance> {
+        &self.appearance
+    }
+
+    /// The colour of a sphere, by its index in input order.
+    ///
+    /// # Panics
+    /// If there is no such sphere.
+    #[must_use]
+    pub fn color(&self, id: u32) -> LinearRgb {
+        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        self.appearance.color_of(id)
+    }
+
+    /// The finish of a sphere, by its index in input order. Its opacity is that of the finish times the alpha of the
+    /// sphere's colour.
+    ///
+    /// # Panics
+    /// If there is no such sphere.
+    #[must_use]
+    pub fn finish(&self, id: u32) -> Finish {
+        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        self.appearance.finish_of(id)
+    }
+
+    /// The box of all spheres in the world, or `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
+    /// The box that a camera should show: of all spheres, or if there are none a unit cube.
+    #[must_use]
+    pub fn bounds_to_frame(&self) -> Bounds {
+        self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
+    }
+
+    /// How many spheres there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.spheres.len()
+    }
+
+    /// Whether there is no sphere.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.spheres.is_empty()
+    }
+}
+
+impl Points {
+    /// A scene of these spheres, all of one colour.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
+        Scene::from_parts(self, color.into())
+    }
+}
+
+/// Every colour and every finish once, in the order of first use, and the places of each sphere's.
+fn appearance_of(spheres: &[Sphere]) -> Appearance {
+    let (palette, indices) =
+        distinct(spheres, |sphere| (sphere.color, sphere.color.to_array().map(f32::to_bits)));
+    let (finishes, finish_indices) =
+        distinct(spheres, |sphere| (sphere.finish, sphere.finish.bits()));
+    let colors = match (&palette[..], indices) {
+        (_, Some(indices)) => Colors::Palette { palette, indices },
+        ([color], None) => Colors::One(*color),
+        (_, None) => Colors::One(LinearRgb::WHITE),
+    };
+    let finishes = if finishes.is_empty() { vec![Finish::default()] } else { finishes };
+    Appearance::new(colors).with(finishes, finish_indices)
+}
+
+/// Everything that spheres have, once, and of each sphere the place of its own; `None` if there is but one.
+fn distinct<T, K: Eq + std::hash::Hash>(
+    spheres: &[Sphere],
+    of: impl Fn(&Sphere) -> (T, K),
+) -> (Vec<T>, Option<Vec<u32>>) {
+    let mut all = Vec::new();
+    let mut places = HashMap::new();
+    let indices: Vec<u32> = spheres
+        .iter()
+        .map(|sphere| {
+            let (one, key) = of(sphere);
+            *places.entry(key).or_insert_with(|| {
+                all.push(one);
+                // No more than spheres, which are fewer than 2³².
+                all.len() as u32 - 1
+            })
+        })
+        .collect();
+    let several = all.len() > 1;
+    (all, several.then_some(indices))
+}

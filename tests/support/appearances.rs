@@ -1,0 +1,105 @@
+//! Scenes whose spheres look like something in every way that there is, and the same spheres one by one.
+
+use pinhole::material::Material;
+use pinhole::render::Sampling;
+use pinhole::{
+    Appearance, ColorMap, Colors, Finish, LinearRgb, Points, RenderSettings, Scene, Sphere,
+};
+
+/// How many spheres each has.
+const COUNT: u32 = 60;
+
+/// What some spheres look like, and the same as `Scene::new` has it.
+#[derive(Debug)]
+pub(crate) struct Kind {
+    pub(crate) name: String,
+    pub(crate) scene: Scene,
+    pub(crate) expected: Scene,
+}
+
+/// By one ray a pixel, in a studio, and along paths.
+pub(crate) fn settings() -> [RenderSettings; 3] {
+    let sampling = Sampling { samples: 4, ..Sampling::default() };
+    [
+        RenderSettings::default(),
+        RenderSettings { sampling, ..RenderSettings::studio() },
+        RenderSettings { sampling, ..RenderSettings::path() },
+    ]
+}
+
+/// Every kind of colours, with one finish and with several.
+pub(crate) fn kinds() -> Vec<Kind> {
+    let mut kinds = Vec::new();
+    for (name, colors) in colors() {
+        let appearance = || Appearance::new(colors.clone());
+        let indices = (0..COUNT).map(|id| id * 7 % 5).collect();
+        for (finish, appearance) in [
+            ("of_the_usual_finish", appearance()),
+            ("of_one_finish", appearance().with_finish(finishes()[1])),
+            ("of_tinted_glass", appearance().with_finish(finishes()[3])),
+            ("of_several_finishes", appearance().with_finishes(finishes(), indices)),
+        ] {
+            kinds.push(kind(format!("{name}_{finish}"), appearance));
+        }
+    }
+    kinds
+}
+
+fn kind(name: String, appearance: Appearance) -> Kind {
+    let spheres = spheres();
+    let one_by_one: Vec<Sphere> = (0..)
+        .zip(&spheres)
+        .map(|(id, [x, y, z, radius])| {
+            let mut sphere = Sphere::new(
+                [x, y, z].map(|c| f64::from(*c)),
+                f64::from(*radius),
+                appearance.color(id).unwrap(),
+            );
+            let place = appearance.finish_indices().map_or(0, |indices| indices[id as usize]);
+            sphere.finish = appearance.finishes()[place as usize];
+            if let Colors::Rgba8(colors) = appearance.colors() {
+                sphere.finish.opacity *= f32::from(colors[id as usize][3]) / 255.0;
+            }
+            sphere
+        })
+        .collect();
+    let expected = Scene::new(&one_by_one).unwrap();
+    Kind { name, scene: Scene::from_parts(Points::F32(spheres), appearance).unwrap(), expected }
+}
+
+fn spheres() -> Vec<[f32; 4]> {
+    let mut random = fastrand::Rng::with_seed(23);
+    let coordinate = |random: &mut fastrand::Rng| random.f32() * 4.0 - 2.0;
+    (0..COUNT)
+        .map(|_| [0; 3].map(|_| coordinate(&mut random)))
+        .map(|[x, y, z]| [x, y, z, 0.2 + 0.2 * (x * x + y).fract().abs()])
+        .collect()
+}
+
+fn colors() -> Vec<(&'static str, Colors)> {
+    let mut random = fastrand::Rng::with_seed(24);
+    let table: Vec<LinearRgb> =
+        (0..40).map(|_| LinearRgb::new([0; 3].map(|_| random.f32())).unwrap()).collect();
+    let indices = (0..COUNT).map(|_| random.u32(..40)).collect();
+    let values = (0..COUNT).map(|_| random.f32() * 14.0 - 2.0).collect();
+    let rgba = (0..COUNT).map(|_| [0; 4].map(|_| random.u8(..)));
+    // Of which some are opaque.
+    let rgba = rgba.map(|[r, g, b, a]| [r, g, b, if a > 99 { 255 } else { a }]).collect();
+    vec![
+        ("one_color", Colors::One(table[3])),
+        ("palette", Colors::Palette { palette: table.clone(), indices }),
+        ("rgba8", Colors::Rgba8(rgba)),
+        ("scalars", Colors::Scalars { values, map: ColorMap::new(table, [-1.0, 11.0]).unwrap() }),
+    ]
+}
+
+fn finishes() -> Vec<Finish> {
+    let opaque = |material| Finish { material, opacity: 1.0 };
+    vec![
+        opaque(Material::Lambert { specular: 0.3, roughness: 0.2 }),
+        Finish { material: Material::default(), opacity: 0.6 },
+        opaque(Material::Conductor { roughness: 0.3 }),
+        opaque(Material::Dielectric { ior: 1.4, roughness: 0.0, attenuation_distance: Some(0.7) }),
+        opaque(Material::Emissive { strength: 2.0 }),
+    ]
+}
