@@ -287,7 +287,7 @@ impl Headless {
     }
 
     /// Submits, and does not wait.
-    pub(super) fn submit(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
+    pub(super) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
         self.queue.submit([encoder.finish()])
     }
 
@@ -297,7 +297,7 @@ impl Headless {
         encoder: CommandEncoder,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
-        let submission = self.submit(encoder);
+        let submission = self.start(encoder);
         self.wait(mapped, submission)
     }
 

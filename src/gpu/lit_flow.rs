@@ -130,7 +130,7 @@ impl<'a> Flow<'a> {
         let queue = self.headless.queue();
         self.frame.queue_stages(queue, &self.recorder.take_stages());
         let at = Instant::now();
-        let index = self.headless.submit(encoder);
+        let index = self.headless.start(encoder);
         for (tile, samples) in self.deposits.drain(..) {
             self.samples[tile] = samples;
         }

@@ -18,6 +18,7 @@ mod error;
 mod faults;
 mod frame;
 mod headless;
+mod hosted;
 mod layouts;
 mod lit;
 mod lit_flow;
@@ -50,6 +51,8 @@ mod timer;
 pub use error::GpuError;
 pub use frame::{DataTargets, Frame, Targets};
 pub use headless::Headless;
+#[doc(hidden)]
+pub use hosted::{HostedPicture, HostedSums};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use plan::{DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans};
 pub use progress::{Decision, Picture, Progress, Watch};

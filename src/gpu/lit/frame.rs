@@ -63,6 +63,13 @@ pub(in crate::gpu) struct LitTile {
     pub(super) sums: BindGroup,
 }
 
+impl LitTile {
+    /// The sums of its pixels: `shaders/film_sums.wgsl`.
+    pub(in crate::gpu) fn film(&self) -> &Buffer {
+        &self.film
+    }
+}
+
 impl LitFrame {
     /// Buffers for some tiles, none of which is larger than the sizes say.
     pub(in crate::gpu) fn new(

@@ -227,7 +227,7 @@ mod tests {
         let path = planned(1.0, 16, &settings, LayerSet::COLOR, GPU);
         assert_eq!((bytes(&studio, "sky"), bytes(&path, "sky")), (0, 16 << 19));
         assert_eq!(bytes(&path, "sky shares"), 4 * (513 + 1025 * 512));
-        let low = Limits { max_storage_buffer_binding_size: 1 << 23, ..Limits::default() };
+        let low = Limits { max_storage_buffer_binding_size: 6 << 20, ..Limits::default() };
         let refused = path.check(&low, None).unwrap_err().to_string();
         assert!(refused.starts_with("the image of the sky"), "{refused}");
     }

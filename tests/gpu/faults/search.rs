@@ -227,7 +227,7 @@ pub(super) const SCHEDULE: &[Row] = &[
         "hits_of_the_pixel_before",
         views::balls,
         LIST,
-        "frame.wgsl",
+        "hits.wgsl",
         "let bits = hits[index];",
         "let bits = hits[max(index, 1u) - 1u];",
     ),

@@ -1,5 +1,6 @@
 //! Lit pictures of the GPU are those of the CPU reference, of the same random numbers.
 
+mod passes;
 pub(crate) mod scenes;
 
 use libtest_mimic::{Failed, Trial};
@@ -35,7 +36,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::a_studio_that_lacks_its_occluders_is_an_error", no_occluders),
         trial("light::only_primary_rays_are_recorded", not_recorded),
     ];
-    agreements.chain(others).collect()
+    agreements.chain(others).chain(passes::trials()).collect()
 }
 
 fn render(view: &LitView) -> Result<Image, Failed> {

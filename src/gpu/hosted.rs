@@ -1,0 +1,119 @@
+//! Lit pictures in an encoder of somebody else's.
+//!
+//! What [`Headless`](super::Headless) paces, submits and reads back is recorded here as it is: a host that gathers
+//! samples in its own frame records the same passes.
+
+use std::ops::Range;
+
+use wgpu::{Buffer, CommandEncoder, Device, Queue};
+
+use super::error::GpuError;
+use super::frame::iteration_limit;
+use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, MOST_STAGES, Recorder, Round};
+use super::scene_buffers::SceneBuffers;
+use super::tiles::tiles;
+use crate::camera::View;
+use crate::render::RenderSettings;
+
+/// A lit picture that grows by samples, on a device that the caller keeps.
+#[derive(Debug)]
+pub struct HostedPicture {
+    passes: LitPasses,
+    frame: LitFrame,
+    lit: Lit,
+    is_indirect: bool,
+}
+
+/// The sums of a part of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct HostedSums<'a> {
+    /// Its first column and row, in pixels.
+    pub origin: [u32; 2],
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    /// Row by row, three `vec4f` for each pixel: the sums of colours and opacities; what rounding left out of the sums of
+    /// colours; the sums of the first surfaces' colours. Usage: `STORAGE`, `COPY_SRC`.
+    pub buffer: &'a Buffer,
+}
+
+impl HostedPicture {
+    /// Makes the passes and the buffers. `is_indirect` says whether the adapter has indirect dispatch
+    /// (`DownlevelFlags::INDIRECT_EXECUTION`); the picture does not depend on it.
+    ///
+    /// # Errors
+    /// What [`RenderSettings::check`] refuses; [`GpuError::NoOccluders`]; if the device has no memory left.
+    pub fn new(
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        is_indirect: bool,
+    ) -> Result<Self, GpuError> {
+        settings.check_with(scene.appearance())?;
+        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+        let lit = Lit::new(settings, scene.summary(), view.camera);
+        let passes = LitPasses::new(device, scenes.key(view, &lit), &[])?;
+        let samples = settings.sampling.samples;
+        let sizes = LitSizes::new(&device.limits(), &view.film, lit.mode, samples);
+        let (seen, limit) = (scenes.seen(view, settings), iteration_limit(device));
+        let records = tiles(&view.film, sizes.tile)
+            .map(|tile| (tile, scenes.frames(view, seen, tile, limit)));
+        let frame = LitFrame::new(device, queue, &passes, sizes, &lit, records)?;
+        Ok(Self { passes, frame, lit, is_indirect })
+    }
+
+    /// Records some samples of every pixel. What the passes read is queued, and holds for the queue's next submission,
+    /// which must be this encoder's.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if that takes more dispatches than one submission may have; record fewer samples then.
+    pub fn record(
+        &self,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        settings: &RenderSettings,
+        samples: Range<u32>,
+    ) -> Result<(), GpuError> {
+        let Self { passes, frame, lit, is_indirect } = self;
+        let occluders = scene.occluders(settings)?;
+        // No more than there are paths, so it fits.
+        let room = frame.sizes.paths() as u32;
+        let round = Round { passes, lit, scene, occluders, room };
+        let mut recorder = Recorder::new(frame, passes.advance(), *is_indirect);
+        for tile in 0..frame.tiles.len() {
+            recorder.tile = tile;
+            let mut start = samples.start;
+            while start < samples.end {
+                let end = samples.end.min(start + frame.sizes.in_flight);
+                let steps = round.steps(start..end)?;
+                let needed = recorder.dispatches() + steps.len();
+                if needed > MOST_STAGES {
+                    return Err(GpuError::Limit {
+                        what: "one recording of lit samples",
+                        needed: needed as u64,
+                        limit_name: "dispatches of one submission",
+                        limit: MOST_STAGES as u64,
+                    });
+                }
+                frame.record_clear_lists(encoder);
+                for step in &steps {
+                    recorder.record(encoder, step, None);
+                }
+                start = end;
+            }
+        }
+        frame.queue_stages(queue, &recorder.take_stages());
+        Ok(())
+    }
+
+    /// The sums so far, of every part of the picture.
+    pub fn sums(&self) -> impl Iterator<Item = HostedSums<'_>> {
+        self.frame.tiles.iter().map(|tile| HostedSums {
+            origin: tile.tile.origin,
+            size: tile.tile.size,
+            buffer: tile.film(),
+        })
+    }
+}

@@ -1,0 +1,203 @@
+//! The passes of lit pictures: recorded by a host, without indirect dispatch, and what becomes of their sums.
+
+use libtest_mimic::Trial;
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::gpu::{
+    Decision, GpuError, Headless, HeadlessOptions, HostedPicture, Progress, Renderer,
+    RendererOptions, SceneBuffers, wgpu,
+};
+use pinhole::{Film, LayerSet};
+
+use super::scenes::{self, LitView};
+use crate::embedding::Host;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("light::passes::a_host_records_a_studio_and_paths", hosted),
+        trial("light::passes::too_much_for_one_recording_is_refused", too_much),
+        trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
+        trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
+        trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
+        trial("light::passes::what_is_stopped_within_a_sample_gives_no_picture", stopped),
+    ]
+}
+
+fn named(name: &str) -> LitView {
+    let found = scenes::all().into_iter().find(|(found, _)| *found == name);
+    found.unwrap_or_else(|| panic!("there is no scene {name}")).1
+}
+
+fn scene_of(host: &Host, view: &LitView) -> SceneBuffers {
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::new(spheres, AccelChoice::Grid, 1 << 27).build(spheres);
+    let options =
+        RendererOptions { structures: vec![accel.structure()], ..RendererOptions::default() };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &view.scene, &accel).unwrap()
+}
+
+/// The three vectors of every pixel's sums.
+fn read_sums(
+    host: &Host,
+    encoder: wgpu::CommandEncoder,
+    picture: &HostedPicture,
+) -> Vec<[f32; 12]> {
+    host.queue.submit([encoder.finish()]);
+    let mut all = Vec::new();
+    for sums in picture.sums() {
+        let bytes = 48 * u64::from(sums.size[0] * sums.size[1]);
+        let readable = host.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = host.encoder();
+        encoder.copy_buffer_to_buffer(sums.buffer, 0, &readable, 0, bytes);
+        host.queue.submit([encoder.finish()]);
+        readable.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
+        host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let bytes = readable.get_mapped_range(..).unwrap();
+        let numbers: Vec<f32> = bytes
+            .chunks_exact(4)
+            .map(|word| f32::from_ne_bytes(word.try_into().unwrap()))
+            .collect();
+        all.extend(numbers.chunks_exact(12).map(|pixel| <[f32; 12]>::try_from(pixel).unwrap()));
+    }
+    all
+}
+
+/// The mean colours of sums: in f64, rounded once.
+fn means(sums: &[[f32; 12]], samples: u32) -> Vec<[f32; 3]> {
+    let mean = |sum: &[f32; 12], c: usize| {
+        ((f64::from(sum[c]) + f64::from(sum[4 + c])) / f64::from(samples)) as f32
+    };
+    sums.iter().map(|sum| [0, 1, 2].map(|c| mean(sum, c))).collect()
+}
+
+/// What a host records into its own encoder, in two submissions, is what a headless device makes by itself.
+fn hosted(headless: &'static Headless) {
+    let host = Host::new();
+    for name in ["studio_ambient_occlusion", "path_emissive_both"] {
+        let mut view = named(name);
+        view.settings.sampling.samples = 5;
+        let scene = scene_of(&host, &view);
+        let LitView { settings, .. } = &view;
+        let picture =
+            HostedPicture::new(&host.device, &host.queue, &scene, &view.seen(), settings, true);
+        let picture = picture.unwrap();
+        let mut encoder = host.encoder();
+        picture.record(&host.queue, &mut encoder, &scene, settings, 0..2).unwrap();
+        host.queue.submit([encoder.finish()]);
+        let mut encoder = host.encoder();
+        picture.record(&host.queue, &mut encoder, &scene, settings, 2..5).unwrap();
+        let found = means(&read_sums(&host, encoder, &picture), 5);
+        let wanted = headless.render(&view.scene, &view.seen(), settings, LayerSet::COLOR).unwrap();
+        assert_eq!(found, wanted.color(), "{name}");
+    }
+}
+
+fn too_much(_: &'static Headless) {
+    let host = Host::new();
+    let mut view = named("studio_ambient_occlusion");
+    // So many tiles that one submission cannot hold all of their dispatches.
+    view.film = Film::new(4096, 4096).unwrap();
+    let scene = scene_of(&host, &view);
+    let LitView { settings, .. } = &view;
+    let picture =
+        HostedPicture::new(&host.device, &host.queue, &scene, &view.seen(), settings, true);
+    let picture = picture.unwrap();
+    let mut encoder = host.encoder();
+    let refused = picture.record(&host.queue, &mut encoder, &scene, settings, 0..60).unwrap_err();
+    assert!(matches!(refused, GpuError::Limit { limit: 1024, .. }), "{refused}");
+}
+
+fn direct(headless: &'static Headless) {
+    let options = HeadlessOptions { indirect: false, ..HeadlessOptions::default() };
+    let without = Headless::open(&options).unwrap();
+    for (name, mut view) in scenes::all() {
+        view.settings.sampling.samples = 6;
+        let [with, without] = [headless, &without].map(|device| {
+            device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
+        });
+        assert_eq!(with, without, "{name}");
+    }
+}
+
+/// Samples that are recorded one by one, added up in f64, are the picture: however many are in flight, and in
+/// whatever batches.
+fn sums(headless: &'static Headless) {
+    const SAMPLES: u32 = 11;
+    for (name, mut view) in scenes::paths() {
+        view.settings.sampling.samples = SAMPLES;
+        view.settings.is_denoised = false;
+        let LitView { scene, settings, .. } = &view;
+        let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
+        let buffers = headless.upload(scene, &accel.into()).unwrap();
+        let go_on = &mut |_: &Progress| Decision::GoOn;
+        let recording =
+            headless.record_paths(&buffers, &view.seen(), settings, 0..SAMPLES, go_on).unwrap();
+        let wanted: Vec<[f32; 3]> = (0..view.film.pixel_count() as usize)
+            .map(|pixel| {
+                [0, 1, 2].map(|c| {
+                    let of = recording.samples.iter().map(|sample| sample.sums[pixel][0][c]);
+                    let sum: f64 = of.map(|bits| f64::from(f32::from_bits(bits))).sum();
+                    (sum / f64::from(SAMPLES)) as f32
+                })
+            })
+            .collect();
+        let picture = headless.render(scene, &view.seen(), settings, LayerSet::COLOR).unwrap();
+        assert_eq!(picture.color(), wanted, "{name}");
+    }
+}
+
+/// While a picture is made, the device sums it up; at the end, the host does.
+fn noise(headless: &'static Headless) {
+    let mut view = named("path_emissive_both");
+    view.settings.sampling.samples = 16;
+    let LitView { scene, settings, .. } = &view;
+    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    let told = |wanted: Decision| {
+        let mut told = Vec::new();
+        let watch = &mut |progress: &Progress| {
+            told.push((progress.samples, progress.noise));
+            wanted
+        };
+        let layers = LayerSet::COLOR;
+        let picture =
+            headless.render_uploaded(&buffers, &view.seen(), settings, layers, watch).unwrap();
+        (told, picture.noise.unwrap())
+    };
+    let (told_nothing, at_end) = told(Decision::GoOn);
+    assert!(told_nothing.iter().all(|(_, noise)| noise.is_none()), "{told_nothing:?}");
+    let (told, same) = told(Decision::MeasureNoise);
+    assert_eq!(at_end, same);
+    let (samples, last) = told[told.len() - 1];
+    assert_eq!(samples, 16);
+    let last = last.unwrap();
+    assert!((last / at_end - 1.0).abs() < 1e-4, "{last} {at_end}");
+    let (_, early) = told.iter().find(|(samples, _)| *samples == 4).unwrap();
+    assert!(early.unwrap() > last, "{told:?}");
+}
+
+fn stopped(headless: &'static Headless) {
+    let view = named("path_emissive_both");
+    let LitView { scene, settings, .. } = &view;
+    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    for decision in [Decision::Stop, Decision::Finish] {
+        let mut calls = 0;
+        let watch = &mut |progress: &Progress| {
+            calls += 1;
+            if progress.samples == 0 { decision } else { Decision::GoOn }
+        };
+        let layers = LayerSet::COLOR;
+        let film = Film::new(1500, 1200).unwrap();
+        let seen = pinhole::View::new(view.camera.as_ref(), film);
+        let picture = headless.render_uploaded(&buffers, &seen, settings, layers, watch);
+        assert_eq!(picture.unwrap_err(), GpuError::Stopped, "{decision:?}");
+        assert_eq!(calls, 1);
+    }
+}
