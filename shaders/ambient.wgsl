@@ -1,4 +1,4 @@
-// In a studio: whether something is near in one direction of ambient light. One dispatch per brick. Twin:
+// In a studio: whether something is near in some directions of ambient light. One dispatch per brick. Twin:
 // src/cpu/light/studio.rs.
 
 @compute @workgroup_size(64)
@@ -9,10 +9,21 @@ fn ambient(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         return;
     }
     let start = load_start(index);
+    left = load(index, LEFT);
     let address = address_of(index);
     let seed = pixel_seed(address.pixel, look.seed);
-    let sample = address.sample * look.occlusion_samples + stage.light;
-    let u = sample_pair(seed, sample, 2u + 4096u * stage.surface + 4095u);
-    let direction = to_world(axes_around(load(index, NORMAL).xyz), cosine_direction(u));
-    look_for(index, start, direction, look.occlusion_radius, stage.light);
+    let axes = axes_around(load(index, NORMAL).xyz);
+    var hidden = 0u;
+    // Not a uniform by itself: Mesa's lavapipe would build the kernel anew for every dispatch.
+    let count = stage.count + (index >> 31u);
+    for (var turn = 0u; turn < count; turn++) {
+        let light = stage.light + turn;
+        let sample = address.sample * look.occlusion_samples + light;
+        let u = sample_pair(seed, sample, 2u + 4096u * stage.surface + 4095u);
+        let direction = to_world(axes, cosine_direction(u));
+        let is_near = is_hidden(start, direction, look.occlusion_radius);
+        hidden |= select(0u, 1u << (light & 31u), is_near);
+    }
+    hide(index, hidden);
+    report_spent();
 }

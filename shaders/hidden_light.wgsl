@@ -1,8 +1,7 @@
 // In a studio: whether something hides a light from a surface.
 
-// Searches the brick; of 32 lights, each has a bit.
-fn look_for(index: u32, start: Start, direction: vec3f, distance: f32, bit: u32) {
-    left = load(index, LEFT);
+// Searches the brick; `left` must be the sphere on which the ray starts.
+fn is_hidden(start: Start, direction: vec3f, distance: f32) -> bool {
     let ray = Ray(start.position, direction);
     let to_far_wall = max(2.0 * dot(left.xyz - start.position, direction), 0.0);
     let is_in_own = has(start.flags, PATH_BACK) && to_far_wall < distance;
@@ -13,8 +12,12 @@ fn look_for(index: u32, start: Start, direction: vec3f, distance: f32, bit: u32)
     if (!is_hidden && rest > 0.0 && entry.is_inside) {
         is_hidden = find_any(entry.ray, entry.inverse, rest);
     }
-    if (is_hidden) {
-        paths[slot(index, NORMAL)].w |= 1u << (bit & 31u);
+    return is_hidden;
+}
+
+// Keeps which of 32 lights are hidden, each in a bit.
+fn hide(index: u32, lights: u32) {
+    if (lights != 0u) {
+        paths[slot(index, NORMAL)].w |= lights;
     }
-    report_spent();
 }

@@ -9,7 +9,9 @@ use wgpu::{Buffer, CommandEncoder, Device, Queue};
 
 use super::error::GpuError;
 use super::frame::iteration_limit;
-use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, MOST_STAGES, Recorder, Round};
+use super::lit::{
+    AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, MOST_STAGES, Recorder, Round,
+};
 use super::scene_buffers::SceneBuffers;
 use super::tiles::tiles;
 use crate::camera::View;
@@ -80,7 +82,7 @@ impl HostedPicture {
         let occluders = scene.occluders(settings)?;
         // No more than there are paths, so it fits.
         let room = frame.sizes.paths() as u32;
-        let round = Round { passes, lit, scene, occluders, room };
+        let round = Round { passes, lit, scene, occluders, room, at_once: AT_ONCE };
         let mut recorder = Recorder::new(frame, passes.advance(), *is_indirect);
         for tile in 0..frame.tiles.len() {
             recorder.tile = tile;

@@ -95,22 +95,23 @@ impl<'a> Flow<'a> {
         if self.recorder.dispatches() + 2 > MOST_STAGES {
             self.submit(after)?;
         }
-        let (whole, layers) = (self.recorder.groups(step), u64::from(step.layers()));
+        let whole = self.recorder.groups(step);
+        let weight = u64::from(step.layers()) * u64::from(step.rays());
         let pace = self.scene.pace().groups();
-        if !step.is_search() || whole.count() * layers <= pace {
+        if !step.is_search() || whole.count() * weight <= pace {
             self.record(step, None);
             if step.is_search() {
-                self.gathered += whole.count() * layers;
+                self.gathered += whole.count() * weight;
             }
             return if self.gathered >= pace { self.submit(after) } else { Ok(()) };
         }
         self.submit(after)?;
         let mut left = vec![whole];
         while let Some(slice) =
-            Groups::take(&mut left, (self.scene.pace().groups() / layers).max(1))
+            Groups::take(&mut left, (self.scene.pace().groups() / weight).max(1))
         {
             self.record(step, Some(slice));
-            self.gathered = slice.count() * layers;
+            self.gathered = slice.count() * weight;
             self.submit(after)?;
         }
         Ok(())

@@ -6,7 +6,7 @@ use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::headless::Headless;
 use super::lit::sums::{self, Totals};
-use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, Round};
+use super::lit::{AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, Round};
 use super::lit_flow::Flow;
 use super::progress::{Decision, Picture, Progress, Watch, go_on};
 use super::scene_buffers::SceneBuffers;
@@ -37,8 +37,22 @@ impl Headless {
         let mut image = self.data_layers(scene, view, wanted)?;
         let lit = Lit::new(settings, scene.summary(), view.camera);
         let (samples, totals) = self.with_lit_passes(scenes.key(view, &lit), |passes| {
-            let work = Work { headless: self, passes, scenes, view, settings, lit: &lit };
-            work.gather(&mut image, watch)
+            let work = Work {
+                headless: self,
+                passes,
+                scenes,
+                view,
+                settings,
+                lit: &lit,
+                at_once: AT_ONCE,
+            };
+            match work.gather(&mut image, watch) {
+                // Several directions take more steps than one.
+                Err(GpuError::Steps) if lit.look.occlusion_samples > 1 => {
+                    Work { at_once: 1, ..work }.gather(&mut image, watch)
+                }
+                done => done,
+            }
         })?;
         if settings.is_denoised {
             image = self.denoise(&image)?;
@@ -74,13 +88,15 @@ struct Work<'a> {
     view: &'a View<'a>,
     settings: &'a RenderSettings,
     lit: &'a Lit,
+    /// How many directions of ambient light are searched at once.
+    at_once: u32,
 }
 
 impl Work<'_> {
     /// Takes samples until there are enough of them or the caller says so, and writes their means. Gives how many
     /// every pixel has.
     fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
-        let Self { headless, passes, scenes, view, settings, lit } = *self;
+        let Self { headless, passes, scenes, view, settings, lit, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
         let total = settings.sampling.samples;
         let sizes = LitSizes::new(&device.limits(), &view.film, lit.mode, total);
@@ -140,10 +156,11 @@ impl Work<'_> {
         samples: Range<u32>,
         go_on: &mut dyn FnMut(f64) -> bool,
     ) -> Result<(), GpuError> {
-        let Self { passes, scenes, lit, .. } = *self;
+        let Self { passes, scenes, lit, at_once, .. } = *self;
         // No more than there are samples or pixels in a tile, so it fits.
         let room = frame.sizes.paths() as u32;
-        let round = Round { passes, lit, scene: scenes.all, occluders: scenes.occluders, room };
+        let round =
+            Round { passes, lit, scene: scenes.all, occluders: scenes.occluders, room, at_once };
         let (total, tiles) = (f64::from(self.settings.sampling.samples), frame.tiles.len());
         let count = f64::from(samples.end - samples.start);
         for tile in 0..tiles {

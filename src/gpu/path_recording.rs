@@ -7,7 +7,7 @@ use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::headless::Headless;
 use super::lit::records::{FILM_SLOTS, Look};
-use super::lit::{Lit, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round};
+use super::lit::{AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round};
 use super::lit_flow::Flow;
 use super::progress::{Decision, Progress, Watch};
 use super::readback::ReadableBuffer;
@@ -161,7 +161,7 @@ impl Headless {
     ) -> Result<Vec<RecordedSample>, GpuError> {
         // A rectangle of at most LONGEST_SIDE squared.
         let room = frame.sizes.paths() as u32;
-        let round = Round { passes, lit, scene: all, occluders, room };
+        let round = Round { passes, lit, scene: all, occluders, room, at_once: AT_ONCE };
         let mut keeper = Keeper {
             frame,
             paths: ReadableBuffer::new(

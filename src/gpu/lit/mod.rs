@@ -35,7 +35,7 @@ pub(super) use kernels::all_kernels;
 pub(super) use look::Lit;
 pub(super) use passes::{AllLitPasses, LitKey, LitPasses};
 pub(super) use recorder::Recorder;
-pub(super) use round::{Moment, Round, Step};
+pub(super) use round::{AT_ONCE, Moment, Round, Step};
 pub(super) use sizes::LitSizes;
 
 /// What a lit picture is made of, on the device.

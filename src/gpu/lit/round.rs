@@ -25,6 +25,8 @@ pub(in crate::gpu) struct Step<'a> {
     pub(super) work: Work,
     /// How many samples are in flight.
     pub(super) turns: u32,
+    /// How many rays each path sends.
+    rays: u32,
     /// Whether it searches, and so may take long.
     is_search: bool,
     /// What has happened once it is done, and it is the last of its kind.
@@ -35,6 +37,11 @@ impl Step<'_> {
     /// Whether it searches, and so may take long.
     pub(in crate::gpu) fn is_search(&self) -> bool {
         self.is_search
+    }
+
+    /// How many rays each of its invocations sends.
+    pub(in crate::gpu) fn rays(&self) -> u32 {
+        self.rays
     }
 
     /// How often it takes the workgroups that it has along the two sides of a tile.
@@ -78,7 +85,13 @@ pub(in crate::gpu) struct Round<'a> {
     pub(in crate::gpu) occluders: &'a SceneBuffers,
     /// How many paths the buffers have room for.
     pub(in crate::gpu) room: u32,
+    /// How many directions of ambient light one invocation searches: [`AT_ONCE`], or one where that takes it more steps
+    /// than the device may loop for.
+    pub(in crate::gpu) at_once: u32,
 }
+
+/// Most of what a path is read for does not depend on the direction.
+pub(in crate::gpu) const AT_ONCE: u32 = 32;
 
 impl<'a> Round<'a> {
     /// The dispatches of some samples, which are followed together.
@@ -124,12 +137,27 @@ struct Steps<'a> {
 impl<'a> Steps<'a> {
     fn push(&mut self, pass: &'a Pass, stage: Stage, brick: Option<&'a BindGroup>, work: Work) {
         let (turns, is_search, moment) = (self.turns, false, None);
-        self.steps.push(Step { pass, stage, brick, work, turns, is_search, moment });
+        self.steps.push(Step { pass, stage, brick, work, turns, rays: 1, is_search, moment });
     }
 
     fn push_search(&mut self, pass: &'a Pass, stage: Stage, brick: &'a BindGroup, work: Work) {
         let (turns, is_search, moment) = (self.turns, true, None);
-        self.steps.push(Step { pass, stage, brick: Some(brick), work, turns, is_search, moment });
+        self.steps.push(Step {
+            pass,
+            stage,
+            brick: Some(brick),
+            work,
+            turns,
+            rays: 1,
+            is_search,
+            moment,
+        });
+    }
+
+    /// The last dispatches, one for each brick of what casts shadows, send so many rays for each path.
+    fn weigh(&mut self, rays: u32) {
+        let count = self.round.occluders.bricks().len();
+        self.steps.iter_mut().rev().take(count).for_each(|step| step.rays = rays);
     }
 
     fn mark(&mut self, moment: Moment) {
@@ -232,9 +260,11 @@ impl<'a> Steps<'a> {
             }
             for light in (0..directions).step_by(BITS) {
                 let count = (directions - light).min(BITS as u32);
-                for light in light..light + count {
-                    let stage = Stage { light, ..stage };
+                for first in (light..light + count).step_by(self.round.at_once as usize) {
+                    let count = (light + count - first).min(self.round.at_once);
+                    let stage = Stage { light: first, count, ..stage };
                     self.search_occluders(passes.ambient, stage, Area::Occluders);
+                    self.weigh(count);
                 }
                 let stage = Stage { light, count, ..stage };
                 self.push(passes.gather, stage, Some(first), Work::List(Area::Whole));

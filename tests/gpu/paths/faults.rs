@@ -566,7 +566,7 @@ const ENDS: &[Row] = &[
     ("last_workgroup_forgotten", Extend, scenes::matt, "advance.wgsl", "+ 63u) / 64u;", ") / 64u;"),
     (
         "list_one_too_short",
-        Scatter,
+        Occlude,
         scenes::matt,
         "schedule_queue.wgsl",
         "if (ordinal >= atomicLoad(&queue.counts[stage.list])) {",
