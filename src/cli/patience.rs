@@ -1,5 +1,7 @@
 //! How long a picture is worked on: for a time, until little noise is left, or until a signal.
 
+#[cfg(feature = "gpu")]
+use std::cell::Cell;
 use std::time::Duration;
 #[cfg(feature = "gpu")]
 use std::time::Instant;
@@ -8,7 +10,7 @@ use clap::Args;
 
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::{interrupt, progress};
+use super::{interrupt, progress, speak::tell};
 #[cfg(feature = "gpu")]
 use crate::gpu::{Decision, Progress};
 
@@ -123,6 +125,8 @@ pub(super) struct Watching {
     is_lit: bool,
     pixels: u64,
     started: Instant,
+    /// Whether the user knows that the first sample is waited for.
+    has_said: Cell<bool>,
 }
 
 #[cfg(feature = "gpu")]
@@ -131,7 +135,8 @@ impl Watching {
     pub(super) fn new(patience: Patience, pictures: usize, pixels: u64, is_lit: bool) -> Self {
         let time = patience.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
         let measures_noise = is_lit && (patience.noise.is_some() || progress::is_seen());
-        Self { patience, time, measures_noise, is_lit, pixels, started: Instant::now() }
+        let (started, has_said) = (Instant::now(), Cell::new(false));
+        Self { patience, time, measures_noise, is_lit, pixels, started, has_said }
     }
 
     /// Shows how far it is, and decides how it goes on.
@@ -139,14 +144,18 @@ impl Watching {
         let elapsed = self.started.elapsed();
         self.show(progress, elapsed);
         let has_any = progress.samples > 0;
-        if interrupt::is_requested() {
-            return match (self.patience.keep_partial, has_any) {
-                (false, _) => Decision::Stop,
-                (true, false) => Decision::GoOn,
-                (true, true) => Decision::Finish,
-            };
-        }
         let is_late = self.time.is_some_and(|time| elapsed >= time);
+        let is_interrupted = interrupt::is_requested();
+        if is_interrupted && !self.patience.keep_partial {
+            return Decision::Stop;
+        }
+        if is_interrupted && has_any {
+            return Decision::Finish;
+        }
+        if (is_interrupted || is_late) && !has_any {
+            self.say_first_sample(is_interrupted);
+            return Decision::GoOn;
+        }
         let is_smooth = progress.samples >= LEAST_SAMPLES
             && self.patience.noise.zip(progress.noise).is_some_and(|(most, noise)| noise <= most);
         if has_any && (is_late || is_smooth) {
@@ -155,6 +164,22 @@ impl Watching {
             Decision::MeasureNoise
         } else {
             Decision::GoOn
+        }
+    }
+
+    /// A picture needs one sample of every pixel; says once that it is still waited for.
+    fn say_first_sample(&self, is_interrupted: bool) {
+        if self.has_said.replace(true) {
+            return;
+        }
+        if is_interrupted {
+            tell(
+                "note: stopping once every pixel has its first sample; Ctrl-C once more ends without a picture",
+            );
+        } else {
+            tell(
+                "note: the time is up; the picture is written once every pixel has its first sample",
+            );
         }
     }
 

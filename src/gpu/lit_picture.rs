@@ -8,7 +8,7 @@ use super::headless::Headless;
 use super::lit::sums::{self, Totals};
 use super::lit::{AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, Round};
 use super::lit_flow::Flow;
-use super::progress::{Decision, Picture, Progress, Watch, go_on};
+use super::progress::{Decision, Picture, Progress, Watch};
 use super::scene_buffers::SceneBuffers;
 use super::tiles::tiles;
 use crate::camera::View;
@@ -34,7 +34,7 @@ impl Headless {
         settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let wanted = settings.layers_for(layers);
-        let mut image = self.data_layers(scene, view, wanted)?;
+        let mut image = self.data_layers(scene, view, settings, wanted, watch)?;
         let lit = Lit::new(settings, scene.summary(), view.camera);
         let (samples, totals) = self.with_lit_passes(scenes.key(view, &lit), |passes| {
             let work = Work {
@@ -70,13 +70,22 @@ impl Headless {
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
+        settings: &RenderSettings,
         layers: LayerSet,
+        watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
         let by_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
         if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
             return Ok(Image::new(view.film.width(), view.film.height(), layers)?);
         }
-        self.render_primary(scene, view, &PrimaryLook::default(), layers, &mut go_on)
+        // No sample is taken yet: what would finish the picture has to wait.
+        let total = settings.sampling.samples;
+        let none = Progress { samples: 0, total, part: 0.0, noise: None };
+        let watch = &mut |_: &Progress| match watch(&none) {
+            Decision::Stop => Decision::Stop,
+            _ => Decision::GoOn,
+        };
+        self.render_primary(scene, view, &PrimaryLook::default(), layers, watch)
     }
 }
 

@@ -565,12 +565,12 @@ const ENDS: &[Row] = &[
     ),
     ("last_workgroup_forgotten", Extend, scenes::matt, "advance.wgsl", "+ 63u) / 64u;", ") / 64u;"),
     (
-        "list_one_too_short",
+        "half_of_a_list_forgotten",
         Occlude,
         scenes::matt,
         "schedule_queue.wgsl",
         "if (ordinal >= atomicLoad(&queue.counts[stage.list])) {",
-        "if (ordinal + 1u >= atomicLoad(&queue.counts[stage.list])) {",
+        "if (ordinal >= atomicLoad(&queue.counts[stage.list]) / select(1u, 2u, stage.list == LIST_OF_LIGHT)) {",
     ),
     (
         "paths_that_pass_are_dropped",
