@@ -129,9 +129,16 @@ pub enum GpuError {
     /// The frame was made for a renderer with other targets.
     #[error("the frame was made for a renderer with other targets; make it for this one")]
     OtherRenderer,
-    /// The frame's view is of another scene.
-    #[error("the frame's view is of another scene; call Frame::set_view with this one")]
+    /// The frame's view is of another scene, or of this one before its spheres moved.
+    #[error(
+        "the frame's view is of another scene, or of other spheres; call Frame::set_view with this one"
+    )]
     OtherScene,
+    /// An update of a scene changes more than colours.
+    #[error(
+        "this update cannot be made in place; build the structure anew, and call SceneBuffers::replace"
+    )]
+    NotInPlace,
     /// The device ran out of memory.
     #[error("the device is out of memory; choose a smaller size or fewer spheres")]
     OutOfMemory,

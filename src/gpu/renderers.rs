@@ -7,6 +7,7 @@ use wgpu::Device;
 
 use super::error::GpuError;
 use super::lit::{AllLitPasses, LitKey, LitPasses};
+use super::recolor::Recolor;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
 use super::shaders::ShaderEdit;
@@ -43,13 +44,14 @@ impl RendererKey {
 pub(super) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
     lit: AllLitPasses,
+    recolor: Option<Recolor>,
     edits: Vec<ShaderEdit>,
 }
 
 impl Renderers {
     /// None yet; all will be built with these changes of their shaders.
     pub(super) fn new(edits: Vec<ShaderEdit>) -> Self {
-        Self { built: HashMap::new(), lit: AllLitPasses::new(), edits }
+        Self { built: HashMap::new(), lit: AllLitPasses::new(), recolor: None, edits }
     }
 
     /// The renderer that a key stands for.
@@ -70,6 +72,14 @@ impl Renderers {
                 };
                 Ok(place.insert(Renderer::new(device, &options)?))
             }
+        }
+    }
+
+    /// The pass that writes new colours.
+    pub(super) fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
+        match &mut self.recolor {
+            Some(built) => Ok(built),
+            place @ None => Ok(place.insert(Recolor::new(device)?)),
         }
     }
 

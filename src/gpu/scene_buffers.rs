@@ -19,14 +19,18 @@ use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
-/// Tells scenes on devices apart.
+/// Tells scenes on devices apart, and where the spheres of each are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct SceneId(u64);
+pub(super) struct SceneId {
+    scene: u64,
+    /// How often its spheres have moved.
+    shape: u64,
+}
 
 impl SceneId {
     fn new() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+        Self { scene: NEXT.fetch_add(1, Ordering::Relaxed), shape: 0 }
     }
 }
 
@@ -55,6 +59,11 @@ pub(super) struct BrickBuffers {
     pub(super) trace_group: BindGroup,
     /// Group 1 of `shade`.
     pub(super) surface_group: BindGroup,
+    /// Of every sphere, in the order of the structure.
+    pub(super) ids: Buffer,
+    /// What every sphere looks like.
+    pub(super) looks: Buffer,
+    pub(super) place_count: u32,
 }
 
 impl SceneBuffers {
@@ -129,6 +138,28 @@ impl SceneBuffers {
     /// The same scene with what casts shadows in a studio, unless that is all.
     pub(super) fn with_occluders(self, occluders: Option<Self>) -> Self {
         Self { occluders: occluders.map(Box::new), ..self }
+    }
+
+    /// Takes note of other colours, which the buffers have been given.
+    pub(super) fn set_summary(&mut self, summary: SceneSummary) {
+        self.summary = summary;
+    }
+
+    /// Becomes a copy of the same scene with its spheres elsewhere: what [`SceneBuffers::new`] or
+    /// [`SceneBuffers::with_accel`] made of it after [`Scene::apply`]. Frames that show the scene then need
+    /// [`Frame::set_view`](super::Frame::set_view).
+    pub fn replace(&mut self, copy: Self) {
+        let SceneId { scene, shape } = self.id;
+        let is_like = copy.structure == self.structure;
+        // What pictures have taught of the device holds on.
+        let pace = if is_like { self.pace() } else { copy.pace() };
+        let id = SceneId { scene, shape: shape + 1 };
+        *self = Self { id, pace: Mutex::new(pace), ..copy };
+    }
+
+    /// Whether there is a structure of what casts shadows in a studio.
+    pub(super) fn has_occluders(&self) -> bool {
+        self.occluders.is_some()
     }
 
     /// Bytes of all its buffers on the device.
@@ -264,6 +295,7 @@ impl Upload<'_> {
             check_storage_size(self.device, what, bytes as u64)?;
         }
         scoped(self.device, || {
+            let place_count = record.place_count;
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
             let spheres = self.storage("pinhole spheres", spheres);
             let ids = self.storage("pinhole ids", ids);
@@ -292,6 +324,9 @@ impl Upload<'_> {
                     &layouts.surface,
                     &[&record, &spheres, &looks, palette],
                 ),
+                ids,
+                looks,
+                place_count,
             }
         })
     }

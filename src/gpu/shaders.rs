@@ -314,6 +314,7 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
     }
     kernels.extend(super::lit::all_kernels());
     kernels.push(super::denoise::denoise_kernel());
+    kernels.push(super::recolor::recolor_kernel());
     kernels
 }
 
@@ -345,7 +346,7 @@ mod tests {
         assert_eq!(
             kernels.len(),
             CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
-                + 4
+                + 5
                 + super::super::lit::all_kernels().len()
         );
         for kernel in kernels {
