@@ -6,6 +6,7 @@ use super::binary_tree::BinaryTree;
 use super::grid::{Grid, ListLayout};
 use super::list;
 use super::plan::AccelChoice;
+use super::primitive::{BrickKind, Primitive};
 use super::query::{Nearest, RayF32};
 use super::wide_tree::WideTree;
 
@@ -137,6 +138,12 @@ impl Accel {
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.structure
+    }
+
+    /// What kernels that search the bricks are made for.
+    #[must_use]
+    pub fn kind(&self) -> BrickKind {
+        BrickKind { structure: self.structure, primitive: Primitive::Sphere }
     }
 
     /// The bricks; at least one, if only an empty one.

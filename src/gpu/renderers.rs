@@ -1,7 +1,7 @@
 //! The renderers of a device, each built when it is first wanted.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 use wgpu::Device;
 
@@ -11,14 +11,15 @@ use super::recolor::Recolor;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
 use super::shaders::ShaderEdit;
-use crate::accel::Structure;
+use crate::accel::BrickKind;
 use crate::camera::{Camera, CameraKind};
 
 /// What they differ in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct RendererKey {
     pub(super) camera: CameraKind,
-    pub(super) structure: Structure,
+    /// Of the scene's bricks, each once.
+    pub(super) kinds: Vec<BrickKind>,
     pub(super) several_bricks: bool,
     pub(super) query: Query,
     pub(super) data_layers: bool,
@@ -30,7 +31,7 @@ impl RendererKey {
     pub(super) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
         Self {
             camera: camera.kind(),
-            structure: scene.structure(),
+            kinds: scene.kinds(),
             several_bricks: scene.bricks().len() > 1,
             query: Query::Nearest,
             data_layers: false,
@@ -56,7 +57,9 @@ impl Renderers {
 
     /// The renderer that a key stands for.
     pub(super) fn of(&mut self, device: &Device, key: RendererKey) -> Result<&Renderer, GpuError> {
-        let RendererKey { camera, structure, several_bricks, query, data_layers, keeps_rays } = key;
+        let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = key;
+        let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
+        let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
         match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
             Entry::Vacant(place) => {
@@ -64,7 +67,8 @@ impl Renderers {
                     color: ColorTarget::Linear32,
                     data_layers,
                     cameras: vec![camera],
-                    structures: vec![structure],
+                    structures: structures.into_iter().collect(),
+                    primitives: primitives.into_iter().collect(),
                     several_bricks,
                     query,
                     keeps_rays,

@@ -15,7 +15,7 @@ use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
 use super::tiles::Groups;
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickKind, Index, Structure};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -53,6 +53,8 @@ pub struct SceneBuffers {
 /// A brick, bound for the kernels.
 #[derive(Debug)]
 pub(super) struct BrickBuffers {
+    /// What searches and shades it.
+    pub(super) kind: BrickKind,
     /// Where it is, to tell which is nearer.
     pub(super) center_box: CenterBox,
     /// Group 1 of `trace` and `occluded`.
@@ -118,7 +120,7 @@ impl SceneBuffers {
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
         for brick in accel.bricks() {
-            bricks.push(upload.brick(brick, accel.structure(), &palette)?);
+            bricks.push(upload.brick(brick, accel.kind(), &palette)?);
             flush()?;
         }
         let bytes = upload.bytes;
@@ -222,6 +224,17 @@ impl SceneBuffers {
         self.structure
     }
 
+    /// The kinds of the bricks, each once.
+    pub(super) fn kinds(&self) -> Vec<BrickKind> {
+        let mut kinds = Vec::new();
+        for brick in &self.bricks {
+            if !kinds.contains(&brick.kind) {
+                kinds.push(brick.kind);
+            }
+        }
+        kinds
+    }
+
     /// In the order in which they were copied. At least one, so that an empty scene's rays are marked as
     /// misses.
     pub(super) fn bricks(&self) -> &[BrickBuffers] {
@@ -243,7 +256,7 @@ impl Upload<'_> {
     fn brick(
         &mut self,
         brick: &Brick,
-        structure: Structure,
+        kind: BrickKind,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
         let center_box = CenterBox::of(brick);
@@ -252,9 +265,9 @@ impl Upload<'_> {
         let trace_layout = layouts
             .brick
             .iter()
-            .find(|(of, _)| *of == structure)
+            .find(|(of, _)| *of == kind)
             .map(|(_, layout)| layout)
-            .ok_or(GpuError::NoStructure { structure })?;
+            .ok_or(GpuError::NoStructure { kind })?;
         let looks = Looks::of(self.appearance, ids);
         let mut record = records::Brick {
             place_count: spheres.len() as u32,
@@ -317,11 +330,12 @@ impl Upload<'_> {
             let mut traced = vec![&record, &spheres, &ids];
             traced.extend(&words);
             BrickBuffers {
+                kind,
                 center_box,
                 trace_group: group("pinhole brick", trace_layout, &traced),
                 surface_group: group(
                     "pinhole surface",
-                    &layouts.surface,
+                    layouts.surface_of(kind.primitive),
                     &[&record, &spheres, &looks, palette],
                 ),
                 ids,
