@@ -120,7 +120,7 @@ impl SceneBuffers {
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
         for brick in accel.bricks() {
-            bricks.push(upload.brick(brick, accel.kind(), &palette)?);
+            bricks.push(upload.brick(&BrickContents::of_spheres(brick, accel.kind()), &palette)?);
             flush()?;
         }
         let bytes = upload.bytes;
@@ -242,6 +242,29 @@ impl SceneBuffers {
     }
 }
 
+/// What of a brick is copied.
+#[derive(Clone, Copy, Debug)]
+struct BrickContents<'a> {
+    kind: BrickKind,
+    center_box: CenterBox,
+    /// As the primitive's WGSL part reads them, in the order of the structure.
+    shapes: &'a [u8],
+    /// Of each.
+    ids: &'a [u32],
+    index: &'a Index,
+}
+
+impl<'a> BrickContents<'a> {
+    fn of_spheres(brick: &'a Brick, kind: BrickKind) -> Self {
+        let Brick { index, spheres, ids } = brick;
+        let shapes = bytemuck::cast_slice(spheres);
+        Self { kind, center_box: CenterBox::of(brick), shapes, ids, index }
+    }
+}
+
+/// No primitive's shape has more bytes.
+const LARGEST_SHAPE: usize = 64;
+
 /// A copy in progress.
 struct Upload<'a> {
     renderer: &'a Renderer,
@@ -255,12 +278,10 @@ struct Upload<'a> {
 impl Upload<'_> {
     fn brick(
         &mut self,
-        brick: &Brick,
-        kind: BrickKind,
+        brick: &BrickContents<'_>,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
-        let center_box = CenterBox::of(brick);
-        let Brick { index, spheres, ids } = brick;
+        let BrickContents { kind, center_box, shapes, ids, index } = *brick;
         let layouts = &self.renderer.layouts;
         let trace_layout = layouts
             .brick
@@ -270,7 +291,7 @@ impl Upload<'_> {
             .ok_or(GpuError::NoStructure { kind })?;
         let looks = Looks::of(self.appearance, ids);
         let mut record = records::Brick {
-            place_count: spheres.len() as u32,
+            place_count: ids.len() as u32,
             first_place: self.first_place,
             is_first: u32::from(self.first_place == 0),
             last_look: looks.words.len() as u32 - 1,
@@ -281,8 +302,8 @@ impl Upload<'_> {
             ..bytemuck::Zeroable::zeroed()
         };
         // A binding must not be empty.
-        let (no_sphere, no_word) = ([[0.0; 4]], [0]);
-        let spheres = if spheres.is_empty() { &no_sphere[..] } else { spheres };
+        let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
+        let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { ids };
         let mut words: Vec<&[u32]> = Vec::new();
         match index {
@@ -299,7 +320,7 @@ impl Upload<'_> {
         }
         self.first_place += record.place_count;
         for (what, bytes) in [
-            ("the buffer of spheres", size_of_val(spheres)),
+            ("the buffer of spheres", shapes.len()),
             ("the buffer of colors", size_of_val(&looks.words[..])),
         ]
         .into_iter()
@@ -310,7 +331,7 @@ impl Upload<'_> {
         scoped(self.device, || {
             let place_count = record.place_count;
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
-            let spheres = self.storage("pinhole spheres", spheres);
+            let shapes = self.storage("pinhole shapes", shapes);
             let ids = self.storage("pinhole ids", ids);
             let looks = self.storage("pinhole looks", &looks.words);
             let words: Vec<Buffer> =
@@ -327,7 +348,7 @@ impl Upload<'_> {
                     wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
                 self.device.create_bind_group(&descriptor)
             };
-            let mut traced = vec![&record, &spheres, &ids];
+            let mut traced = vec![&record, &shapes, &ids];
             traced.extend(&words);
             BrickBuffers {
                 kind,
@@ -336,7 +357,7 @@ impl Upload<'_> {
                 surface_group: group(
                     "pinhole surface",
                     layouts.surface_of(kind.primitive),
-                    &[&record, &spheres, &looks, palette],
+                    &[&record, &shapes, &looks, palette],
                 ),
                 ids,
                 looks,
