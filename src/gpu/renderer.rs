@@ -75,7 +75,7 @@ impl Default for RendererOptions {
             data_layers: false,
             cameras: CameraKind::ALL.to_vec(),
             structures: Structure::AUTOMATIC.to_vec(),
-            primitives: Primitive::ALL.to_vec(),
+            primitives: vec![Primitive::Sphere],
             several_bricks: true,
             query: Query::Nearest,
             keeps_rays: false,

@@ -364,8 +364,8 @@ mod tests {
         assert_eq!(
             kernels.len(),
             CameraKind::ALL.len()
-                * Primitive::ALL.len()
-                * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
+                * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
+                    + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
                 + 5
                 + super::super::lit::all_kernels().len()
         );
