@@ -1,21 +1,21 @@
-// What the spheres of a brick look like. Twin: src/gpu/appearance.rs.
+// What the shapes of a brick look like. Twin: src/gpu/appearance.rs.
 
 @group(1) @binding(0) var<uniform> brick: Brick;
-@group(1) @binding(1) var<storage, read> spheres: array<vec4f>;
-// In the order of `spheres`: a word of colour each; and from `brick.material_first` on, where spheres are of several
+@group(1) @binding(1) var<storage, read> shapes: array<Shape>;
+// In the order of `shapes`: a word of colour each; and from `brick.material_first` on, where shapes are of several
 // materials, a word of material each.
 @group(1) @binding(2) var<storage, read> looks: array<u32>;
-// Linear colours, and alpha; where spheres have colours of their own, in RGBA8, what every byte stands for.
+// Linear colours, and alpha; where shapes have colours of their own, in RGBA8, what every byte stands for.
 @group(1) @binding(3) var<storage, read> palette: array<vec4f>;
 
-// A sphere's linear colour, and its alpha. One read a component, whether they stand together in the palette or not.
+// A shape's linear colour, and its alpha. One read a component, whether they stand together in the palette or not.
 fn paint_of(place: u32) -> vec4f {
     let word = looks[min(place, brick.last_look)];
     let at = (vec4u(word) >> (brick.color_shift * vec4u(0u, 1u, 2u, 3u))) & vec4u(brick.color_mask);
     return vec4f(palette[at.x].r, palette[at.y].g, palette[at.z].b, palette[at.w].a);
 }
 
-// A sphere's row in the table of materials, not counting the ground's.
+// A shape's row in the table of materials, not counting the ground's.
 fn material_index(place: u32) -> u32 {
     return looks[min(brick.material_first + place, brick.last_look)] & brick.material_mask;
 }

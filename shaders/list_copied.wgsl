@@ -9,8 +9,8 @@ fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     var place = NO_PLACE;
     var at = start;
     loop {
-        let sphere = spheres[at];
-        let here = intersect_sphere(ray, sphere).t;
+        let sphere = shapes[at];
+        let here = intersect(ray, sphere).t;
         if (here < t) {
             t = here;
             place = at;

@@ -1,5 +1,5 @@
 // Rays that start on no sphere.
 
-fn is_left(sphere: vec4f) -> bool {
+fn is_left(shape: Shape) -> bool {
     return false;
 }

@@ -49,7 +49,7 @@ struct Brick {
     min: vec3f,
     cell_size: f32,
     cell_counts: vec3u,
-    // How many elements `spheres` has.
+    // How many elements `shapes` has.
     place_count: u32,
     // How many places there are in the bricks before this one.
     first_place: u32,

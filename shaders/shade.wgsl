@@ -28,7 +28,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let entry = make_entry(invocation.xy);
-    let normal = sphere_normal(entry.ray, intersect_sphere(entry.ray, spheres[place]));
+    let normal = shape_normal(entry.ray, shapes[place]);
     let color = paint_of(place).rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));
     // The distance that belongs to this `t`: another kernel's ray may enter the box a little elsewhere.

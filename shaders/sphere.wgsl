@@ -1,10 +1,13 @@
-// One ray against one sphere.
+// Spheres: one ray against one of them, and its normal.
 //
 // Haines, Guenther and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray
 // Tracing Gems, chapter 7 (2019): the discriminant from the foot point (after Hearn and Baker), so
 // that it does not drown in the squared distance, and the roots as q and c/q, so that neither is a
 // difference of nearly equal numbers. Changed here: the direction must have unit length, and only the
 // root that counts is computed. A tangent ray hits.
+
+// Centre in the scene's frame, and radius.
+alias Shape = vec4f;
 
 struct SphereHit {
     // Distance to the first point in front of the origin (from inside: the far wall), or NO_HIT.
@@ -15,7 +18,7 @@ struct SphereHit {
 }
 
 // Without branches: software devices run both sides of one and pay for the masks.
-fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
+fn intersect(ray: Ray, sphere: Shape) -> SphereHit {
     let radius = sphere.w;
     let to_center = fence3(sphere.xyz - ray.origin);
     let b = fence(dot(to_center, ray.direction));
@@ -31,6 +34,11 @@ fn intersect_sphere(ray: Ray, sphere: vec4f) -> SphereHit {
     // Behind the origin t is negative; on the wall and leaving it is zero.
     let is_hit = discriminant >= 0.0 && t > 0.0 && !is_left(sphere);
     return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
+}
+
+// The normal where a ray meets a sphere.
+fn shape_normal(ray: Ray, sphere: Shape) -> vec3f {
+    return sphere_normal(ray, intersect(ray, sphere));
 }
 
 // Unit normal, pointing away from the centre. From the right triangle of the intersection, not from

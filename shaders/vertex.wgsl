@@ -53,10 +53,10 @@ fn vertex_of(index: u32, ray: Ray, hit: Hit, met: u32, flags: u32, behind: f32) 
 // `left` is the sphere on which the ray starts; if it goes inside, its far wall may be what it meets.
 fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Vertex {
     let place = hit.place - brick.first_place;
-    let sphere = vec4f(spheres[place].xyz, abs(spheres[place].w));
+    let sphere = vec4f(shapes[place].xyz, abs(shapes[place].w));
     let is_far_wall = is_inside && all(sphere == left_sphere);
     let entered = Ray(fence3(ray.origin + hit.distance * ray.direction), ray.direction);
-    var found = intersect_sphere(entered, sphere);
+    var found = intersect(entered, sphere);
     let middle = dot(sphere.xyz - entered.origin, ray.direction);
     // Which wall it is, the search has decided.
     let half_chord = select(abs(found.from_foot), abs(middle), is_far_wall);

@@ -5,6 +5,8 @@ use glam::Vec3;
 use super::binary_tree::BinaryTree;
 use super::grid::{Grid, ListLayout};
 use super::list;
+use super::plan::AccelChoice;
+use super::primitive::{BrickKind, Primitive};
 use super::query::{Nearest, RayF32};
 use super::wide_tree::WideTree;
 
@@ -45,6 +47,17 @@ impl Structure {
         Self::NestedGrid(ListLayout::Referenced),
         Self::WideTree,
     ];
+
+    /// What a user would have asked for.
+    #[must_use]
+    pub const fn choice(self) -> AccelChoice {
+        match self {
+            Self::List => AccelChoice::List,
+            Self::Grid(_) | Self::NestedGrid(_) => AccelChoice::Grid,
+            Self::WideTree => AccelChoice::Tree,
+            Self::BinaryTree => AccelChoice::BinaryTree,
+        }
+    }
 
     /// What it is called in reports.
     #[must_use]
@@ -125,6 +138,12 @@ impl Accel {
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.structure
+    }
+
+    /// What kernels that search the bricks are made for.
+    #[must_use]
+    pub fn kind(&self) -> BrickKind {
+        BrickKind { structure: self.structure, primitive: Primitive::Sphere }
     }
 
     /// The bricks; at least one, if only an empty one.

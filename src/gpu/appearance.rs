@@ -19,7 +19,7 @@ impl Looks {
     /// Of the spheres with these ids.
     pub(super) fn of(appearance: &SceneAppearance, ids: &[u32]) -> Self {
         let colors = appearance.colors();
-        let mut words = color_words(colors, ids);
+        let mut words = color_words(colors, ids.iter().copied());
         let material_first = words.len() as u32;
         let has_materials = words_per_sphere(appearance).materials;
         if has_materials {
@@ -61,15 +61,13 @@ pub(super) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
 }
 
 /// The words of colour of some spheres; none where all have one.
-pub(super) fn color_words(colors: &Colors, ids: &[u32]) -> Vec<u32> {
+pub(super) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32>) -> Vec<u32> {
     match colors {
         Colors::One(_) => Vec::new(),
-        Colors::Palette { indices, .. } => ids.iter().map(|id| indices[*id as usize]).collect(),
-        Colors::Rgba8(colors) => {
-            ids.iter().map(|id| u32::from_le_bytes(colors[*id as usize])).collect()
-        }
+        Colors::Palette { indices, .. } => ids.map(|id| indices[id as usize]).collect(),
+        Colors::Rgba8(colors) => ids.map(|id| u32::from_le_bytes(colors[id as usize])).collect(),
         Colors::Scalars { values, map } => {
-            ids.iter().map(|id| map.index(values[*id as usize]) as u32).collect()
+            ids.map(|id| map.index(values[id as usize]) as u32).collect()
         }
     }
 }

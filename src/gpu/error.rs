@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::shaders::ShaderEdit;
-use crate::accel::Structure;
+use crate::accel::BrickKind;
 use crate::camera::CameraKind;
 use crate::denoise::MissingGuide;
 use crate::image::ImageTooLarge;
@@ -79,20 +79,23 @@ pub enum GpuError {
     },
     /// The renderer was built without this camera or structure, or for one brick only.
     #[error(
-        "this renderer has no pipeline for the {} camera and the structure {}, perhaps in several bricks; name them in RendererOptions",
-        camera.name(), structure.name()
+        "this renderer has no pipeline for the {} camera and a {} of {}s, perhaps in several bricks; name them in RendererOptions",
+        camera.name(), kind.structure.name(), kind.primitive.name()
     )]
     NoPipeline {
         /// The camera's kind.
         camera: CameraKind,
-        /// The scene's structure.
-        structure: Structure,
+        /// The kind of the scene's bricks.
+        kind: BrickKind,
     },
     /// The renderer was built without this structure.
-    #[error("this renderer was not built for the structure {}; name it in RendererOptions", structure.name())]
+    #[error(
+        "this renderer was not built for a {} of {}s; name them in RendererOptions",
+        kind.structure.name(), kind.primitive.name()
+    )]
     NoStructure {
-        /// The scene's structure.
-        structure: Structure,
+        /// The kind of the scene's bricks.
+        kind: BrickKind,
     },
     /// A ray took more steps than a kernel may.
     #[error(
@@ -129,9 +132,16 @@ pub enum GpuError {
     /// The frame was made for a renderer with other targets.
     #[error("the frame was made for a renderer with other targets; make it for this one")]
     OtherRenderer,
-    /// The frame's view is of another scene.
-    #[error("the frame's view is of another scene; call Frame::set_view with this one")]
+    /// The frame's view is of another scene, or of this one before its spheres moved.
+    #[error(
+        "the frame's view is of another scene, or of other spheres; call Frame::set_view with this one"
+    )]
     OtherScene,
+    /// An update of a scene changes more than colours.
+    #[error(
+        "this update cannot be made in place; build the structure anew, and call SceneBuffers::replace"
+    )]
+    NotInPlace,
     /// The device ran out of memory.
     #[error("the device is out of memory; choose a smaller size or fewer spheres")]
     OutOfMemory,

@@ -15,6 +15,7 @@ use super::lit::{LitKey, LitPasses};
 use super::options::{HeadlessOptions, required_limits, wanted_features};
 use super::plan::RenderPlan;
 use super::progress::{Picture, Watch, go_on};
+use super::recolor::Recolor;
 use super::renderer::{Renderer, RendererOptions};
 use super::renderers::{RendererKey, Renderers};
 use super::scene_buffers::SceneBuffers;
@@ -274,6 +275,14 @@ impl Headless {
         work: impl FnOnce(&LitPasses) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(|renderers| renderers.lit(&self.device, key).and_then(work))
+    }
+
+    /// Works with the pass that writes new colours, alone on this device.
+    pub(super) fn with_recolor<T>(
+        &self,
+        work: impl FnOnce(&Recolor) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
+        self.alone(|renderers| renderers.recolor(&self.device).and_then(work))
     }
 
     /// Works with the device while no other thread does.

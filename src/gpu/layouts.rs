@@ -7,16 +7,16 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 use super::records;
 use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, RendererOptions};
 use super::self_test::records::SelfTest;
-use crate::accel::{ListLayout, Structure};
+use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 
 /// The layouts of all groups that the kernels use.
 #[derive(Debug)]
 pub(super) struct Layouts {
     /// Group 0 of every kernel.
     pub(super) frame: BindGroupLayout,
-    /// Group 1 of `trace` and `occluded`: brick, spheres, ids, and the words of the structure.
-    pub(super) brick: Vec<(Structure, BindGroupLayout)>,
-    /// Group 1 of `shade`.
+    /// Group 1 of `trace` and `occluded`: brick, shapes, ids, and the words of the structure.
+    pub(super) brick: Vec<(BrickKind, BindGroupLayout)>,
+    /// Group 1 of `shade`, for spheres.
     pub(super) surface: BindGroupLayout,
     /// Group 2 of `shade`.
     pub(super) targets: BindGroupLayout,
@@ -24,7 +24,9 @@ pub(super) struct Layouts {
 
 impl Layouts {
     pub(super) fn new(device: &Device, options: &RendererOptions) -> Self {
-        let RendererOptions { color, data_layers, keeps_rays, ref structures, .. } = *options;
+        let RendererOptions {
+            color, data_layers, keeps_rays, ref structures, ref primitives, ..
+        } = *options;
         let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
         let mut targets = vec![target(color.texture_format())];
         if data_layers {
@@ -40,29 +42,44 @@ impl Layouts {
         }
         Self {
             frame: layout("pinhole frame", &frame),
-            brick: structures
-                .iter()
-                .map(|structure| {
+            brick: BrickKind::of(structures, primitives)
+                .map(|kind| {
                     let mut kinds = vec![
                         uniform::<records::Brick>(),
-                        storage::<records::Sphere>(true),
+                        shapes(kind.primitive),
                         storage::<u32>(true),
                     ];
-                    kinds.extend(word_buffers(*structure));
-                    (*structure, layout("pinhole brick", &kinds))
+                    kinds.extend(word_buffers(kind.structure));
+                    (kind, layout("pinhole brick", &kinds))
                 })
                 .collect(),
             surface: layout(
                 "pinhole surface",
                 &[
                     uniform::<records::Brick>(),
-                    storage::<records::Sphere>(true),
+                    shapes(Primitive::Sphere),
                     storage::<u32>(true),
                     storage::<records::Color>(true),
                 ],
             ),
             targets: layout("pinhole targets", &targets),
         }
+    }
+}
+
+impl Layouts {
+    /// Group 1 of `shade`.
+    pub(super) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
+        match primitive {
+            Primitive::Sphere => &self.surface,
+        }
+    }
+}
+
+/// The shapes of a brick.
+fn shapes(primitive: Primitive) -> BindingType {
+    match primitive {
+        Primitive::Sphere => storage::<records::Sphere>(true),
     }
 }
 

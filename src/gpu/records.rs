@@ -201,6 +201,7 @@ mod tests {
     use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::denoise::Denoise;
     use crate::gpu::lit::records::{Look, Stage};
+    use crate::gpu::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
     use crate::gpu::shaders;
 
@@ -317,6 +318,7 @@ mod tests {
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
             layout!(Stage { sample, surface, is_last, light, count, list, is_new, paths, first }),
+            layout!(RecolorRange { first, count, place_count, zero }),
             layout!(Look {
                 background,
                 flags,

@@ -8,7 +8,7 @@ use super::layouts::Layouts;
 use super::scene_buffers::SceneBuffers;
 use super::shaders::{self, Kernel, ShaderEdit, Turn};
 use super::tiles::Groups;
-use crate::accel::Structure;
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
@@ -55,6 +55,8 @@ pub struct RendererOptions {
     pub cameras: Vec<CameraKind>,
     /// The structures that scenes will have.
     pub structures: Vec<Structure>,
+    /// What scenes will consist of.
+    pub primitives: Vec<Primitive>,
     /// Whether scenes may be too large for one binding, and so consist of several bricks.
     pub several_bricks: bool,
     /// What rays are asked. With [`Query::Any`] a renderer is good for measurements only.
@@ -73,6 +75,7 @@ impl Default for RendererOptions {
             data_layers: false,
             cameras: CameraKind::ALL.to_vec(),
             structures: Structure::AUTOMATIC.to_vec(),
+            primitives: vec![Primitive::Sphere],
             several_bricks: true,
             query: Query::Nearest,
             keeps_rays: false,
@@ -88,8 +91,8 @@ pub struct Renderer {
     pub(super) color: ColorTarget,
     pub(super) data_layers: bool,
     pub(super) keeps_rays: bool,
-    shade: Vec<(CameraKind, ComputePipeline)>,
-    trace: Vec<(CameraKind, Structure, TracePipelines)>,
+    shade: Vec<(CameraKind, Primitive, ComputePipeline)>,
+    trace: Vec<(CameraKind, BrickKind, TracePipelines)>,
 }
 
 /// For the first brick, and for those behind it.
@@ -120,25 +123,26 @@ impl Renderer {
         let (shade, trace) = (Vec::new(), Vec::new());
         let mut renderer = Self { layouts, color, data_layers, keeps_rays, shade, trace };
         for &camera in &options.cameras {
-            let kernel =
-                shaders::shade_kernel(camera, color, data_layers).edited(&options.edits)?;
-            let Layouts { frame, surface, targets, .. } = &renderer.layouts;
-            let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
-            renderer.shade.push((camera, shade));
-            for (structure, brick) in &renderer.layouts.brick {
+            let Layouts { frame, targets, .. } = &renderer.layouts;
+            for &primitive in &options.primitives {
+                let kernel = shaders::shade_kernel(camera, primitive, color, data_layers)
+                    .edited(&options.edits)?;
+                let surface = renderer.layouts.surface_of(primitive);
+                let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
+                renderer.shade.push((camera, primitive, shade));
+            }
+            for (kind, brick) in &renderer.layouts.brick {
                 let groups = [frame, brick];
                 let build = |turn| {
                     let kernel = match query {
-                        Query::Nearest => {
-                            shaders::trace_kernel(camera, *structure, turn, keeps_rays)
-                        }
-                        Query::Any => shaders::occluded_kernel(camera, *structure, turn),
+                        Query::Nearest => shaders::trace_kernel(camera, *kind, turn, keeps_rays),
+                        Query::Any => shaders::occluded_kernel(camera, *kind, turn),
                     };
                     pipeline(device, &kernel.edited(&options.edits)?, &groups)
                 };
                 let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
                 let pipelines = TracePipelines { first: build(Turn::First)?, later };
-                renderer.trace.push((camera, *structure, pipelines));
+                renderer.trace.push((camera, *kind, pipelines));
             }
         }
         Ok(renderer)
@@ -184,19 +188,20 @@ impl Renderer {
         if part.groups.count() == 0 {
             return Ok(());
         }
-        let structure = scene.structure();
+        let brick = &scene.bricks()[part.brick];
+        let kind = brick.kind;
         let pipeline = self
             .trace
             .iter()
-            .find(|(kind, of, _)| *kind == camera && *of == structure)
+            .find(|(of, searched, _)| *of == camera && *searched == kind)
             .and_then(|(_, _, pipelines)| match part.is_first_of_band {
                 true => Some(&pipelines.first),
                 false => pipelines.later.as_ref(),
             })
-            .ok_or(GpuError::NoPipeline { camera, structure })?;
+            .ok_or(GpuError::NoPipeline { camera, kind })?;
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
-        pass.set_bind_group(1, &scene.bricks()[part.brick].trace_group, &[]);
+        pass.set_bind_group(1, &brick.trace_group, &[]);
         pass.dispatch_workgroups(part.groups.size[0], part.groups.size[1], 1);
         Ok(())
     }
@@ -211,17 +216,22 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let view = frame.view(self, scene)?;
         let camera = view.camera;
-        let pipeline = self
-            .shade
-            .iter()
-            .find(|(kind, _)| *kind == camera)
-            .map(|(_, pipeline)| pipeline)
-            .ok_or(GpuError::NoPipeline { camera, structure: scene.structure() })?;
         let [width, height] = Groups::of_size(view.bands[band]).size;
-        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &frame.band_groups()[band], &[]);
         pass.set_bind_group(2, frame.target_group(), &[]);
+        let mut bound = None;
         for brick in scene.bricks() {
+            let kind = brick.kind;
+            if bound != Some(kind.primitive) {
+                let pipeline = self
+                    .shade
+                    .iter()
+                    .find(|(of, primitive, _)| *of == camera && *primitive == kind.primitive)
+                    .map(|(_, _, pipeline)| pipeline)
+                    .ok_or(GpuError::NoPipeline { camera, kind })?;
+                pass.set_pipeline(pipeline);
+                bound = Some(kind.primitive);
+            }
             pass.set_bind_group(1, &brick.surface_group, &[]);
             pass.dispatch_workgroups(width, height, 1);
         }
@@ -305,12 +315,13 @@ mod tests {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
+                    primitives: Primitive::ALL.to_vec(),
                     query,
                     keeps_rays,
                     ..RendererOptions::default()
                 };
                 let renderer = Renderer::new(&device, &options).unwrap();
-                assert_eq!(renderer.shade.len(), CameraKind::ALL.len());
+                assert_eq!(renderer.shade.len(), CameraKind::ALL.len() * Primitive::ALL.len());
             }
         }
     }
@@ -325,7 +336,7 @@ mod tests {
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
             let kernel =
-                shaders::trace_kernel(CameraKind::Pinhole, Structure::List, Turn::First, false)
+                shaders::trace_kernel(CameraKind::Pinhole, layouts.brick[0].0, Turn::First, false)
                     .with_part("broken.wgsl", broken);
             match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
                 Err(GpuError::Device { message }) => {

@@ -1,23 +1,25 @@
 //! The renderers of a device, each built when it is first wanted.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 use wgpu::Device;
 
 use super::error::GpuError;
 use super::lit::{AllLitPasses, LitKey, LitPasses};
+use super::recolor::Recolor;
 use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
 use super::scene_buffers::SceneBuffers;
 use super::shaders::ShaderEdit;
-use crate::accel::Structure;
+use crate::accel::BrickKind;
 use crate::camera::{Camera, CameraKind};
 
 /// What they differ in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct RendererKey {
     pub(super) camera: CameraKind,
-    pub(super) structure: Structure,
+    /// Of the scene's bricks, each once.
+    pub(super) kinds: Vec<BrickKind>,
     pub(super) several_bricks: bool,
     pub(super) query: Query,
     pub(super) data_layers: bool,
@@ -29,7 +31,7 @@ impl RendererKey {
     pub(super) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
         Self {
             camera: camera.kind(),
-            structure: scene.structure(),
+            kinds: scene.kinds(),
             several_bricks: scene.bricks().len() > 1,
             query: Query::Nearest,
             data_layers: false,
@@ -43,18 +45,21 @@ impl RendererKey {
 pub(super) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
     lit: AllLitPasses,
+    recolor: Option<Recolor>,
     edits: Vec<ShaderEdit>,
 }
 
 impl Renderers {
     /// None yet; all will be built with these changes of their shaders.
     pub(super) fn new(edits: Vec<ShaderEdit>) -> Self {
-        Self { built: HashMap::new(), lit: AllLitPasses::new(), edits }
+        Self { built: HashMap::new(), lit: AllLitPasses::new(), recolor: None, edits }
     }
 
     /// The renderer that a key stands for.
     pub(super) fn of(&mut self, device: &Device, key: RendererKey) -> Result<&Renderer, GpuError> {
-        let RendererKey { camera, structure, several_bricks, query, data_layers, keeps_rays } = key;
+        let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = key;
+        let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
+        let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
         match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
             Entry::Vacant(place) => {
@@ -62,7 +67,8 @@ impl Renderers {
                     color: ColorTarget::Linear32,
                     data_layers,
                     cameras: vec![camera],
-                    structures: vec![structure],
+                    structures: structures.into_iter().collect(),
+                    primitives: primitives.into_iter().collect(),
                     several_bricks,
                     query,
                     keeps_rays,
@@ -70,6 +76,14 @@ impl Renderers {
                 };
                 Ok(place.insert(Renderer::new(device, &options)?))
             }
+        }
+    }
+
+    /// The pass that writes new colours.
+    pub(super) fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
+        match &mut self.recolor {
+            Some(built) => Ok(built),
+            place @ None => Ok(place.insert(Recolor::new(device)?)),
         }
     }
 

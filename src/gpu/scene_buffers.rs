@@ -15,18 +15,22 @@ use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
 use super::tiles::Groups;
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickKind, Index, Structure};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
-/// Tells scenes on devices apart.
+/// Tells scenes on devices apart, and where the spheres of each are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct SceneId(u64);
+pub(super) struct SceneId {
+    scene: u64,
+    /// How often its spheres have moved.
+    shape: u64,
+}
 
 impl SceneId {
     fn new() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+        Self { scene: NEXT.fetch_add(1, Ordering::Relaxed), shape: 0 }
     }
 }
 
@@ -49,12 +53,19 @@ pub struct SceneBuffers {
 /// A brick, bound for the kernels.
 #[derive(Debug)]
 pub(super) struct BrickBuffers {
+    /// What searches and shades it.
+    pub(super) kind: BrickKind,
     /// Where it is, to tell which is nearer.
     pub(super) center_box: CenterBox,
     /// Group 1 of `trace` and `occluded`.
     pub(super) trace_group: BindGroup,
     /// Group 1 of `shade`.
     pub(super) surface_group: BindGroup,
+    /// Of every sphere, in the order of the structure.
+    pub(super) ids: Buffer,
+    /// What every sphere looks like.
+    pub(super) looks: Buffer,
+    pub(super) place_count: u32,
 }
 
 impl SceneBuffers {
@@ -109,7 +120,7 @@ impl SceneBuffers {
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
         for brick in accel.bricks() {
-            bricks.push(upload.brick(brick, accel.structure(), &palette)?);
+            bricks.push(upload.brick(&BrickContents::of_spheres(brick, accel.kind()), &palette)?);
             flush()?;
         }
         let bytes = upload.bytes;
@@ -129,6 +140,28 @@ impl SceneBuffers {
     /// The same scene with what casts shadows in a studio, unless that is all.
     pub(super) fn with_occluders(self, occluders: Option<Self>) -> Self {
         Self { occluders: occluders.map(Box::new), ..self }
+    }
+
+    /// Takes note of other colours, which the buffers have been given.
+    pub(super) fn set_summary(&mut self, summary: SceneSummary) {
+        self.summary = summary;
+    }
+
+    /// Becomes a copy of the same scene with its spheres elsewhere: what [`SceneBuffers::new`] or
+    /// [`SceneBuffers::with_accel`] made of it after [`Scene::apply`]. Frames that show the scene then need
+    /// [`Frame::set_view`](super::Frame::set_view).
+    pub fn replace(&mut self, copy: Self) {
+        let SceneId { scene, shape } = self.id;
+        let is_like = copy.structure == self.structure;
+        // What pictures have taught of the device holds on.
+        let pace = if is_like { self.pace() } else { copy.pace() };
+        let id = SceneId { scene, shape: shape + 1 };
+        *self = Self { id, pace: Mutex::new(pace), ..copy };
+    }
+
+    /// Whether there is a structure of what casts shadows in a studio.
+    pub(super) fn has_occluders(&self) -> bool {
+        self.occluders.is_some()
     }
 
     /// Bytes of all its buffers on the device.
@@ -191,12 +224,46 @@ impl SceneBuffers {
         self.structure
     }
 
+    /// The kinds of the bricks, each once.
+    pub(super) fn kinds(&self) -> Vec<BrickKind> {
+        let mut kinds = Vec::new();
+        for brick in &self.bricks {
+            if !kinds.contains(&brick.kind) {
+                kinds.push(brick.kind);
+            }
+        }
+        kinds
+    }
+
     /// In the order in which they were copied. At least one, so that an empty scene's rays are marked as
     /// misses.
     pub(super) fn bricks(&self) -> &[BrickBuffers] {
         &self.bricks
     }
 }
+
+/// What of a brick is copied.
+#[derive(Clone, Copy, Debug)]
+struct BrickContents<'a> {
+    kind: BrickKind,
+    center_box: CenterBox,
+    /// As the primitive's WGSL part reads them, in the order of the structure.
+    shapes: &'a [u8],
+    /// Of each.
+    ids: &'a [u32],
+    index: &'a Index,
+}
+
+impl<'a> BrickContents<'a> {
+    fn of_spheres(brick: &'a Brick, kind: BrickKind) -> Self {
+        let Brick { index, spheres, ids } = brick;
+        let shapes = bytemuck::cast_slice(spheres);
+        Self { kind, center_box: CenterBox::of(brick), shapes, ids, index }
+    }
+}
+
+/// No primitive's shape has more bytes.
+const LARGEST_SHAPE: usize = 64;
 
 /// A copy in progress.
 struct Upload<'a> {
@@ -211,22 +278,20 @@ struct Upload<'a> {
 impl Upload<'_> {
     fn brick(
         &mut self,
-        brick: &Brick,
-        structure: Structure,
+        brick: &BrickContents<'_>,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
-        let center_box = CenterBox::of(brick);
-        let Brick { index, spheres, ids } = brick;
+        let BrickContents { kind, center_box, shapes, ids, index } = *brick;
         let layouts = &self.renderer.layouts;
         let trace_layout = layouts
             .brick
             .iter()
-            .find(|(of, _)| *of == structure)
+            .find(|(of, _)| *of == kind)
             .map(|(_, layout)| layout)
-            .ok_or(GpuError::NoStructure { structure })?;
+            .ok_or(GpuError::NoStructure { kind })?;
         let looks = Looks::of(self.appearance, ids);
         let mut record = records::Brick {
-            place_count: spheres.len() as u32,
+            place_count: ids.len() as u32,
             first_place: self.first_place,
             is_first: u32::from(self.first_place == 0),
             last_look: looks.words.len() as u32 - 1,
@@ -237,8 +302,8 @@ impl Upload<'_> {
             ..bytemuck::Zeroable::zeroed()
         };
         // A binding must not be empty.
-        let (no_sphere, no_word) = ([[0.0; 4]], [0]);
-        let spheres = if spheres.is_empty() { &no_sphere[..] } else { spheres };
+        let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
+        let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { ids };
         let mut words: Vec<&[u32]> = Vec::new();
         match index {
@@ -255,7 +320,7 @@ impl Upload<'_> {
         }
         self.first_place += record.place_count;
         for (what, bytes) in [
-            ("the buffer of spheres", size_of_val(spheres)),
+            ("the buffer of spheres", shapes.len()),
             ("the buffer of colors", size_of_val(&looks.words[..])),
         ]
         .into_iter()
@@ -264,8 +329,9 @@ impl Upload<'_> {
             check_storage_size(self.device, what, bytes as u64)?;
         }
         scoped(self.device, || {
+            let place_count = record.place_count;
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
-            let spheres = self.storage("pinhole spheres", spheres);
+            let shapes = self.storage("pinhole shapes", shapes);
             let ids = self.storage("pinhole ids", ids);
             let looks = self.storage("pinhole looks", &looks.words);
             let words: Vec<Buffer> =
@@ -282,16 +348,20 @@ impl Upload<'_> {
                     wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
                 self.device.create_bind_group(&descriptor)
             };
-            let mut traced = vec![&record, &spheres, &ids];
+            let mut traced = vec![&record, &shapes, &ids];
             traced.extend(&words);
             BrickBuffers {
+                kind,
                 center_box,
                 trace_group: group("pinhole brick", trace_layout, &traced),
                 surface_group: group(
                     "pinhole surface",
-                    &layouts.surface,
-                    &[&record, &spheres, &looks, palette],
+                    layouts.surface_of(kind.primitive),
+                    &[&record, &shapes, &looks, palette],
                 ),
+                ids,
+                looks,
+                place_count,
             }
         })
     }

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use super::error::GpuError;
 use super::renderer::ColorTarget;
-use crate::accel::{ListLayout, Structure};
+use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
 
 /// One WGSL file.
@@ -71,11 +71,11 @@ pub(super) enum Probe {
 /// Finds the nearest sphere of every ray; the rays may be kept.
 pub(super) fn trace_kernel(
     camera: CameraKind,
-    structure: Structure,
+    kind: BrickKind,
     turn: Turn,
     keeps_rays: bool,
 ) -> Kernel {
-    let mut parts = walk_parts(camera, structure, turn);
+    let mut parts = walk_parts(camera, kind, turn);
     parts.push(match (keeps_rays, turn) {
         (false, _) => part!("entry_made.wgsl"),
         (true, Turn::First) => part!("entry_recorded.wgsl"),
@@ -86,14 +86,18 @@ pub(super) fn trace_kernel(
 }
 
 /// Finds whether every ray hits anything.
-pub(super) fn occluded_kernel(camera: CameraKind, structure: Structure, turn: Turn) -> Kernel {
-    let mut parts = walk_parts(camera, structure, turn);
+pub(super) fn occluded_kernel(camera: CameraKind, kind: BrickKind, turn: Turn) -> Kernel {
+    let mut parts = walk_parts(camera, kind, turn);
     parts.extend([part!("entry_made.wgsl"), part!("occluded.wgsl")]);
     Kernel { entry_point: "occluded", parts }
 }
 
-fn walk_parts(camera: CameraKind, structure: Structure, turn: Turn) -> Vec<Part> {
-    let mut parts = common_parts(camera);
+fn walk_parts(
+    camera: CameraKind,
+    BrickKind { structure, primitive }: BrickKind,
+    turn: Turn,
+) -> Vec<Part> {
+    let mut parts = common_parts(camera, primitive);
     parts.extend([
         part!("schedule.wgsl"),
         part!("status.wgsl"),
@@ -135,8 +139,13 @@ pub(super) fn structure_parts(structure: Structure) -> Vec<Part> {
 }
 
 /// Turns hits into colour and, if wanted, data layers.
-pub(super) fn shade_kernel(camera: CameraKind, color: ColorTarget, data_layers: bool) -> Kernel {
-    let mut parts = common_parts(camera);
+pub(super) fn shade_kernel(
+    camera: CameraKind,
+    primitive: Primitive,
+    color: ColorTarget,
+    data_layers: bool,
+) -> Kernel {
+    let mut parts = common_parts(camera, primitive);
     parts.extend([
         part!("appearance.wgsl"),
         part!("shade.wgsl"),
@@ -168,7 +177,14 @@ fn list_part(layout: ListLayout) -> Part {
     }
 }
 
-fn common_parts(camera: CameraKind) -> Vec<Part> {
+/// What a primitive is: `Shape`, `intersect` and `shape_normal`.
+fn primitive_part(primitive: Primitive) -> Part {
+    match primitive {
+        Primitive::Sphere => part!("sphere.wgsl"),
+    }
+}
+
+fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
     let mut parts = vec![
         part!("records.wgsl"),
         part!("frame.wgsl"),
@@ -179,7 +195,7 @@ fn common_parts(camera: CameraKind) -> Vec<Part> {
         part!("enter.wgsl"),
         part!("camera_entry.wgsl"),
         part!("origin_none.wgsl"),
-        part!("sphere.wgsl"),
+        primitive_part(primitive),
     ];
     parts.extend(camera_parts(camera));
     parts
@@ -298,22 +314,25 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
         [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
     for &camera in CameraKind::ALL {
-        for &structure in Structure::ALL {
+        for kind in BrickKind::of(Structure::ALL, Primitive::ALL) {
             for turn in [Turn::First, Turn::Later] {
                 for keeps_rays in [false, true] {
-                    kernels.push(trace_kernel(camera, structure, turn, keeps_rays));
+                    kernels.push(trace_kernel(camera, kind, turn, keeps_rays));
                 }
-                kernels.push(occluded_kernel(camera, structure, turn));
+                kernels.push(occluded_kernel(camera, kind, turn));
             }
         }
-        for &color in ColorTarget::ALL {
-            for data_layers in [false, true] {
-                kernels.push(shade_kernel(camera, color, data_layers));
+        for &primitive in Primitive::ALL {
+            for &color in ColorTarget::ALL {
+                for data_layers in [false, true] {
+                    kernels.push(shade_kernel(camera, primitive, color, data_layers));
+                }
             }
         }
     }
     kernels.extend(super::lit::all_kernels());
     kernels.push(super::denoise::denoise_kernel());
+    kernels.push(super::recolor::recolor_kernel());
     kernels
 }
 
@@ -344,8 +363,10 @@ mod tests {
         let kernels = all_kernels();
         assert_eq!(
             kernels.len(),
-            CameraKind::ALL.len() * (6 * Structure::ALL.len() + 2 * ColorTarget::ALL.len())
-                + 4
+            CameraKind::ALL.len()
+                * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
+                    + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
+                + 5
                 + super::super::lit::all_kernels().len()
         );
         for kernel in kernels {

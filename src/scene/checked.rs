@@ -1,10 +1,11 @@
 //! What the spheres of a scene look like, with what follows from it.
 
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::sync::OnceLock;
 
 use super::appearance::{Appearance, Colors};
 use super::surfaces::{Surface, Surfaces};
+use super::update::NewColors;
 use crate::color::LinearRgb;
 use crate::material::Finish;
 
@@ -29,6 +30,21 @@ impl Deref for SceneAppearance {
 impl SceneAppearance {
     pub(crate) fn new(appearance: Appearance, count: usize) -> Self {
         Self { appearance, count, surfaces: OnceLock::new(), is_opaque: OnceLock::new() }
+    }
+
+    /// Gives some spheres other colours, which have been checked and are of the same kind.
+    pub(super) fn set_colors(&mut self, range: Range<usize>, new: &NewColors<'_>) {
+        match (&mut self.appearance.colors, new) {
+            (Colors::Palette { indices, .. }, NewColors::Palette(new)) => {
+                indices[range].copy_from_slice(new);
+            }
+            (Colors::Rgba8(colors), NewColors::Rgba8(new)) => colors[range].copy_from_slice(new),
+            (Colors::Scalars { values, .. }, NewColors::Scalars(new)) => {
+                values[range].copy_from_slice(new);
+            }
+            _ => {}
+        }
+        (self.surfaces, self.is_opaque) = (OnceLock::new(), OnceLock::new());
     }
 
     /// The appearance alone.

@@ -8,7 +8,6 @@ use crate::parallel;
 use crate::sphere::{self, Sphere};
 
 /// Offsets are shorter than this times them by no more than rounding.
-#[cfg(feature = "run-file")]
 const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;
 
 pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
@@ -67,18 +66,13 @@ pub(super) fn frame_origin(bounds: Bounds) -> DVec3 {
     DVec3::from(bounds.center().to_array().map(along))
 }
 
-/// Checks spheres in a frame: what rounding the offset adds is no reason to refuse a sphere at the very edge.
-#[cfg(feature = "run-file")]
-pub(super) fn check_in_frame(spheres: &[[f32; 4]]) -> Result<(), SceneError> {
-    let in_frame = |sphere: &[f32; 4]| {
-        let [x, y, z, radius] = sphere.map(f64::from);
-        [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
-    };
-    bounds_of_checked(spheres, in_frame).map(drop)
+/// What is checked of a sphere in a frame: what rounding the offset adds is no reason to refuse one at the very edge.
+pub(super) fn slackened(sphere: &[f32; 4]) -> [f64; 4] {
+    let [x, y, z, radius] = sphere.map(f64::from);
+    [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
 }
 
 /// The box in the world of spheres in a frame.
-#[cfg(any(feature = "gpu", feature = "run-file"))]
 pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
     let of_sphere = |s: &[f32; 4]| {
         let [x, y, z, radius] = s.map(f64::from);

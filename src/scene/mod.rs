@@ -20,12 +20,14 @@ mod checked;
 mod color_map;
 mod frame;
 mod surfaces;
+mod update;
 
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
 pub use appearance::{Appearance, Colors};
 pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
+pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it; and what they look like.
 ///
@@ -213,7 +215,7 @@ impl Scene {
             return Err(SceneError::Origin { origin });
         }
         appearance.check(spheres.len())?;
-        frame::check_in_frame(&spheres)?;
+        bounds_of_checked(&spheres, frame::slackened)?;
         let bounds = frame::bounds_in_frame(origin, &spheres);
         Ok(Self::in_frame(origin, spheres, appearance, bounds))
     }

@@ -45,5 +45,6 @@ mod settings;
 mod soundness;
 mod stereo;
 mod structures;
+mod update;
 mod verify;
 mod xyz;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use libtest_mimic::Trial;
-use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::accel::{AccelChoice, AccelPlan, BrickKind, Primitive, Structure};
 use pinhole::camera::{CameraKind, PinholeCamera};
 use pinhole::film::Film;
 use pinhole::gpu::{
@@ -392,7 +392,7 @@ fn not_ready(_: &'static Headless) {
         renderer.record(&mut encoder, &scene, &frame),
         Err(GpuError::NoPipeline {
             camera: CameraKind::Pinhole,
-            structure: pinhole::accel::Structure::List
+            kind: BrickKind { structure: Structure::List, primitive: Primitive::Sphere }
         })
     );
     assert_eq!(renderer.record(&mut encoder, &again, &frame), Err(GpuError::OtherScene));

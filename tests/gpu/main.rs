@@ -25,6 +25,7 @@ mod scenes;
 mod self_test;
 mod structures;
 mod twin;
+mod update;
 mod verify;
 mod verify_program;
 mod verify_views;
@@ -78,6 +79,7 @@ fn main() {
         plan::trials(),
         self_test::trials(),
         twin::trials(),
+        update::trials(),
         verify::trials(),
         verify_program::trials(),
     ];

@@ -1,0 +1,285 @@
+//! New numbers for some spheres of a scene.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::appearance::Colors;
+use super::{Scene, SceneError, frame};
+use crate::sphere::{self, SphereError};
+
+/// New centres, radii or colours for consecutive spheres of a scene. What is `None` stays as it is.
+///
+/// ```
+/// use pinhole::scene::{Centers, SceneUpdate};
+/// use pinhole::{LinearRgb, Scene};
+///
+/// let mut scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 0.5]; 3], LinearRgb::WHITE)?;
+/// let moved = Centers::F32(&[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+/// scene.apply(&SceneUpdate { first: 1, centers: Some(moved), ..SceneUpdate::default() })?;
+/// assert_eq!(scene.spheres()[2], [2.0, 0.0, 0.0, 0.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneUpdate<'a> {
+    /// Index of the first of the spheres, in input order.
+    pub first: u32,
+    /// Their centres, in the world.
+    pub centers: Option<Centers<'a>>,
+    /// Their radii.
+    pub radii: Option<&'a [f32]>,
+    /// Their colours.
+    pub colors: Option<NewColors<'a>>,
+}
+
+/// Centres of spheres in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Centers<'a> {
+    /// In f32.
+    F32(&'a [[f32; 3]]),
+    /// In f64.
+    F64(&'a [[f64; 3]]),
+}
+
+/// Colours for spheres whose scene has colours of the same kind; see [`Colors`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NewColors<'a> {
+    /// Places in the scene's palette.
+    Palette(&'a [u32]),
+    /// Colours of their own, in sRGB, and alpha.
+    Rgba8(&'a [[u8; 4]]),
+    /// Numbers, for the scene's colour map.
+    Scalars(&'a [f32]),
+}
+
+/// Why a scene refuses an update, and stays as it was. Indices are those of spheres of the scene, in input order.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UpdateError {
+    /// The scene has fewer spheres.
+    #[error(
+        "there is no sphere {index}: the scene has {spheres}, and the update is of {first} to {index}"
+    )]
+    Range {
+        /// Of the first sphere that is updated.
+        first: usize,
+        /// Of the last.
+        index: usize,
+        /// How many spheres the scene has.
+        spheres: usize,
+    },
+    /// One of the lists is longer than another.
+    #[error(
+        "sphere {index} is in one list alone: the update has a {what} for {found} spheres, and {wanted} in the list before"
+    )]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// Of the first sphere that is in one list alone.
+        index: usize,
+        /// How many there are.
+        found: usize,
+        /// How many of centres, or else of radii, there are.
+        wanted: usize,
+    },
+    /// The scene's colours are of another kind.
+    #[error("sphere {index} cannot have {found}: the scene's spheres have {wanted}")]
+    Kind {
+        /// Of the first sphere that is updated.
+        index: usize,
+        /// What the update has.
+        found: &'static str,
+        /// What the scene has.
+        wanted: &'static str,
+    },
+    /// A sphere is too far from the scene's frame, which stays where it is.
+    #[error(
+        "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make another scene",
+        origin.to_array()
+    )]
+    TooFar {
+        /// Of the sphere.
+        index: usize,
+        /// Of the scene's frame.
+        origin: DVec3,
+    },
+    /// A number is out of range.
+    #[error(transparent)]
+    Number(#[from] SceneError),
+}
+
+impl Centers<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::F32(centers) => centers.len(),
+            Self::F64(centers) => centers.len(),
+        }
+    }
+
+    fn get(&self, place: usize) -> [f64; 3] {
+        match self {
+            Self::F32(centers) => centers[place].map(f64::from),
+            Self::F64(centers) => centers[place],
+        }
+    }
+}
+
+impl NewColors<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Palette(colors) => colors.len(),
+            Self::Rgba8(colors) => colors.len(),
+            Self::Scalars(colors) => colors.len(),
+        }
+    }
+
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Palette(_) => PALETTE,
+            Self::Rgba8(_) => RGBA8,
+            Self::Scalars(_) => SCALARS,
+        }
+    }
+}
+
+const PALETTE: &str = "colors of a palette";
+const RGBA8: &str = "colors of their own";
+const SCALARS: &str = "numbers for a color map";
+
+impl SceneUpdate<'_> {
+    /// The spheres that are updated.
+    #[must_use]
+    pub fn range(&self) -> Range<u32> {
+        // An update of more spheres than there are ids is refused.
+        self.first..self.first.saturating_add(u32::try_from(self.count()).unwrap_or(u32::MAX))
+    }
+
+    fn count(&self) -> usize {
+        let [centers, radii, colors] = self.lengths();
+        centers.or(radii).or(colors).unwrap_or(0)
+    }
+
+    fn lengths(&self) -> [Option<usize>; 3] {
+        let centers = self.centers.as_ref().map(Centers::len);
+        [centers, self.radii.map(<[f32]>::len), self.colors.as_ref().map(NewColors::len)]
+    }
+
+    /// Whether spheres are moved or grow, so that what finds them must be built anew.
+    #[must_use]
+    pub fn changes_shape(&self) -> bool {
+        self.centers.is_some() || self.radii.is_some()
+    }
+
+    fn check_range(&self, scene: &Scene) -> Result<Range<usize>, UpdateError> {
+        let (first, wanted) = (self.first as usize, self.count());
+        for (what, length) in ["center", "radius", "color"].into_iter().zip(self.lengths()) {
+            if let Some(found) = length.filter(|found| *found != wanted) {
+                let index = first.saturating_add(found.min(wanted));
+                return Err(UpdateError::Count { what, index, found, wanted });
+            }
+        }
+        let (end, spheres) = (first.saturating_add(wanted), scene.len());
+        if end > spheres {
+            return Err(UpdateError::Range { first, index: end - 1, spheres });
+        }
+        Ok(first..end)
+    }
+
+    /// A sphere in the scene's frame, after the update.
+    fn sphere(&self, scene: &Scene, range: &Range<usize>, place: usize) -> Updated {
+        let index = range.start + place;
+        let [x, y, z, radius] = scene.spheres[index];
+        let radius = self.radii.map_or(radius, |radii| radii[place]);
+        match self.centers {
+            None => {
+                let center = scene.origin + glam::Vec3::new(x, y, z).as_dvec3();
+                Updated { index, center: center.to_array(), in_frame: [x, y, z, radius] }
+            }
+            Some(centers) => {
+                let center @ [x, y, z] = centers.get(place);
+                let in_frame = frame::moved([x, y, z, f64::from(radius)], scene.origin);
+                Updated { index, center, in_frame }
+            }
+        }
+    }
+
+    fn check_colors(&self, scene: &Scene, first: usize) -> Result<(), UpdateError> {
+        let Some(new) = &self.colors else { return Ok(()) };
+        let at = |place: Option<usize>| place.map(|place| first + place);
+        let wanted = match (new, scene.appearance().colors()) {
+            (NewColors::Palette(places), Colors::Palette { palette, .. }) => {
+                let colors = palette.len();
+                return match at(places.iter().position(|place| *place as usize >= colors)) {
+                    Some(index) => Err(SceneError::Color { index, colors }.into()),
+                    None => Ok(()),
+                };
+            }
+            (NewColors::Scalars(values), Colors::Scalars { .. }) => {
+                return match at(values.iter().position(|value| value.is_nan())) {
+                    Some(index) => Err(SceneError::Scalar { index }.into()),
+                    None => Ok(()),
+                };
+            }
+            (NewColors::Rgba8(_), Colors::Rgba8(_)) => return Ok(()),
+            (_, Colors::One(_)) => "one color together",
+            (_, Colors::Palette { .. }) => PALETTE,
+            (_, Colors::Rgba8(_)) => RGBA8,
+            (_, Colors::Scalars { .. }) => SCALARS,
+        };
+        Err(UpdateError::Kind { index: first, found: new.name(), wanted })
+    }
+}
+
+/// A sphere as it will be.
+struct Updated {
+    index: usize,
+    /// In the world.
+    center: [f64; 3],
+    in_frame: [f32; 4],
+}
+
+impl Updated {
+    fn check(&self, origin: DVec3) -> Result<(), UpdateError> {
+        let [x, y, z] = self.center;
+        let radius = f64::from(self.in_frame[3]);
+        let index = self.index;
+        sphere::check([x, y, z, radius]).map_err(|error| SceneError::Sphere { index, error })?;
+        match sphere::check(frame::slackened(&self.in_frame)) {
+            Err(SphereError::Center { .. }) => Err(UpdateError::TooFar { index, origin }),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Scene {
+    /// Gives some spheres new centres, radii or colours. The frame stays where it is, so that f32 offsets lose
+    /// precision if the spheres wander far from where they were; ids stay the same.
+    ///
+    /// It takes time for the spheres that are updated, and, where they move, for finding the box of all. What is shared
+    /// with a scene on a device is copied: 4 bytes a sphere.
+    ///
+    /// # Errors
+    /// If a list is longer than another, the scene has fewer spheres, its colours are of another kind, or a number is
+    /// out of range or NaN. Then the scene is as it was.
+    pub fn apply(&mut self, update: &SceneUpdate<'_>) -> Result<(), UpdateError> {
+        let range = update.check_range(self)?;
+        if update.changes_shape() {
+            for place in 0..range.len() {
+                update.sphere(self, &range, place).check(self.origin)?;
+            }
+        }
+        update.check_colors(self, range.start)?;
+        if update.changes_shape() {
+            for place in 0..range.len() {
+                let Updated { index, in_frame, .. } = update.sphere(self, &range, place);
+                self.spheres[index] = in_frame;
+            }
+            self.bounds = frame::bounds_in_frame(self.origin, &self.spheres);
+        }
+        if let Some(new) = &update.colors {
+            Arc::make_mut(&mut self.appearance).set_colors(range, new);
+        }
+        Ok(())
+    }
+}

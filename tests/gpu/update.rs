@@ -1,0 +1,175 @@
+//! Scenes that change on a device: pictures are those of a scene that was made so, to the byte.
+
+use fastrand::Rng;
+use libtest_mimic::{Failed, Trial};
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::gpu::{
+    ColorTarget, Decision, Frame, GpuError, Headless, Recolor, Renderer, RendererOptions,
+    SceneBuffers, Targets, wgpu,
+};
+use pinhole::scene::{Centers, NewColors, SceneUpdate};
+use pinhole::{Colors, Film, Image, LayerSet, RenderSettings, Scene, View};
+
+use crate::appearance::camera;
+use crate::support::appearances::{kinds, settings};
+use crate::{headless, trial};
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let of_kinds = kinds().into_iter().map(|kind| {
+        Trial::test(format!("update::{}", kind.name), move || updated(kind.scene.clone()))
+    });
+    let others = [
+        trial("update::frames_and_bindings_survive_colors", survives),
+        trial("update::colors_of_ranges_in_bricks", in_bricks),
+    ];
+    of_kinds.chain(others).collect()
+}
+
+/// New numbers of every kind, for any spheres.
+struct Numbers {
+    centers: Vec<[f32; 3]>,
+    radii: Vec<f32>,
+    places: Vec<u32>,
+    rgba: Vec<[u8; 4]>,
+}
+
+impl Numbers {
+    fn of(random: &mut Rng, count: usize) -> Self {
+        let all = 0..count;
+        Self {
+            centers: all.clone().map(|_| [0; 3].map(|_| random.f32() * 4.0 - 2.0)).collect(),
+            radii: all.clone().map(|_| 0.1 + random.f32() * 0.3).collect(),
+            places: all.clone().map(|_| random.u32(..40)).collect(),
+            rgba: all.map(|_| [random.u8(..), random.u8(..), 99, random.u8(..) | 0xf0]).collect(),
+        }
+    }
+}
+
+fn shown(
+    headless: &Headless,
+    buffers: &SceneBuffers,
+    settings: &RenderSettings,
+) -> Result<Image, GpuError> {
+    let camera = camera();
+    let view = View::new(&camera, Film::new(40, 40).unwrap());
+    let layers = LayerSet::ALL;
+    Ok(headless.render_uploaded(buffers, &view, settings, layers, &mut |_| Decision::GoOn)?.image)
+}
+
+fn uploaded(headless: &Headless, scene: &Scene) -> Result<SceneBuffers, GpuError> {
+    let camera = camera();
+    let view = View::new(&camera, Film::new(40, 40).unwrap());
+    let settings = RenderSettings::studio();
+    let plan = headless.plan(scene, &view, &settings, LayerSet::ALL, AccelChoice::Auto, 0);
+    headless.upload(scene, &plan.build(scene))
+}
+
+fn updated(mut scene: Scene) -> Result<(), Failed> {
+    let headless = headless()?;
+    let mut random = Rng::with_seed(42);
+    let mut buffers = uploaded(headless, &scene)?;
+    for _ in 0..6 {
+        let first = random.usize(..scene.len());
+        let count = random.usize(1..=scene.len() - first);
+        let Numbers { centers, radii, places, rgba } = Numbers::of(&mut random, count);
+        let colors = match scene.appearance().colors() {
+            Colors::One(_) => None,
+            Colors::Palette { .. } => Some(NewColors::Palette(&places)),
+            Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
+            Colors::Scalars { .. } => Some(NewColors::Scalars(&radii)),
+        };
+        let update = SceneUpdate {
+            first: first as u32,
+            centers: (random.u8(..3) == 0).then_some(Centers::F32(&centers)),
+            radii: (random.u8(..3) == 0).then_some(&radii[..]),
+            colors,
+        };
+        scene.apply(&update)?;
+        headless.update(&mut buffers, &scene, &update)?;
+        let fresh = uploaded(headless, &scene)?;
+        for settings in settings() {
+            if shown(headless, &buffers, &settings)? != shown(headless, &fresh, &settings)? {
+                return Err("another picture".into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Several bricks have copies of a sphere, or none.
+fn in_bricks(headless: &'static Headless) {
+    let [_, _, rgba8] = [0, 4, 8].map(|kind| kinds().swap_remove(kind));
+    let mut scene = rgba8.scene;
+    let mut random = Rng::with_seed(43);
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
+    {
+        let plan = AccelPlan::new(scene.spheres(), choice, 16 * 40);
+        let built = plan.build(scene.spheres());
+        assert!(built.bricks().len() > 1);
+        let mut buffers = headless.upload(&scene, &built.into()).unwrap();
+        let bytes = buffers.bytes();
+        for (first, count) in [(0, 60), (17, 1), (59, 1), (20, 30), (3, 0)] {
+            let mut rgba = Numbers::of(&mut random, count).rgba;
+            rgba.iter_mut().for_each(|color| color[3] = 255);
+            let colors = Some(NewColors::Rgba8(&rgba));
+            let update = SceneUpdate { first, colors, ..SceneUpdate::default() };
+            scene.apply(&update).unwrap();
+            assert!(buffers.takes_in_place(&scene, &update));
+            headless.update(&mut buffers, &scene, &update).unwrap();
+            assert_eq!(buffers.bytes(), bytes);
+            let settings = RenderSettings::default();
+            let camera = camera();
+            let view = View::new(&camera, Film::new(40, 40).unwrap());
+            let fresh = headless.render(&scene, &view, &settings, LayerSet::ALL).unwrap();
+            assert!(shown(headless, &buffers, &settings).unwrap() == fresh, "{choice}");
+        }
+    }
+}
+
+/// What a host of its own does: record new colours, and go on with the frame that it has.
+fn survives(headless: &'static Headless) {
+    let (device, queue) = (headless.device(), headless.queue());
+    let mut scene = kinds().swap_remove(8).scene;
+    let options = RendererOptions { color: ColorTarget::Linear32, ..RendererOptions::default() };
+    let renderer = Renderer::new(device, &options).unwrap();
+    let recolor = Recolor::new(device).unwrap();
+    let mut buffers = SceneBuffers::new(&renderer, device, queue, &scene).unwrap();
+    let target = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 40, height: 40, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: options.color.texture_format(),
+        usage: wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    });
+    let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
+    let targets = Targets { color: &texture, data: None };
+    let mut frame = Frame::new(&renderer, device, &targets).unwrap();
+    let camera = camera();
+    let view = View::new(&camera, Film::new(40, 40).unwrap());
+    let settings = RenderSettings::default();
+    frame.set_view(queue, &buffers, &view, &settings).unwrap();
+
+    let colors = SceneUpdate {
+        first: 7,
+        colors: Some(NewColors::Rgba8(&[[9, 8, 7, 255]; 20])),
+        ..SceneUpdate::default()
+    };
+    scene.apply(&colors).unwrap();
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &colors).unwrap();
+    renderer.record(&mut encoder, &buffers, &frame).unwrap();
+
+    let radii = SceneUpdate { first: 3, radii: Some(&[0.5]), ..SceneUpdate::default() };
+    scene.apply(&radii).unwrap();
+    let refused = recolor.record(device, queue, &mut encoder, &mut buffers, &scene, &radii);
+    assert_eq!(refused, Err(GpuError::NotInPlace));
+    buffers.replace(SceneBuffers::new(&renderer, device, queue, &scene).unwrap());
+    let stale = renderer.record(&mut encoder, &buffers, &frame);
+    assert_eq!(stale, Err(GpuError::OtherScene));
+    frame.set_view(queue, &buffers, &view, &settings).unwrap();
+    renderer.record(&mut encoder, &buffers, &frame).unwrap();
+    queue.submit([encoder.finish()]);
+}
