@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::shaders::ShaderEdit;
+use super::edit::ShaderEdit;
 use crate::accel::BrickKind;
 use crate::camera::CameraKind;
 use crate::denoise::MissingGuide;

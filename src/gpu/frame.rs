@@ -4,9 +4,10 @@ use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
 use super::bands::{BandBuffers, rows_per_band};
 use super::error::{GpuError, check_storage_size, scoped};
+use super::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::order::nearest_first;
 use super::records;
-use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, Renderer};
+use super::renderer::Renderer;
 use super::scene_buffers::{SceneBuffers, SceneId, part};
 use super::seen::Seen;
 use super::tiles::{self, Groups, Tile};

@@ -4,9 +4,9 @@ use std::num::NonZeroU64;
 
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
+use super::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::records;
-use super::renderer::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT, RendererOptions};
-use super::self_test::records::SelfTest;
+use super::renderer_options::RendererOptions;
 use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 
 /// The layouts of all groups that the kernels use.
@@ -83,13 +83,8 @@ fn shapes(primitive: Primitive) -> BindingType {
     }
 }
 
-/// Group 0 of a kernel of the self-test: what all share, an input and an answer for each invocation.
-pub(super) fn self_test<Input, Answer>(device: &Device) -> BindGroupLayout {
-    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
-    layout(device, "pinhole self-test", &kinds)
-}
-
-fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
+/// A layout of bindings that are numbered from 0 on.
+pub(super) fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
     let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
     layout_of(device, label, &kinds)
 }

@@ -93,7 +93,7 @@ impl<'a> Flow<'a> {
     pub(super) fn step(&mut self, step: &Step<'a>, after: &mut After<'_>) -> Result<(), GpuError> {
         // A slice of a list needs one more.
         if self.recorder.dispatches() + 2 > MOST_STAGES {
-            self.submit(after)?;
+            self.send(after)?;
         }
         let whole = self.recorder.groups(step);
         let weight = u64::from(step.layers()) * u64::from(step.rays());
@@ -103,16 +103,16 @@ impl<'a> Flow<'a> {
             if step.is_search() {
                 self.gathered += whole.count() * weight;
             }
-            return if self.gathered >= pace { self.submit(after) } else { Ok(()) };
+            return if self.gathered >= pace { self.send(after) } else { Ok(()) };
         }
-        self.submit(after)?;
+        self.send(after)?;
         let mut left = vec![whole];
         while let Some(slice) =
             Groups::take(&mut left, (self.scene.pace().groups() / weight).max(1))
         {
             self.record(step, Some(slice));
             self.gathered = slice.count() * weight;
-            self.submit(after)?;
+            self.send(after)?;
         }
         Ok(())
     }
@@ -124,7 +124,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Submits what was gathered, and waits until what was submitted before is done.
-    fn submit(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+    fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         let Some(encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -143,7 +143,7 @@ impl<'a> Flow<'a> {
 
     /// Submits what was gathered, and waits until all is done and the buffers are mapped.
     pub(super) fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
-        self.submit(&mut || Ok(()))?;
+        self.send(&mut || Ok(()))?;
         let last = self.submitted.take();
         if let Some(Submitted { index, .. }) = &last {
             self.headless.wait(mapped, index.clone())?;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use wgpu::Limits;
 
-use super::shaders::ShaderEdit;
+use super::edit::ShaderEdit;
 
 /// How a device is opened.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipelin
 use super::appearance::color_words;
 use super::error::{GpuError, scoped};
 use super::layouts::{layout_of, storage, uniform};
-use super::renderer::pipeline;
+use super::pipeline::pipeline;
 use super::scene_buffers::{BrickBuffers, SceneBuffers, binding_limit};
 use super::scene_summary::SceneSummary;
 use super::shaders::{Kernel, part};

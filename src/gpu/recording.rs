@@ -1,27 +1,20 @@
 //! What a device did, for the checker: rays and hits on their way back to the host, and the numbers that the
 //! device was given.
 
-use wgpu::{Buffer, Device};
-
 use super::error::GpuError;
-use super::frame::Frame;
 use super::headless::Headless;
 use super::primary::Output;
 use super::progress::{Watch, go_on};
-use super::readback::ReadableBuffer;
 use super::records::{self, SceneSpace};
 use super::renderers::RendererKey;
 use super::scene_buffers::SceneBuffers;
-use super::tiles::Tile;
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
-use crate::film::Film;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
-    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay,
-    UploadedView,
+    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
 };
 
 /// A camera, and the numbers that kernels get of it and of the scene's box.
@@ -134,75 +127,4 @@ impl Headless {
         })?;
         Ok(Checker::new(scene)?.certify(&recording))
     }
-}
-
-/// The rays and hits of a tile.
-#[derive(Debug)]
-pub(super) struct ReadableTrace {
-    hits: ReadableBuffer,
-    rays: ReadableBuffer,
-}
-
-impl ReadableTrace {
-    /// `None` for a frame that keeps no rays.
-    pub(super) fn new(device: &Device, frame: &Frame) -> Option<Self> {
-        let (hits, rays) = frame.traced();
-        Some(Self {
-            hits: ReadableBuffer::new(device, "pinhole hits read-back", hits.size()),
-            rays: ReadableBuffer::new(device, "pinhole rays read-back", rays?.size()),
-        })
-    }
-
-    pub(super) fn buffers(&self) -> [&Buffer; 2] {
-        [self.hits.buffer(), self.rays.buffer()]
-    }
-
-    pub(super) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
-        let (hits, rays) = frame.traced();
-        self.hits.record_copy(encoder, hits);
-        if let Some(rays) = rays {
-            self.rays.record_copy(encoder, rays);
-        }
-    }
-
-    /// Copies the mapped buffers to the tile's place among the pixels, and unmaps them.
-    pub(super) fn read_into(
-        &self,
-        pixels: &mut [TracedPixel],
-        film: &Film,
-        tile: Tile,
-    ) -> Result<(), GpuError> {
-        let [x, y] = tile.origin.map(|start| start as usize);
-        let [width, height] = tile.size.map(|side| side as usize);
-        let mut rows: Vec<&mut [TracedPixel]> = pixels
-            .chunks_mut(film.width() as usize)
-            .skip(y)
-            .take(height)
-            .map(|row| &mut row[x..x + width])
-            .collect();
-        self.rays.read(|rays: &[records::TracedRay]| {
-            for (row, rays) in rows.iter_mut().zip(rays.chunks(width)) {
-                for (pixel, ray) in row.iter_mut().zip(rays) {
-                    pixel.ray = traced_ray(*ray);
-                }
-            }
-        })?;
-        self.hits.read(|hits: &[records::Hit]| {
-            for (row, hits) in rows.iter_mut().zip(hits.chunks(width)) {
-                for (pixel, [t, id, ..]) in row.iter_mut().zip(hits) {
-                    if pixel.ray.is_some() {
-                        (pixel.t, pixel.id) = (f32::from_bits(*t), *id);
-                    }
-                }
-            }
-        })
-    }
-}
-
-/// Cleared memory is no ray.
-fn traced_ray(
-    [ox, oy, oz, distance, dx, dy, dz, is_traced]: records::TracedRay,
-) -> Option<TracedRay> {
-    let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
-    (is_traced != 0.0).then_some(TracedRay { origin, direction, distance })
 }

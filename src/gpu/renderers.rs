@@ -5,12 +5,14 @@ use std::collections::{HashMap, HashSet};
 
 use wgpu::Device;
 
+use super::edit::ShaderEdit;
 use super::error::GpuError;
+use super::formats::ColorTarget;
 use super::lit::{AllLitPasses, LitKey, LitPasses};
 use super::recolor::Recolor;
-use super::renderer::{ColorTarget, Query, Renderer, RendererOptions};
+use super::renderer::Renderer;
+use super::renderer_options::{Query, RendererOptions};
 use super::scene_buffers::SceneBuffers;
-use super::shaders::ShaderEdit;
 use crate::accel::BrickKind;
 use crate::camera::{Camera, CameraKind};
 

@@ -5,8 +5,9 @@
 
 use std::borrow::Cow;
 
+use super::edit::ShaderEdit;
 use super::error::GpuError;
-use super::renderer::ColorTarget;
+use super::formats::ColorTarget;
 use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
 
@@ -15,17 +16,6 @@ use crate::camera::{CameraKind, camera_table};
 pub(super) struct Part {
     file: &'static str,
     source: Cow<'static, str>,
-}
-
-/// A change of a shader: for experiments, and for tests that a fault is found.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct ShaderEdit {
-    /// A file of the folder `shaders`.
-    pub file: String,
-    /// What is replaced, wherever it stands in the file.
-    pub find: String,
-    /// What it is replaced by.
-    pub replace: String,
 }
 
 macro_rules! part {

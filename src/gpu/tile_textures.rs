@@ -4,10 +4,10 @@ use wgpu::{Device, TextureFormat};
 
 use super::derived::Derived;
 use super::error::GpuError;
+use super::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::frame::{DataTargets, Targets};
 use super::readback::{ReadableBuffer, ReadableTexture};
 use super::records::{self, NO_HIT};
-use super::renderer::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use super::tiles::Tile;
 use crate::accel::PlannedBuffer;
 use crate::image::Image;

@@ -1,5 +1,6 @@
 //! Rules of ARCHITECTURE.md that a text search can guard.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -62,6 +63,46 @@ fn only_the_gpu_module_and_the_program_name_wgpu() {
             path.display()
         );
     }
+}
+
+/// Who uses whom among the modules of the GPU: a module that uses another is not used by it, directly or otherwise.
+#[test]
+fn modules_of_the_gpu_do_not_import_each_other_in_circles() {
+    let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/gpu");
+    for (path, text) in sources("src/gpu") {
+        let parts: Vec<String> = path
+            .strip_prefix(&root)
+            .unwrap()
+            .with_extension("")
+            .iter()
+            .map(|part| part.to_str().unwrap().to_owned())
+            .collect();
+        if parts[0] == "mod" {
+            continue;
+        }
+        // From a file in a folder, `super` is that folder, unless it is the folder's own file.
+        let is_within = parts.len() > 1 && parts[1] != "mod";
+        let to_gpu = if is_within { "use super::super::" } else { "use super::" };
+        let text = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+        let named = text.lines().filter_map(|line| {
+            let line = line.strip_prefix("pub(super) ").unwrap_or(line);
+            line.strip_prefix(to_gpu).or_else(|| line.strip_prefix("use crate::gpu::"))
+        });
+        let modules = named.map(|rest| rest.split([':', ';', ' ']).next().unwrap().to_owned());
+        uses.entry(parts[0].clone()).or_default().extend(modules);
+    }
+    let known: BTreeSet<String> = uses.keys().cloned().collect();
+    assert!(known.len() > 20 && uses["headless"].contains("lit"), "{uses:?}");
+    // Whoever uses nobody that is left is taken away; a circle stays.
+    while let Some(free) = uses
+        .iter()
+        .find(|(name, of)| of.iter().all(|m| m == *name || !uses.contains_key(m)))
+        .map(|(name, _)| name.clone())
+    {
+        uses.remove(&free);
+    }
+    assert!(uses.is_empty(), "{uses:#?}");
 }
 
 #[test]

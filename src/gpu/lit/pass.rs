@@ -5,9 +5,10 @@ use wgpu::{
     Device,
 };
 
+use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
-use crate::gpu::renderer::pipeline;
-use crate::gpu::shaders::{Kernel, ShaderEdit};
+use crate::gpu::pipeline::pipeline;
+use crate::gpu::shaders::Kernel;
 
 /// A kernel, ready to be recorded into any encoder of its device.
 #[derive(Debug)]

@@ -10,11 +10,12 @@ use super::pass::Pass;
 use super::records::{GROUPS_NEEDED, Look, QUEUE_HEAD, Stage};
 use crate::accel::Structure;
 use crate::camera::CameraKind;
+use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::records;
-use crate::gpu::renderer::RendererOptions;
-use crate::gpu::shaders::{Kernel, ShaderEdit, Turn};
+use crate::gpu::renderer_options::RendererOptions;
+use crate::gpu::shaders::{Kernel, Turn};
 
 /// What sets of passes differ in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -177,3 +178,35 @@ impl LitPasses {
 
 /// The passes of a device, each set built when it is first wanted.
 pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
+
+#[cfg(test)]
+mod tests {
+    use super::super::kernels::{Sources, Surfaces};
+    use super::*;
+    use crate::accel::ListLayout;
+
+    /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
+    /// device offers, with no driver at all.
+    #[test]
+    fn every_pass_is_accepted_by_a_device_with_webgpu_limits() {
+        let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
+        assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
+        let mut modes = vec![Mode::Studio];
+        for surfaces in [Surfaces::Matt, Surfaces::Any] {
+            for sources in [Sources::None, Sources::Any] {
+                for sky in [SkyKind::Plain, SkyKind::Image] {
+                    modes.push(Mode::Path(surfaces, sources, sky));
+                }
+            }
+        }
+        for mode in modes {
+            for &camera in CameraKind::ALL {
+                // The structure with the most buffers.
+                let structure = Structure::NestedGrid(ListLayout::Referenced);
+                let (occluders, several_bricks) = (structure, true);
+                let key = LitKey { camera, mode, structure, occluders, several_bricks };
+                LitPasses::new(&device, key, &[]).unwrap();
+            }
+        }
+    }
+}

@@ -12,9 +12,9 @@ use super::report::{SelfTestExtent, SelfTestReport};
 use super::{exactness, inputs, loops, rounding};
 use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::frame::iteration_limit;
-use crate::gpu::layouts;
+use crate::gpu::layouts::{layout, storage, uniform};
+use crate::gpu::pipeline::pipeline;
 use crate::gpu::readback::ReadableBuffer;
-use crate::gpu::renderer::pipeline;
 use crate::gpu::shaders::{Probe, self_test_kernel};
 
 /// Inputs of each operation: multiples of a workgroup.
@@ -121,7 +121,7 @@ struct Dispatch {
 
 impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
     fn new(device: &Device, probe: Probe) -> Result<Self, GpuError> {
-        let layout = scoped(device, || layouts::self_test::<Input, Answer>(device))?;
+        let layout = scoped(device, || layout_of::<Input, Answer>(device))?;
         let pipeline = pipeline(device, &self_test_kernel(probe), &[&layout])?;
         Ok(Self { pipeline, layout, records: PhantomData })
     }
@@ -193,6 +193,12 @@ impl Dispatch {
     fn read<Answer: Pod>(&self) -> Result<Vec<Answer>, GpuError> {
         self.readable.read(<[Answer]>::to_vec)
     }
+}
+
+/// Group 0 of a kernel of the self-test: what all share, an input and an answer for each invocation.
+fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
+    let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
+    layout(device, "pinhole self-test", &kinds)
 }
 
 #[cfg(test)]
