@@ -12,7 +12,10 @@ use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
 use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
-use pinhole::{Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere};
+use pinhole::{
+    Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, Points, RenderSettings,
+    Scene, Sphere,
+};
 
 /// A scene, how it is lit and seen, and what there is in it, in words.
 pub(crate) struct RandomView {
@@ -39,7 +42,7 @@ pub(crate) fn view(seed: u64) -> RandomView {
             SkyLight::Image { .. } => "an image",
         }
     );
-    let scene = Scene::new(&spheres).unwrap();
+    let scene = random.scene(&spheres);
     RandomView { scene, camera, film: Film::new(24, 18).unwrap(), settings, name }
 }
 
@@ -111,6 +114,33 @@ impl Random {
             (true, 0) => 0.0,
             (true, _) => self.0.f32(),
         }
+    }
+
+    /// The spheres with their own colors, with bytes and alpha in their place, or with numbers and a color map.
+    fn scene(&mut self, spheres: &[Sphere]) -> Scene {
+        let count = spheres.len();
+        let colors = match self.0.u32(0..3) {
+            0 => return Scene::new(spheres).unwrap(),
+            1 => {
+                let share = if self.chance(0.5) { 0.4 } else { 0.0 };
+                let color = |sphere: &Sphere| {
+                    let [r, g, b] = sphere.color.to_srgb8();
+                    [r, g, b, if self.chance(share) { self.0.u8(..) } else { 255 }]
+                };
+                Colors::Rgba8(spheres.iter().map(color).collect())
+            }
+            _ => {
+                let table = (0..self.0.usize(1..9)).map(|_| self.color(1.0)).collect();
+                let map = ColorMap::new(table, [-1.0, 2.0]).unwrap();
+                let values = (0..count).map(|_| 4.0 * self.0.f32() - 1.5).collect();
+                Colors::Scalars { values, map }
+            }
+        };
+        let finishes = spheres.iter().map(|sphere| sphere.finish).collect();
+        let appearance =
+            Appearance::new(colors).with_finishes(finishes, (0..count as u32).collect());
+        let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
+        Scene::from_parts(Points::F64(points.collect()), appearance).unwrap()
     }
 
     fn spheres(&mut self) -> Vec<Sphere> {
