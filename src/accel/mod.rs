@@ -44,6 +44,8 @@ pub use brick::{Accel, Brick, Index, Structure};
 pub use grid::{Grid, GridStatistics, ListLayout};
 pub use grid_build::{BuiltGrid, GridBudget, build_grid};
 pub use grid_check::GridError;
+#[cfg(feature = "gpu")]
+pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};
 pub use primitive::{BrickKind, Primitive};
 pub use query::{NO_HIT, Nearest, RayF32};

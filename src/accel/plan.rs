@@ -37,7 +37,7 @@ const MOST_IN_A_CUBE: f32 = 256.0;
 
 /// How many spheres one dispatch tries without a structure: below the 65,535 iterations after which Mesa
 /// 22.3's lavapipe leaves a loop silently.
-const LIST_LEN: usize = 3 << 14;
+pub(crate) const LIST_LEN: usize = 3 << 14;
 
 /// What a binding may have on most devices; lists of more would not be numbered by 30 bits.
 const MOST_BINDING_BYTES: u64 = i32::MAX as u64;

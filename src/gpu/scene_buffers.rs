@@ -15,7 +15,7 @@ use super::records::{self, SceneSpace};
 use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
 use super::tiles::Groups;
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickKind, Index, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickKind, Index, LIST_LEN, Structure};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -44,6 +44,8 @@ pub struct SceneBuffers {
     structure: Structure,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
+    /// How many spheres a ray tries in one dispatch, if it is many.
+    tests_per_ray: usize,
     /// What the last picture of the scene taught of the device.
     pace: Mutex<Pace>,
     /// Of the spheres that cast shadows in a studio, where some do not and a studio was planned for.
@@ -133,6 +135,7 @@ impl SceneBuffers {
             bricks,
             bytes,
             occluders: None,
+            tests_per_ray: tests_per_ray(accel),
             pace: Mutex::new(Pace::new(tests_per_ray(accel))),
         })
     }
@@ -199,6 +202,13 @@ impl SceneBuffers {
 
     pub(super) fn id(&self) -> SceneId {
         self.id
+    }
+
+    /// How many rays, at most so many, one invocation may search one after the other: where each tries all spheres, no
+    /// more than one dispatch may loop for.
+    pub(super) fn rays_at_once(&self, most: u32) -> u32 {
+        let fits = LIST_LEN / self.tests_per_ray.max(1);
+        u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, most)
     }
 
     /// How much of a picture to submit at once.

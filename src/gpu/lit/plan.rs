@@ -155,14 +155,14 @@ mod tests {
     fn a_tile_takes_its_paths_and_every_pixel_its_sums() {
         let settings = RenderSettings::studio();
         let plan = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
-        assert_eq!((plan.tile_size, plan.tile_count), ([512, 512], 1));
+        assert_eq!((plan.tile_size, plan.tile_count), ([512, 256], 2));
         let pixels = 1 << 18;
-        // Two samples in flight, of ten vectors each.
-        assert_eq!(bytes(&plan, "paths"), 2 * 160 * pixels);
-        assert_eq!(bytes(&plan, "lists"), 2 * 12 * pixels + 16 + 24);
+        // Four samples of every pixel of a tile in flight, of ten vectors each.
+        assert_eq!(bytes(&plan, "paths"), 4 * 160 * pixels / 2);
+        assert_eq!(bytes(&plan, "lists"), 4 * 12 * pixels / 2 + 16 + 24);
         assert_eq!(
             (bytes(&plan, "sums"), bytes(&plan, "sums read-back")),
-            (48 * pixels, 48 * pixels)
+            (48 * pixels, 48 * pixels / 2)
         );
         let all = plan.scene_buffers.iter().chain(&plan.tile_buffers).chain(&plan.tile_textures);
         assert_eq!(plan.device_bytes, all.map(|buffer| buffer.bytes).sum::<u64>());

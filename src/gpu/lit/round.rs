@@ -240,6 +240,7 @@ impl<'a> Steps<'a> {
         let first = &self.round.scene.bricks()[0].surface_group;
         let lights = lit.casts_shadow.len() as u32;
         let directions = lit.look.occlusion_samples;
+        let at_once = self.round.occluders.rays_at_once(self.round.at_once);
         for surface in 0..lit.most_surfaces {
             let stage = self.surface(stage, surface, surface + 1 == lit.most_surfaces);
             self.extend(stage)?;
@@ -260,8 +261,8 @@ impl<'a> Steps<'a> {
             }
             for light in (0..directions).step_by(BITS) {
                 let count = (directions - light).min(BITS as u32);
-                for first in (light..light + count).step_by(self.round.at_once as usize) {
-                    let count = (light + count - first).min(self.round.at_once);
+                for first in (light..light + count).step_by(at_once as usize) {
+                    let count = (light + count - first).min(at_once);
                     let stage = Stage { light: first, count, ..stage };
                     self.search_occluders(passes.ambient, stage, Area::Occluders);
                     self.weigh(count);

@@ -13,6 +13,10 @@ use crate::gpu::tiles::WORKGROUP_SIDE;
 /// The most paths that are followed at a time. Their state then takes 56 to 88 MiB.
 const MOST_PATHS: u64 = 1 << 19;
 
+/// How many samples of a pixel are followed together, if there are so many: each of them then costs less, because their
+/// sum is read and written once. Tiles are smaller for it.
+const TOGETHER: u32 = 4;
+
 /// Sizes of what all tiles share, and of what each has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct LitSizes {
@@ -31,8 +35,9 @@ impl LitSizes {
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_path = 16 * slots.max(FILM_SLOTS);
         let most = (binding / of_path).clamp(64, MOST_PATHS);
-        let width = u64::from(film.width()).min((most / 8).max(8));
-        let rows = (most / width).max(1);
+        let most_pixels = (most / u64::from(samples.clamp(1, TOGETHER))).max(64);
+        let width = u64::from(film.width()).min((most_pixels / 8).max(8));
+        let rows = (most_pixels / width).max(1);
         let side = u64::from(WORKGROUP_SIDE);
         let rows = if rows > side { rows / side * side } else { rows };
         // No more than the film, so they fit.

@@ -6,7 +6,8 @@ use pinhole::gpu::{
     Decision, GpuError, Headless, HeadlessOptions, HostedPicture, Progress, Renderer,
     RendererOptions, SceneBuffers, wgpu,
 };
-use pinhole::{Film, LayerSet};
+use pinhole::render::{Integrator, Occlusion};
+use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
 use super::scenes::{self, LitView};
 use crate::embedding::Host;
@@ -18,6 +19,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::passes::too_much_for_one_recording_is_refused", too_much),
         trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
+        trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
         trial("light::passes::what_is_stopped_within_a_sample_gives_no_picture", stopped),
     ]
@@ -150,6 +152,31 @@ fn sums(headless: &'static Headless) {
         let picture = headless.render(scene, &view.seen(), settings, LayerSet::COLOR).unwrap();
         assert_eq!(picture.color(), wanted, "{name}");
     }
+}
+
+/// Sixteen directions of 9,000 spheres each are more than some devices loop for.
+fn long_list(headless: &'static Headless) {
+    let mut view = named("studio_ambient_occlusion");
+    let spheres: Vec<[f32; 4]> = (0..9000_u32)
+        .map(|i| {
+            let [x, y, z] = [i % 30, i / 30 % 30, i / 900].map(|c| 0.15 * c as f32 - 2.2);
+            [x, y, z, 0.07]
+        })
+        .collect();
+    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
+    view.film = Film::new(40, 32).unwrap();
+    view.settings.sampling.samples = 1;
+    let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
+    studio.occlusion = Some(Occlusion { radius: None, samples: 16 });
+    let pictures = [AccelChoice::List, AccelChoice::Grid].map(|choice| {
+        let LitView { scene, settings, .. } = &view;
+        let accel = headless.plan_accel(scene, choice).build(scene.spheres());
+        let buffers = headless.upload(scene, &accel.into()).unwrap();
+        let (layers, go_on) = (LayerSet::COLOR, &mut |_: &Progress| Decision::GoOn);
+        let picture = headless.render_uploaded(&buffers, &view.seen(), settings, layers, go_on);
+        picture.unwrap().image
+    });
+    assert_eq!(pictures[0], pictures[1]);
 }
 
 /// While a picture is made, the device sums it up; at the end, the host does.
