@@ -17,6 +17,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light_program::a_time_gives_at_least_one_sample", time),
         trial("light_program::a_signal_leaves_what_there_is_if_that_is_asked_for", signal),
         trial("light_program::a_plan_knows_of_light", plan),
+        trial("light_program::shadows_follow_the_choice_of_structure", shadows),
     ]
 }
 
@@ -150,4 +151,38 @@ fn plan(headless: &'static Headless) {
     std::fs::write(folder.path().join("scene.toml"), SCENE.replace("[ground]\n", "")).unwrap();
     assert_eq!(plan("--size 64x48"), None);
     assert_eq!(plan("--size 64x48 --integrator path"), state);
+}
+
+/// Of 80 spheres every other casts no shadow in a studio.
+fn shadows(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene =
+        "[studio]\n[sampling]\nsamples = 2\n[film]\nwidth = 16\nheight = 12\n".to_owned();
+    for i in 0..80 {
+        let (x, y, opacity) = (i % 10, i / 10, 1.0 - 0.5 * f64::from(i % 2));
+        scene +=
+            &format!("[[spheres]]\ncenter = [{x}, {y}, 0]\nradius = 0.4\nopacity = {opacity}\n");
+    }
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let counts = |flags: &str| {
+        let flags = format!("plan scene.toml --json {flags}");
+        let output = command(folder.path(), headless, &flags).output().unwrap();
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let names: Vec<_> = report["buffers"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|buffer| buffer["name"].clone())
+            .collect();
+        ["nodes", "cells"].map(|name| names.iter().filter(|found| **found == name).count())
+    };
+    assert_eq!(counts("--accel tree"), [2, 0]);
+    assert_eq!(counts("--accel grid"), [0, 2]);
+    assert_eq!(counts("--accel tree --integrator path"), [1, 0]);
+    assert_eq!(counts("--accel tree --integrator primary"), [1, 0]);
+    let pictures = ["tree", "grid", "list"].map(|accel| {
+        run(folder.path(), headless, &format!("render scene.toml -o out.png --accel {accel}"));
+        std::fs::read(folder.path().join("out.png")).unwrap()
+    });
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }
