@@ -22,7 +22,9 @@ pub(super) struct Flow<'a> {
     encoder: Option<CommandEncoder>,
     /// Workgroups of searches in the encoder.
     gathered: u64,
-    /// The tile and the samples that will be summed up there once the encoder has been submitted.
+    /// How many samples a tile will have after the round that is recorded.
+    end: u32,
+    /// The tiles, and the samples that will be summed up there once the encoder has been submitted.
     deposits: Vec<(usize, u32)>,
     submitted: Option<Submitted>,
     /// When the submission before that was done.
@@ -51,6 +53,7 @@ impl<'a> Flow<'a> {
             recorder: Recorder::new(frame, passes.advance(), headless.is_indirect()),
             encoder: None,
             gathered: 0,
+            end: 0,
             deposits: Vec::new(),
             submitted: None,
             last_done: Instant::now(),
@@ -73,13 +76,8 @@ impl<'a> Flow<'a> {
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         self.begin(tile);
-        for step in steps {
-            self.step(step, after)?;
-            if step.moment == Some(Moment::Deposited) {
-                self.deposits.push((tile, end));
-            }
-        }
-        Ok(())
+        self.end = end;
+        steps.iter().try_for_each(|step| self.step(step, after))
     }
 
     /// Turns to a tile, of which no path is followed yet.
@@ -102,6 +100,9 @@ impl<'a> Flow<'a> {
             self.record(step, None);
             if step.is_search() {
                 self.gathered += whole.count() * weight;
+            }
+            if step.moment == Some(Moment::Deposited) {
+                self.deposits.push((self.recorder.tile, self.end));
             }
             return if self.gathered >= pace { self.send(after) } else { Ok(()) };
         }

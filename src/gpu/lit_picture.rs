@@ -127,6 +127,7 @@ impl Work<'_> {
             }) {
                 Err(GpuError::Stopped) if decision == Decision::Finish && first > 0 => {
                     flow.abandon()?;
+                    check_spent(&frame, &mut flow)?;
                     break;
                 }
                 done => done?,
@@ -186,11 +187,16 @@ impl Work<'_> {
                 start = end;
             }
         }
-        frame.record_copy_spent(flow.encoder());
-        flow.finish(&[frame.spent_back.buffer()])?;
-        match frame.spent_back.read(|words: &[u32]| words[0])? {
-            0 => Ok(()),
-            _ => Err(GpuError::Steps),
-        }
+        check_spent(frame, flow)
+    }
+}
+
+/// Waits for all that is submitted; an error if rays were given up.
+fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
+    frame.record_copy_spent(flow.encoder());
+    flow.finish(&[frame.spent_back.buffer()])?;
+    match frame.spent_back.read(|words: &[u32]| words[0])? {
+        0 => Ok(()),
+        _ => Err(GpuError::Steps),
     }
 }

@@ -6,6 +6,7 @@ use pinhole::gpu::{
     Decision, GpuError, Headless, HeadlessOptions, HostedPicture, Progress, Renderer,
     RendererOptions, SceneBuffers, wgpu,
 };
+use pinhole::image::Layer;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
@@ -21,6 +22,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
+        trial(
+            "light::passes::what_is_finished_within_a_batch_says_how_many_samples_it_has",
+            unfinished,
+        ),
         trial("light::passes::what_is_stopped_within_a_sample_gives_no_picture", stopped),
     ]
 }
@@ -207,6 +212,40 @@ fn noise(headless: &'static Headless) {
     assert!((last / at_end - 1.0).abs() < 1e-4, "{last} {at_end}");
     let (_, early) = told.iter().find(|(samples, _)| *samples == 4).unwrap();
     assert!(early.unwrap() > last, "{told:?}");
+}
+
+/// Tiles that had more samples by then keep them; each pixel is that of a picture of so many samples.
+fn unfinished(headless: &'static Headless) {
+    let mut view = named("path_emissive_both");
+    view.film = Film::new(900, 500).unwrap();
+    view.settings.sampling.samples = 64;
+    let layers = LayerSet::COLOR.with(Layer::Samples);
+    let LitView { scene, settings, .. } = &view;
+    let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
+    let buffers = headless.upload(scene, &accel.into()).unwrap();
+    let mut calls = 0;
+    let watch = &mut |progress: &Progress| {
+        calls += u32::from(progress.samples == 4);
+        if calls == 8 { Decision::Finish } else { Decision::GoOn }
+    };
+    let early = headless.render_uploaded(&buffers, &view.seen(), settings, layers, watch).unwrap();
+    assert_eq!(early.samples, 4);
+    let counts = early.image.samples().unwrap();
+    let most = *counts.iter().max().unwrap();
+    assert!(counts.contains(&4) && most > 4, "at most {most}");
+    for samples in 4..=most {
+        if !counts.contains(&samples) {
+            continue;
+        }
+        let mut asked = settings.clone();
+        asked.sampling.samples = samples;
+        let whole = headless.render(scene, &view.seen(), &asked, LayerSet::COLOR).unwrap();
+        let pixels = counts.iter().zip(early.image.color()).zip(whole.color());
+        for ((count, found), wanted) in pixels {
+            let is_same = found.map(f32::to_bits) == wanted.map(f32::to_bits);
+            assert!(*count != samples || is_same, "{samples}: {found:?} {wanted:?}");
+        }
+    }
 }
 
 fn stopped(headless: &'static Headless) {
