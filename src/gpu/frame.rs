@@ -293,7 +293,7 @@ impl Frame {
         (&self.hits, self.rays.as_ref())
     }
 
-    /// Two u32, of which kernels set the first if a ray tried so many spheres that it was given up: then some pixels are wrong.
+    /// One u32, which kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
     /// 0 after creation, and not set back; read it once a submission is done, and clear it then.
     ///
     /// Usage: `COPY_SRC`, `COPY_DST`. Software devices give up after 8,000 spheres and cells, because old ones

@@ -80,8 +80,7 @@ impl HostedPicture {
     ) -> Result<(), GpuError> {
         let Self { passes, frame, lit, is_indirect } = self;
         let occluders = scene.occluders(settings)?;
-        // No more than there are paths, so it fits.
-        let room = frame.sizes.paths() as u32;
+        let room = frame.sizes.room();
         let round = Round { passes, lit, scene, occluders, room, at_once: AT_ONCE };
         let mut recorder = Recorder::new(frame, passes.advance(), *is_indirect);
         for tile in 0..frame.tiles.len() {

@@ -155,7 +155,9 @@ impl Work<'_> {
                 totals.add(&sums::write(image, tile.tile, found, samples));
             })?;
         }
-        Ok((progress.samples, totals))
+        // Tiles may have more than the others if the picture was finished within a batch.
+        let every = flow.samples.iter().copied().min().unwrap_or(progress.samples);
+        Ok((every, totals))
     }
 
     /// Takes some samples of every pixel. `go_on` is told how much of all work is done.
@@ -167,8 +169,7 @@ impl Work<'_> {
         go_on: &mut dyn FnMut(f64) -> bool,
     ) -> Result<(), GpuError> {
         let Self { passes, scenes, lit, at_once, .. } = *self;
-        // No more than there are samples or pixels in a tile, so it fits.
-        let room = frame.sizes.paths() as u32;
+        let room = frame.sizes.room();
         let round =
             Round { passes, lit, scene: scenes.all, occluders: scenes.occluders, room, at_once };
         let (total, tiles) = (f64::from(self.settings.sampling.samples), frame.tiles.len());
@@ -195,8 +196,5 @@ impl Work<'_> {
 fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
     frame.record_copy_spent(flow.encoder());
     flow.finish(&[frame.spent_back.buffer()])?;
-    match frame.spent_back.read(|words: &[u32]| words[0])? {
-        0 => Ok(()),
-        _ => Err(GpuError::Steps),
-    }
+    frame.read_spent()
 }

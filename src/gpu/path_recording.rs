@@ -50,10 +50,7 @@ impl Keeper<'_> {
                 // Of one sample, rounding has left nothing out.
                 sums.map(|sum| [sum[0], sum[2]]).collect()
             })?;
-            return match frame.spent_back.read(|words: &[u32]| words[0])? {
-                0 => Ok(()),
-                _ => Err(GpuError::Steps),
-            };
+            return frame.read_spent();
         }
         self.paths.record_copy(flow.encoder(), &frame.paths);
         flow.finish(&[self.paths.buffer()])?;
@@ -159,8 +156,7 @@ impl Headless {
         samples: Range<u32>,
         watch: &mut Watch<'_>,
     ) -> Result<Vec<RecordedSample>, GpuError> {
-        // A rectangle of at most LONGEST_SIDE squared.
-        let room = frame.sizes.paths() as u32;
+        let room = frame.sizes.room();
         let round = Round { passes, lit, scene: all, occluders, room, at_once: AT_ONCE };
         let mut keeper = Keeper {
             frame,

@@ -61,8 +61,8 @@ pub(super) struct Brick {
     pub(super) _pad: u32,
 }
 
-/// Whether an invocation was given up, and whether a path goes on.
-pub(super) type Status = [u32; 2];
+/// Whether an invocation was given up.
+pub(super) type Status = u32;
 
 /// The bits of t, id and place, and of where the ray starts: one `vec4u`.
 pub(super) type Hit = [u32; 4];

@@ -169,6 +169,14 @@ impl LitFrame {
         self.spent_back.record_copy(encoder, &self.queue);
     }
 
+    /// An error if rays were given up; what was copied must be mapped.
+    pub(in crate::gpu) fn read_spent(&self) -> Result<(), GpuError> {
+        match self.spent_back.read(|words: &[u32]| words[0])? {
+            0 => Ok(()),
+            _ => Err(GpuError::Steps),
+        }
+    }
+
     /// Records the copy of a tile's sums.
     pub(in crate::gpu) fn record_copy_film(&self, encoder: &mut CommandEncoder, tile: usize) {
         self.film_back.record_copy(encoder, &self.tiles[tile].film);

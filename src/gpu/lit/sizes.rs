@@ -53,8 +53,13 @@ impl LitSizes {
         Self { tile, in_flight: 1, slots: slots(mode) }
     }
 
-    /// How many paths there is room for.
-    pub(in crate::gpu) fn paths(&self) -> u64 {
+    /// How many paths there is room for, as kernels count them.
+    pub(in crate::gpu) fn room(&self) -> u32 {
+        // At most MOST_PATHS, or a rectangle that is recorded; so it fits.
+        self.paths() as u32
+    }
+
+    fn paths(&self) -> u64 {
         self.pixels() * u64::from(self.in_flight)
     }
 
