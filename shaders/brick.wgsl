@@ -14,6 +14,12 @@ struct Nearest {
 // Index of each shape in input order.
 @group(1) @binding(2) var<storage, read> ids: array<u32>;
 
+// The distance to a shape, or NO_HIT.
+fn distance_to(ray: Ray, place: u32) -> f32 {
+    let shape = shapes[place];
+    return select(intersect(ray, shape).t, NO_HIT, is_left(place, shape));
+}
+
 // Takes a shape if it is nearer, or as near and of a smaller id: the answer does not depend on the order
 // in which shapes are tried. Ids are read only here, because a read is dear on a software device.
 fn offer(nearest: ptr<function, Nearest>, t: f32, place: u32) {
@@ -23,4 +29,17 @@ fn offer(nearest: ptr<function, Nearest>, t: f32, place: u32) {
             *nearest = Nearest(t, id, place);
         }
     }
+}
+
+// What of the brick is nearer than what has been found before it, or else that.
+fn nearest_hit(entry: Entry, before: Hit) -> Hit {
+    var nearest = Nearest(before.t, before.id, 0u);
+    if (entry.is_inside) {
+        find_nearest(entry.ray, entry.inverse, &nearest);
+    }
+    var hit = before;
+    if (nearest.id != before.id) {
+        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place, entry.distance);
+    }
+    return hit;
 }

@@ -7,7 +7,8 @@ struct Found {
     density: f32,
     // Over the density.
     radiance: vec3f,
-    sphere: vec4f,
+    // Which emitter it is, or NO_EMITTER.
+    emitter: u32,
 }
 
 fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
@@ -15,11 +16,12 @@ fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
     let lamp = sample_lamp(light, position, u);
     let sources = f32(look.source_count);
     let density = select(0.0, 1.0 / (2.0 * PI * lamp.sun * sources), lamp.sun > 0.0);
-    return Found(lamp.direction, lamp.distance, density, PI * sources * lamp.strength, vec4f(0.0));
+    return Found(lamp.direction, lamp.distance, density, PI * sources * lamp.strength, NO_EMITTER);
 }
 
 fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
-    let found = emitter(chosen_emitter(choice));
+    let which = chosen_emitter(choice);
+    let found = emitter(which);
     let density = emitter_density(found, position) / f32(look.source_count);
     let toward = found.sphere.xyz - position;
     let length = sqrt(max(dot(toward, toward), 1e-30));
@@ -29,14 +31,14 @@ fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
     let foot = toward - middle * direction;
     let distance = middle - sqrt(max(found.sphere.w * found.sphere.w - dot(foot, foot), 0.0));
     let radiance = select(vec3f(0.0), found.radiance / max(density, 1e-30), density > 0.0);
-    return Found(direction, max(distance, 0.0), density, radiance, found.sphere);
+    return Found(direction, max(distance, 0.0), density, radiance, which);
 }
 
 fn find_sky(u: vec2u) -> Found {
     let found = sample_sky(u);
     let density = found.w / f32(look.source_count);
     let radiance = sky_radiance(found.xyz) / max(density, 1e-30);
-    return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), vec4f(0.0));
+    return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), NO_EMITTER);
 }
 
 fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
@@ -58,10 +60,9 @@ fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u3
     let is_balanced = found.density > 0.0 && look.light_sampling == LIGHT_MULTIPLE;
     let light = through * r.value * found.radiance * select(1.0, balanced, is_balanced);
     let ray = Ray(position, found.direction);
-    let to_far_wall = max(2.0 * dot(at.vertex.sphere.xyz - position, found.direction), 0.0);
-    let is_in_own = at.vertex.is_back && to_far_wall < found.distance;
+    let is_in_own = at.vertex.is_back && far_wall_of(at.vertex, found.direction) < found.distance;
     let is_below = at.vertex.sphere.w > 0.0 && ground_distance(ray, 0.0) < found.distance;
     let is_open = any(light > vec3f(0.0)) && !is_in_own && !is_below && !is_end;
     return DirectLight(vec4f(found.direction, select(0.0, found.distance, is_open)),
-        select(vec4f(0.0), vec4f(light, 1.0), is_open), found.sphere);
+        select(vec4f(0.0), vec4f(light, 1.0), is_open), found.emitter);
 }

@@ -5,18 +5,22 @@ struct DirectLight {
     shadow: vec4f,
     // What it adds, and 1 until something is found in between.
     pending: vec4f,
-    // The sphere that it is, if it is one.
-    sphere: vec4f,
+    // Which emitter it is, or NO_EMITTER.
+    emitter: u32,
 }
 
 fn no_light() -> DirectLight {
-    return DirectLight(vec4f(0.0, 0.0, 1.0, 0.0), vec4f(0.0), vec4f(0.0));
+    return DirectLight(vec4f(0.0, 0.0, 1.0, 0.0), vec4f(0.0), NO_EMITTER);
+}
+
+// Which emitter is looked for, or NO_EMITTER.
+fn sought_by(light: DirectLight) -> u32 {
+    return light.emitter;
 }
 
 fn store_light(index: u32, light: DirectLight) {
     store(index, SHADOW, light.shadow);
     store(index, PENDING, light.pending);
-    store(index, TARGET, light.sphere);
 }
 
 // Leaves nothing to be looked for, or to be added.

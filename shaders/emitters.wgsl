@@ -1,16 +1,4 @@
-// The spheres of the scene that send out light. Twin: src/lighting/emitters.rs.
-
-// The sphere; its id, the last number by which it is chosen, and with what probability; its radiance.
-struct Emitter {
-    sphere: vec4f,
-    probability: f32,
-    radiance: vec3f,
-}
-
-fn emitter(index: u32) -> Emitter {
-    let at = look.emitter_first + 3u * index;
-    return Emitter(table(at), table(at + 1u).z, table(at + 2u).rgb);
-}
+// Which of the spheres of the scene that send out light. Twin: src/lighting/emitters.rs.
 
 // The first emitter of which a word is at least so large; they ascend by both.
 fn find_emitter(word: u32, value: u32) -> u32 {

@@ -9,14 +9,6 @@ fn extend(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         return;
     }
     let entry = entry_of_path(index);
-    var hit = hit_before(index);
-    var nearest = Nearest(hit.t, hit.id, 0u);
-    if (entry.is_inside) {
-        find_nearest(entry.ray, entry.inverse, &nearest);
-    }
-    if (nearest.id != hit.id) {
-        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place, entry.distance);
-    }
-    store_hit(index, hit);
+    store_hit(index, nearest_hit(entry, hit_before(index)));
     report_spent();
 }

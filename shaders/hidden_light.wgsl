@@ -1,9 +1,9 @@
 // In a studio: whether something hides a light from a surface.
 
-// Searches the brick; `left` must be the sphere on which the ray starts.
-fn is_hidden(start: Start, direction: vec3f, distance: f32) -> bool {
+// Searches the brick; `left` must be the shape on which the ray starts, `to_center` the way to its centre.
+fn is_hidden(start: Start, to_center: vec3f, direction: vec3f, distance: f32) -> bool {
     let ray = Ray(start.position, direction);
-    let to_far_wall = max(2.0 * dot(left.xyz - start.position, direction), 0.0);
+    let to_far_wall = max(2.0 * dot(to_center, direction), 0.0);
     let is_in_own = has(start.flags, PATH_BACK) && to_far_wall < distance;
     let is_below = !has(start.flags, PATH_ON_GROUND) && ground_distance(ray, 0.0) < distance;
     let entry = enter_scene(CameraRay(ray, 0.0, true));

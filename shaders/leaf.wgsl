@@ -6,7 +6,7 @@ fn offer_leaf(ray: Ray, first: u32, count: u32, nearest: ptr<function, Nearest>)
     var t = NO_HIT;
     var place = first;
     for (var i = first; i < first + count; i++) {
-        let found = intersect(ray, shapes[i]).t;
+        let found = distance_to(ray, i);
         if (found < t) {
             t = found;
             place = i;
@@ -20,7 +20,7 @@ fn offer_leaf(ray: Ray, first: u32, count: u32, nearest: ptr<function, Nearest>)
 // Whether a sphere of a leaf is hit before `t_max`.
 fn any_in_leaf(ray: Ray, first: u32, count: u32, t_max: f32) -> bool {
     for (var i = first; i < first + count; i++) {
-        if (intersect(ray, shapes[i]).t < t_max) {
+        if (distance_to(ray, i) < t_max) {
             return true;
         }
     }

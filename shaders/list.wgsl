@@ -5,7 +5,7 @@ fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
     var t = NO_HIT;
     var place = 0u;
     for (var i = 0u; i < brick.place_count; i++) {
-        let here = intersect(ray, shapes[i]).t;
+        let here = distance_to(ray, i);
         if (here < t) {
             t = here;
             place = i;
@@ -16,7 +16,7 @@ fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
 
 fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     for (var i = 0u; i < brick.place_count; i++) {
-        if (intersect(ray, shapes[i]).t < t_max) {
+        if (distance_to(ray, i) < t_max) {
             return true;
         }
     }

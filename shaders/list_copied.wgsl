@@ -9,13 +9,12 @@ fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     var place = NO_PLACE;
     var at = start;
     loop {
-        let sphere = shapes[at];
-        let here = intersect(ray, sphere).t;
+        let here = distance_to(ray, at);
         if (here < t) {
             t = here;
             place = at;
         }
-        if (sphere.w < 0.0) {
+        if (shapes[at].w < 0.0) {
             break;
         }
         at++;

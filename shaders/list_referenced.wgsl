@@ -16,7 +16,7 @@ fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     loop {
         let reference = references[at];
         let candidate = reference & PLACE;
-        let here = intersect(ray, shapes[candidate]).t;
+        let here = distance_to(ray, candidate);
         if (here < t) {
             t = here;
             place = candidate;

@@ -8,8 +8,8 @@ fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         return;
     }
     let shadow = load(index, SHADOW);
-    left = load(index, LEFT);
-    target_sphere = load(index, TARGET);
+    let leaves = load_left(index);
+    leave(leaves);
     let entry = enter_scene(CameraRay(Ray(load_start(index).position, shadow.xyz), 0.0, true));
     let rest = shadow.w - entry.distance;
     if (rest > 0.0 && entry.is_inside) {

@@ -9,7 +9,7 @@
 const ORIGIN: u32 = 0u;
 // Where it goes, and the density with which the last surface scattered it there.
 const DIRECTION: u32 = 1u;
-// The sphere on which it starts; radius 0 for none.
+// What it starts on: `Left`.
 const LEFT: u32 = 2u;
 // What its light counts in the picture. In a studio: what is left for what is behind, and what the surface counts.
 const THROUGHPUT: u32 = 3u;
@@ -23,10 +23,8 @@ const HIT: u32 = 6u;
 const SHADOW: u32 = 7u;
 // What that light adds, and 1 unless something has been found in between.
 const PENDING: u32 = 8u;
-// The sphere that is looked for, which hides itself from nobody.
-const TARGET: u32 = 9u;
 // Of a path where there is glass: what absorbs light on the way.
-const MEDIUM: u32 = 10u;
+const MEDIUM: u32 = 9u;
 // In a studio: the normal of the surface, and a bit for each of 32 lights that are hidden.
 const NORMAL: u32 = 7u;
 // The surface's colour by what it counts, and what is left for what is behind a ground that catches shadows.

@@ -76,7 +76,8 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let flags = select(next.flags, next.flags & ~PATH_ALIVE, is_end);
     store_start(index, next.position, flags);
     store(index, DIRECTION, vec4f(next.direction, next.density));
-    store(index, LEFT, vertex.sphere);
+    let far_wall = select(0.0, far_wall_of(vertex, next.direction), has(flags, PATH_INSIDE));
+    store_left(index, Left(vertex.id, vertex.place, far_wall, sought_by(next.light)));
     store(index, THROUGHPUT, vec4f(next.through, 0.0));
     store_medium(index, next.medium);
     store_light(index, next.light);

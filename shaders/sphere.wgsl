@@ -9,6 +9,20 @@
 // Centre in the scene's frame, and radius.
 alias Shape = vec4f;
 
+fn no_shape() -> Shape {
+    return vec4f(0.0);
+}
+
+// What a structure needs no more than to find a shape.
+fn bare(shape: Shape) -> Shape {
+    return vec4f(shape.xyz, abs(shape.w));
+}
+
+// The second must be bare.
+fn is_same(a: Shape, b: Shape) -> bool {
+    return all(a.xyz == b.xyz) && abs(a.w) == b.w;
+}
+
 struct SphereHit {
     // Distance to the first point in front of the origin (from inside: the far wall), or NO_HIT.
     t: f32,
@@ -32,7 +46,7 @@ fn intersect(ray: Ray, sphere: Shape) -> SphereHit {
     let is_sum = b * from_foot >= 0.0;
     let t = select(c / select(b - from_foot, 1.0, is_sum), b + from_foot, is_sum);
     // Behind the origin t is negative; on the wall and leaving it is zero.
-    let is_hit = discriminant >= 0.0 && t > 0.0 && !is_left(sphere);
+    let is_hit = discriminant >= 0.0 && t > 0.0;
     return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
 }
 

@@ -16,7 +16,7 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
     store_start(index, made.ray.origin, select(0u, PATH_ALIVE, made.is_seen) | PATH_FULL);
     store(index, DIRECTION, vec4f(made.ray.direction, 0.0));
-    store(index, LEFT, vec4f(0.0));
+    store_left(index, Left(NO_ID, 0u, 0.0, NO_EMITTER));
     store(index, THROUGHPUT, vec4f(1.0));
     store(index, RADIANCE, vec4f(select(vec3f(0.0), look.background, is_shown), 0.0));
     store(index, FIRST, vec4f(0.0, 0.0, 0.0, made.distance));

@@ -3,5 +3,4 @@
 fn start_light(index: u32) {
     store(index, SHADOW, vec4f(0.0, 0.0, 1.0, 0.0));
     store(index, PENDING, vec4f(0.0));
-    store(index, TARGET, vec4f(0.0));
 }

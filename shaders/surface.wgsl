@@ -50,7 +50,8 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     store(index, RADIANCE, radiance + added);
     let is_first = stage.surface == 0u && !is_caught;
     store(index, FIRST, vec4f(select(first.rgb, min(vertex.color, vec3f(1.0)), is_first), far));
-    store(index, LEFT, vertex.sphere);
+    let far_wall = far_wall_of(vertex, ray.direction);
+    store_left(index, Left(vertex.id, vertex.place, far_wall, bitcast<u32>(vertex.sphere.w)));
     store(index, THROUGHPUT, vec4f(rest, lit, 0.0, 0.0));
     store(index, NORMAL, vec4f(vertex.normal, 0.0));
     store(index, PAINT, vec4f(vertex.color * lit, select(0.0, left_over, is_caught)));

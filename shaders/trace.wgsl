@@ -10,15 +10,6 @@ fn trace(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     }
     let entry = entry_of(pixel);
     let index = hit_index(pixel);
-
-    var hit = hit_before(index);
-    var nearest = Nearest(hit.t, hit.id, 0u);
-    if (entry.is_inside) {
-        find_nearest(entry.ray, entry.inverse, &nearest);
-    }
-    if (nearest.id != hit.id) {
-        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place, entry.distance);
-    }
-    store_hit(index, hit);
+    store_hit(index, nearest_hit(entry, hit_before(index)));
     report_spent();
 }

@@ -8,6 +8,9 @@ struct Vertex {
     is_back: bool,
     // Along the ray.
     distance: f32,
+    // Of the sphere; NO_ID for the ground.
+    id: u32,
+    place: u32,
     // The sphere; radius 0 for the ground.
     sphere: vec4f,
     color: vec3f,
@@ -47,14 +50,13 @@ fn vertex_of(index: u32, ray: Ray, hit: Hit, met: u32, flags: u32, behind: f32) 
         store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
         return ground_vertex(ray, behind);
     }
-    return sphere_vertex(ray, hit, load(index, LEFT), has(flags, PATH_INSIDE));
+    // A ray that goes inside of what it starts on may meet its far wall.
+    return sphere_vertex(ray, hit, has(flags, PATH_INSIDE) && hit.id == load_left(index).id);
 }
 
-// `left` is the sphere on which the ray starts; if it goes inside, its far wall may be what it meets.
-fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Vertex {
+fn sphere_vertex(ray: Ray, hit: Hit, is_far_wall: bool) -> Vertex {
     let place = hit.place - brick.first_place;
     let sphere = vec4f(shapes[place].xyz, abs(shapes[place].w));
-    let is_far_wall = is_inside && all(sphere == left_sphere);
     let entered = Ray(fence3(ray.origin + hit.distance * ray.direction), ray.direction);
     var found = intersect(entered, sphere);
     let middle = dot(sphere.xyz - entered.origin, ray.direction);
@@ -71,7 +73,12 @@ fn sphere_vertex(ray: Ray, hit: Hit, left_sphere: vec4f, is_inside: bool) -> Ver
     let paint = paint_of(place);
     let material = material_index(place) + 1u;
     let opacity = paint.a * opacity_of(material);
-    return Vertex(position, normal, is_back, hit.distance + hit.t, sphere, paint.rgb, opacity, material);
+    return Vertex(position, normal, is_back, hit.distance + hit.t, hit.id, hit.place, sphere, paint.rgb, opacity, material);
+}
+
+// How far it is from the surface of a sphere to its other side; 0 if that is not inside.
+fn far_wall_of(vertex: Vertex, direction: vec3f) -> f32 {
+    return max(2.0 * dot(vertex.sphere.xyz - vertex.position, direction), 0.0);
 }
 
 fn ground_vertex(ray: Ray, behind: f32) -> Vertex {
@@ -79,5 +86,5 @@ fn ground_vertex(ray: Ray, behind: f32) -> Vertex {
     let on_ray = ray.origin + distance * ray.direction;
     let n = look.ground_normal;
     let position = fence3(on_ray - dot(on_ray - look.ground_point, n) * n);
-    return Vertex(position, n, false, distance, vec4f(0.0), look.ground_color, 1.0, 0u);
+    return Vertex(position, n, false, distance, NO_ID, 0u, vec4f(0.0), look.ground_color, 1.0, 0u);
 }

@@ -131,6 +131,7 @@ pub struct Accel {
     pub(super) bricks: Vec<Brick>,
     pub(super) min: Vec3,
     pub(super) max: Vec3,
+    pub(super) may_part_equals: bool,
 }
 
 impl Accel {
@@ -157,6 +158,12 @@ impl Accel {
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         (self.min, self.max)
+    }
+
+    /// Whether spheres with the same centre may be in several bricks.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn may_part_equals(&self) -> bool {
+        self.may_part_equals
     }
 
     /// The nearest sphere of a ray, which starts in the box of [`Accel::bounds`] or on its wall.

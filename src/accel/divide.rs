@@ -2,38 +2,62 @@
 
 use crate::parallel::{both, map_chunks};
 
-/// Parts of about the same number of spheres, each in a box of its own but for what sticks out, in an
-/// order of ids: at the median of the longest side, again and again.
-pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Vec<Vec<u32>> {
+/// Parts of a scene.
+pub(super) struct Divided {
+    /// Of each the spheres, in an order of ids.
+    pub(super) parts: Vec<Vec<u32>>,
+    /// Whether spheres with equal centres may be in several of them.
+    pub(super) may_part_equals: bool,
+}
+
+/// Parts of about the same number of spheres, each in a box of its own but for what sticks out: at the median of the
+/// longest side, again and again.
+pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Divided {
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
 
 /// `ids` ascend, and so do those of each part.
-fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Vec<Vec<u32>> {
+fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
     if parts <= 1 {
-        return vec![ids];
+        return Divided { parts: vec![ids], may_part_equals: false };
     }
     let axis = longest_side(spheres, &ids);
     let left_parts = parts / 2;
     let middle = ids.len() * left_parts / parts;
     let key = |id: u32| (ascending(spheres[id as usize][axis]), id);
-    let (left, right) = split(ids, middle, key);
-    let (mut bricks, others) =
+    let Split { left, right, on_the_cut } = split(ids, middle, key);
+    let (mut all, others) =
         both(true, || cut(spheres, left, left_parts), || cut(spheres, right, parts - left_parts));
-    bricks.extend(others);
-    bricks
+    all.parts.extend(others.parts);
+    all.may_part_equals |= others.may_part_equals || has_equals(spheres, &on_the_cut);
+    all
+}
+
+/// Whether the centres of any two are equal. Zeros of both signs are.
+fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
+    let center = |id: &u32| {
+        let [x, y, z, _] = spheres[*id as usize];
+        [x, y, z].map(|x| (x + 0.0).to_bits())
+    };
+    let mut centers: Vec<[u32; 3]> = ids.iter().map(center).collect();
+    centers.sort_unstable();
+    centers.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// A list cut in two.
+struct Split {
+    left: Vec<u32>,
+    right: Vec<u32>,
+    /// Those on both sides whose keys have the same first number; none if there are such on one side alone.
+    on_the_cut: Vec<u32>,
 }
 
 /// The first `count` in order of their keys, and the others.
-fn split(
-    ids: Vec<u32>,
-    count: usize,
-    key: impl Fn(u32) -> (u32, u32) + Sync,
-) -> (Vec<u32>, Vec<u32>) {
+fn split(ids: Vec<u32>, count: usize, key: impl Fn(u32) -> (u32, u32) + Sync) -> Split {
     if count == ids.len() {
-        return (ids, Vec::new());
+        return Split { left: ids, right: Vec::new(), on_the_cut: Vec::new() };
     }
-    let first_right = select(&ids, count, &key);
+    let (first_right, on_the_cut) = select(&ids, count, &key);
     let is_left = |id: &u32| key(*id) < first_right;
     let chunks = map_chunks(&ids, |_, ids| ids.iter().partition::<Vec<u32>, _>(|id| is_left(id)));
     let (mut left, mut right) = (Vec::with_capacity(count), Vec::with_capacity(ids.len() - count));
@@ -42,12 +66,16 @@ fn split(
         left.extend(more_left);
         right.extend(more_right);
     }
-    (left, right)
+    Split { left, right, on_the_cut }
 }
 
-/// The key that `rank` others precede, by counting keys that have the same digits so far. Takes time in
-/// proportion to the number of ids, and reads them in order.
-fn select(ids: &[u32], mut rank: usize, key: impl Fn(u32) -> (u32, u32) + Sync) -> (u32, u32) {
+/// The key that `rank` others precede, by counting keys that have the same digits so far; and what has its first number,
+/// if some of those others have. Takes time in proportion to the number of ids, and reads them in order.
+fn select(
+    ids: &[u32],
+    mut rank: usize,
+    key: impl Fn(u32) -> (u32, u32) + Sync,
+) -> ((u32, u32), Vec<u32>) {
     const DIGIT: u32 = 1 << DIGIT_BITS;
     const DIGIT_BITS: u32 = 8;
     // The digits that are known, the highest first, and the bits below them.
@@ -77,15 +105,17 @@ fn select(ids: &[u32], mut rank: usize, key: impl Fn(u32) -> (u32, u32) + Sync) 
         below = next;
     }
     let known = known as u32;
-    let same = map_chunks(ids, |_, ids| -> Vec<u32> {
+    let same: Vec<Vec<u32>> = map_chunks(ids, |_, ids| -> Vec<u32> {
         ids.iter().copied().filter(|id| key(*id).0 == known).collect()
     });
-    (known, same.concat()[rank])
+    let same = same.concat();
+    let first_right = (known, same[rank]);
+    (first_right, if rank > 0 { same } else { Vec::new() })
 }
 
-/// A number that ascends as `x` does in its total order.
+/// A number that ascends as `x` does; the same for zeros of both signs.
 fn ascending(x: f32) -> u32 {
-    let bits = x.to_bits();
+    let bits = (x + 0.0).to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
@@ -116,18 +146,19 @@ mod tests {
     fn parts_are_those_of_a_sort() {
         let places = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];
         let mut rng = fastrand::Rng::with_seed(1);
+        let mut times_parted = 0;
         for count in [0, 1, 2, 3, 1000, 150_000] {
             let spheres: Vec<[f32; 4]> = (0..count)
                 .map(|_| {
                     let x = if rng.bool() { places[rng.usize(..7)] } else { rng.f32() - 0.5 };
-                    [x, 0.1 * rng.f32(), 0.0, 1.0]
+                    [x, 0.1 * rng.u32(..9) as f32, 0.0, 1.0]
                 })
                 .collect();
             let mut sorted: Vec<u32> = (0..count).collect();
-            let place = |id: &u32| spheres[*id as usize][0];
+            let place = |id: &u32| spheres[*id as usize][0] + 0.0;
             sorted.sort_by(|a, b| place(a).total_cmp(&place(b)));
             for parts in [1, 2, 3] {
-                let bricks = divide(&spheres, parts);
+                let Divided { parts: bricks, may_part_equals } = divide(&spheres, parts);
                 assert_eq!(bricks.len(), parts);
                 // The first cut is along x.
                 let middle = count as usize * (parts / 2) / parts;
@@ -141,7 +172,17 @@ mod tests {
                 let mut all = bricks.concat();
                 all.sort_unstable();
                 assert!(all.into_iter().eq(0..count));
+                let is_in = |of: &[u32], center: &[f32]| {
+                    of.iter().any(|id| spheres[*id as usize][..3] == *center)
+                };
+                let parts_equals = count <= 1000
+                    && spheres.iter().any(|sphere| {
+                        bricks.iter().filter(|ids| is_in(ids, &sphere[..3])).count() > 1
+                    });
+                assert!(may_part_equals || !parts_equals, "{count} in {parts}");
+                times_parted += u32::from(parts_equals);
             }
         }
+        assert!(times_parted > 0);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::binary_tree::{BinaryNode, BinaryTree};
 use super::brick::{Accel, Brick, Index, Structure};
-use super::divide::divide;
+use super::divide::{Divided, divide};
 use super::grid::ListLayout;
 use super::grid_build::{BuiltGrid, GridBudget, build_grid};
 use super::statistics::SceneStatistics;
@@ -149,8 +149,13 @@ impl AccelPlan {
         let (min, max) = self.statistics.inflated_bounds();
         let margin = self.statistics.margin();
         let per_brick = self.statistics.count.div_ceil(self.brick_count).max(1);
+        let divided = match self.structure {
+            // Slices in the order of ids, whatever is in them.
+            Structure::List => Divided { parts: Vec::new(), may_part_equals: self.brick_count > 1 },
+            _ => divide(spheres, self.brick_count),
+        };
+        let parts = divided.parts.into_iter().filter(|ids| !ids.is_empty());
         let bricks: Vec<Brick> = match self.structure {
-            // Slices in the order of ids.
             Structure::List => spheres
                 .chunks(per_brick)
                 .zip((0_u32..).step_by(per_brick))
@@ -161,48 +166,25 @@ impl AccelPlan {
                 })
                 .collect(),
             Structure::Grid(layout) | Structure::NestedGrid(layout) => {
-                divide(spheres, self.brick_count)
-                    .into_iter()
-                    .filter(|ids| !ids.is_empty())
-                    .map(|ids| {
-                        let BuiltGrid { grid, spheres, ids } =
-                            build_grid(spheres, &ids, margin, layout, self.budget);
-                        Brick { index: Index::Grid(grid), spheres, ids }
-                    })
-                    .collect()
+                let build = |ids: Vec<u32>| {
+                    let BuiltGrid { grid, spheres, ids } =
+                        build_grid(spheres, &ids, margin, layout, self.budget);
+                    Brick { index: Index::Grid(grid), spheres, ids }
+                };
+                parts.map(build).collect()
             }
-            Structure::WideTree => self.build_trees(spheres, |spheres| {
+            Structure::WideTree => build_trees(spheres, parts, |spheres| {
                 let tree = WideTree::build(spheres, margin);
                 (tree.ids().to_vec(), Index::WideTree(tree))
             }),
-            Structure::BinaryTree => self.build_trees(spheres, |spheres| {
+            Structure::BinaryTree => build_trees(spheres, parts, |spheres| {
                 let tree = BinaryTree::build(spheres, margin);
                 (tree.ids().to_vec(), Index::BinaryTree(tree))
             }),
         };
         let structure = final_structure(self.structure, &bricks);
-        Accel { structure, bricks: or_empty(bricks), min, max }
-    }
-
-    /// `build` gives a tree of some spheres, and their order in it.
-    fn build_trees(
-        &self,
-        spheres: &[[f32; 4]],
-        build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
-    ) -> Vec<Brick> {
-        divide(spheres, self.brick_count)
-            .into_iter()
-            .filter(|ids| !ids.is_empty())
-            .map(|ids| {
-                let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-                let (order, index) = build(&own);
-                Brick {
-                    index,
-                    spheres: order.iter().map(|place| own[*place as usize]).collect(),
-                    ids: order.iter().map(|place| ids[*place as usize]).collect(),
-                }
-            })
-            .collect()
+        let bricks = or_empty(bricks);
+        Accel { structure, bricks, min, max, may_part_equals: divided.may_part_equals }
     }
 
     fn list_buffers(&self) -> Vec<PlannedBuffer> {
@@ -351,6 +333,24 @@ fn final_structure(planned: Structure, bricks: &[Brick]) -> Structure {
         Structure::Grid(layout) if is_nested => Structure::NestedGrid(layout),
         planned => planned,
     }
+}
+
+/// A tree for each part; `build` gives that of some spheres, and their order in it.
+fn build_trees(
+    spheres: &[[f32; 4]],
+    parts: impl Iterator<Item = Vec<u32>>,
+    build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
+) -> Vec<Brick> {
+    let brick = |ids: Vec<u32>| {
+        let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
+        let (order, index) = build(&own);
+        Brick {
+            index,
+            spheres: order.iter().map(|place| own[*place as usize]).collect(),
+            ids: order.iter().map(|place| ids[*place as usize]).collect(),
+        }
+    };
+    parts.map(brick).collect()
 }
 
 /// An empty scene has an empty brick.

@@ -22,6 +22,7 @@ use super::renderers::{RendererKey, Renderers};
 use super::scene_buffers::SceneBuffers;
 use super::scene_summary::SceneSummary;
 use super::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
+use super::shape_ids::ShapeIds;
 use super::structures::{Structures, with_retries};
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice};
@@ -147,14 +148,18 @@ impl Headless {
         };
         self.alone(|_| {
             let renderer = Renderer::new(&self.device, &options)?;
-            let upload = |summary, accel| {
-                SceneBuffers::upload(&renderer, &self.device, &self.queue, summary, accel, || {
-                    let submission = self.queue.submit([]);
+            let (device, queue) = (&self.device, &self.queue);
+            let upload = |summary, accel, ids: &ShapeIds| {
+                SceneBuffers::upload(&renderer, device, queue, summary, accel, ids, || {
+                    let submission = queue.submit([]);
                     self.wait(&[], submission)
                 })
             };
-            let all = upload(SceneSummary::of(scene), accel)?;
-            let of_occluders = |accel| upload(SceneSummary::of_occluders(scene), accel);
+            let ids = ShapeIds::of_all(scene, accel);
+            let all = upload(SceneSummary::of(scene), accel, &ids)?;
+            let of_occluders = |accel| {
+                upload(SceneSummary::of_occluders(scene), accel, &ShapeIds::of_opaque(scene))
+            };
             Ok(all.with_occluders(occluders.as_ref().map(of_occluders).transpose()?))
         })
     }

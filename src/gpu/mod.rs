@@ -10,6 +10,7 @@ pub use wgpu;
 pub mod adapter;
 mod appearance;
 mod bands;
+mod brick_buffers;
 #[cfg(test)]
 mod constant_tests;
 mod denoise;
@@ -50,6 +51,7 @@ mod scene_summary;
 mod seen;
 mod self_test;
 mod shaders;
+mod shape_ids;
 mod structures;
 mod tile_textures;
 mod tiles;

@@ -101,12 +101,11 @@ enum Kept {
 fn kept_slots(mode: Mode) -> [Kept; PathState::SLOTS] {
     let none = Kept::Always([0; 4]);
     let nowhere = Kept::Always([0, 0, 1.0_f32.to_bits(), 0]);
-    let of_light =
-        if mode.looks_for_light() { [7, 8, 9].map(Kept::At) } else { [nowhere, none, none] };
-    let medium = if mode.has_medium() { Kept::At(10) } else { none };
+    let of_light = if mode.looks_for_light() { [7, 8].map(Kept::At) } else { [nowhere, none] };
+    let medium = if mode.has_medium() { Kept::At(9) } else { none };
     std::array::from_fn(|slot| match slot {
         0..=5 => Kept::At(slot),
-        6..=8 => of_light[slot - 6],
+        6..=7 => of_light[slot - 6],
         _ => medium,
     })
 }

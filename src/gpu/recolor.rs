@@ -4,10 +4,11 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device, Queue};
 
 use super::appearance::color_words;
+use super::brick_buffers::BrickBuffers;
 use super::error::{GpuError, scoped};
 use super::layouts::{layout_of, storage, uniform};
 use super::pipeline::pipeline;
-use super::scene_buffers::{BrickBuffers, SceneBuffers, binding_limit};
+use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::scene_summary::SceneSummary;
 use super::shaders::{Kernel, part};
 use crate::material::{Finish, Material};

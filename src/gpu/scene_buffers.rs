@@ -5,17 +5,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
+use wgpu::{Buffer, Device, Queue};
 
-use super::appearance::{self, Looks};
+use super::appearance;
+use super::brick_buffers::{BrickBuffers, BrickContents, Upload};
 use super::error::{GpuError, check_storage_size, scoped};
-use super::order::CenterBox;
 use super::pace::Pace;
-use super::records::{self, SceneSpace};
+use super::records::SceneSpace;
 use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
+use super::shape_ids::{LeftBy, ShapeIds};
 use super::tiles::Groups;
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickKind, Index, LIST_LEN, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, BrickKind, LIST_LEN, Structure};
 use crate::render::{PrimaryLook, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -42,6 +43,8 @@ pub struct SceneBuffers {
     /// What of the host's scene pictures need.
     summary: SceneSummary,
     structure: Structure,
+    /// How lit pictures keep rays from the spheres that they start on.
+    left_by: LeftBy,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// How many spheres a ray tries in one dispatch, if it is many.
@@ -50,24 +53,6 @@ pub struct SceneBuffers {
     pace: Mutex<Pace>,
     /// Of the spheres that cast shadows in a studio, where some do not and a studio was planned for.
     occluders: Option<Box<Self>>,
-}
-
-/// A brick, bound for the kernels.
-#[derive(Debug)]
-pub(super) struct BrickBuffers {
-    /// What searches and shades it.
-    pub(super) kind: BrickKind,
-    /// Where it is, to tell which is nearer.
-    pub(super) center_box: CenterBox,
-    /// Group 1 of `trace` and `occluded`.
-    pub(super) trace_group: BindGroup,
-    /// Group 1 of `shade`.
-    pub(super) surface_group: BindGroup,
-    /// Of every sphere, in the order of the structure.
-    pub(super) ids: Buffer,
-    /// What every sphere looks like.
-    pub(super) looks: Buffer,
-    pub(super) place_count: u32,
 }
 
 impl SceneBuffers {
@@ -102,7 +87,8 @@ impl SceneBuffers {
         scene: &Scene,
         accel: &Accel,
     ) -> Result<Self, GpuError> {
-        Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, || Ok(()))
+        let ids = ShapeIds::of_all(scene, accel);
+        Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, &ids, || Ok(()))
     }
 
     /// As [`SceneBuffers::with_accel`]; calls `flush` after every brick, so that the host may submit what is
@@ -113,6 +99,7 @@ impl SceneBuffers {
         queue: &Queue,
         summary: SceneSummary,
         accel: &Accel,
+        ids: &ShapeIds,
         mut flush: impl FnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
         let appearance = &summary.appearance;
@@ -122,7 +109,9 @@ impl SceneBuffers {
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
         let mut bricks = Vec::new();
         for brick in accel.bricks() {
-            bricks.push(upload.brick(&BrickContents::of_spheres(brick, accel.kind()), &palette)?);
+            let ids = ids.of(&brick.ids);
+            let contents = BrickContents::of_spheres(brick, &ids, accel.kind());
+            bricks.push(upload.brick(&contents, &palette)?);
             flush()?;
         }
         let bytes = upload.bytes;
@@ -132,6 +121,7 @@ impl SceneBuffers {
             space: SceneSpace { origin: summary.origin, min, max },
             summary,
             structure: accel.structure(),
+            left_by: ids.left_by,
             bricks,
             bytes,
             occluders: None,
@@ -234,6 +224,10 @@ impl SceneBuffers {
         self.structure
     }
 
+    pub(super) fn left_by(&self) -> LeftBy {
+        self.left_by
+    }
+
     /// The kinds of the bricks, each once.
     pub(super) fn kinds(&self) -> Vec<BrickKind> {
         let mut kinds = Vec::new();
@@ -249,170 +243,6 @@ impl SceneBuffers {
     /// misses.
     pub(super) fn bricks(&self) -> &[BrickBuffers] {
         &self.bricks
-    }
-}
-
-/// What of a brick is copied.
-#[derive(Clone, Copy, Debug)]
-struct BrickContents<'a> {
-    kind: BrickKind,
-    center_box: CenterBox,
-    /// As the primitive's WGSL part reads them, in the order of the structure.
-    shapes: &'a [u8],
-    /// Of each.
-    ids: &'a [u32],
-    index: &'a Index,
-}
-
-impl<'a> BrickContents<'a> {
-    fn of_spheres(brick: &'a Brick, kind: BrickKind) -> Self {
-        let Brick { index, spheres, ids } = brick;
-        let shapes = bytemuck::cast_slice(spheres);
-        Self { kind, center_box: CenterBox::of(brick), shapes, ids, index }
-    }
-}
-
-/// No primitive's shape has more bytes.
-const LARGEST_SHAPE: usize = 64;
-
-/// A copy in progress.
-struct Upload<'a> {
-    renderer: &'a Renderer,
-    device: &'a Device,
-    queue: &'a Queue,
-    appearance: &'a SceneAppearance,
-    first_place: u32,
-    bytes: u64,
-}
-
-impl Upload<'_> {
-    fn brick(
-        &mut self,
-        brick: &BrickContents<'_>,
-        palette: &Buffer,
-    ) -> Result<BrickBuffers, GpuError> {
-        let BrickContents { kind, center_box, shapes, ids, index } = *brick;
-        let layouts = &self.renderer.layouts;
-        let trace_layout = layouts
-            .brick
-            .iter()
-            .find(|(of, _)| *of == kind)
-            .map(|(_, layout)| layout)
-            .ok_or(GpuError::NoStructure { kind })?;
-        let looks = Looks::of(self.appearance, ids);
-        let mut record = records::Brick {
-            place_count: ids.len() as u32,
-            first_place: self.first_place,
-            is_first: u32::from(self.first_place == 0),
-            last_look: looks.words.len() as u32 - 1,
-            color_shift: looks.color_shift,
-            color_mask: looks.color_mask,
-            material_first: looks.material_first,
-            material_mask: looks.material_mask,
-            ..bytemuck::Zeroable::zeroed()
-        };
-        // A binding must not be empty.
-        let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
-        let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
-        let ids = if ids.is_empty() { &no_word[..] } else { ids };
-        let mut words: Vec<&[u32]> = Vec::new();
-        match index {
-            Index::List => {}
-            Index::Grid(grid) => {
-                record.min = grid.min.to_array();
-                record.cell_size = grid.cell_size;
-                record.cell_counts = grid.cell_counts;
-                words.push(&grid.cells);
-                words.extend(grid.references.as_deref());
-            }
-            Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
-            Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
-        }
-        self.first_place += record.place_count;
-        for (what, bytes) in [
-            ("the buffer of spheres", shapes.len()),
-            ("the buffer of colors", size_of_val(&looks.words[..])),
-        ]
-        .into_iter()
-        .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
-        {
-            check_storage_size(self.device, what, bytes as u64)?;
-        }
-        scoped(self.device, || {
-            let place_count = record.place_count;
-            let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
-            let shapes = self.storage("pinhole shapes", shapes);
-            let ids = self.storage("pinhole ids", ids);
-            let looks = self.storage("pinhole looks", &looks.words);
-            let words: Vec<Buffer> =
-                words.iter().map(|words| self.storage("pinhole structure", words)).collect();
-            let group = |label, layout, buffers: &[&Buffer]| {
-                let entries: Vec<_> = (0..)
-                    .zip(buffers)
-                    .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                        binding,
-                        resource: buffer.as_entire_binding(),
-                    })
-                    .collect();
-                let descriptor =
-                    wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
-                self.device.create_bind_group(&descriptor)
-            };
-            let mut traced = vec![&record, &shapes, &ids];
-            traced.extend(&words);
-            BrickBuffers {
-                kind,
-                center_box,
-                trace_group: group("pinhole brick", trace_layout, &traced),
-                surface_group: group(
-                    "pinhole surface",
-                    layouts.surface_of(kind.primitive),
-                    &[&record, &shapes, &looks, palette],
-                ),
-                ids,
-                looks,
-                place_count,
-            }
-        })
-    }
-
-    fn storage<T: bytemuck::Pod>(&mut self, label: &'static str, contents: &[T]) -> Buffer {
-        self.buffer(label, BufferUsages::STORAGE, contents)
-    }
-
-    fn buffer<T: bytemuck::Pod>(
-        &mut self,
-        label: &'static str,
-        usage: BufferUsages,
-        contents: &[T],
-    ) -> Buffer {
-        let contents: &[u8] = bytemuck::cast_slice(contents);
-        let size = contents.len() as u64;
-        let descriptor = |usage, mapped_at_creation| wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage,
-            mapped_at_creation,
-        };
-        // Where the device's memory is the host's, contents are written where they stay.
-        let is_shared = self.device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
-        if is_shared {
-            let buffer =
-                self.device.create_buffer(&descriptor(usage | BufferUsages::MAP_WRITE, true));
-            if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
-                target.copy_from_slice(contents);
-                drop(target);
-                buffer.unmap();
-                self.bytes += size;
-                return buffer;
-            }
-            // It could not be created, which the error scope around us has noted.
-            return buffer;
-        }
-        let buffer = self.device.create_buffer(&descriptor(usage | BufferUsages::COPY_DST, false));
-        self.queue.write_buffer(&buffer, 0, contents);
-        self.bytes += contents.len() as u64;
-        buffer
     }
 }
 

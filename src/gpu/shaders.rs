@@ -92,6 +92,7 @@ fn walk_parts(
         part!("schedule.wgsl"),
         part!("status.wgsl"),
         part!("spend.wgsl"),
+        part!("origin_none.wgsl"),
         part!("brick.wgsl"),
     ]);
     parts.push(match turn {
@@ -184,7 +185,6 @@ fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
         part!("ray.wgsl"),
         part!("enter.wgsl"),
         part!("camera_entry.wgsl"),
-        part!("origin_none.wgsl"),
         primitive_part(primitive),
     ];
     parts.extend(camera_parts(camera));

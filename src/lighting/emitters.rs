@@ -1,10 +1,8 @@
 //! Which emissive sphere is sampled, by chance in proportion to its power.
 
-use std::collections::HashMap;
-
 use crate::color::luminance;
 use crate::material::{Finish, Material};
-use crate::scene::Scene;
+use crate::scene::{Duplicates, Scene};
 
 /// The emissive spheres of a scene, each with the probability by which light is sought at it.
 ///
@@ -33,16 +31,8 @@ impl Emitters {
             })
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
-        let spheres = scene.spheres();
-        // The first of all spheres in the place of each.
-        let mut firsts: HashMap<_, u32> =
-            weights.iter().rev().map(|(id, _)| (bits(&spheres[*id as usize]), *id)).collect();
-        for (id, sphere) in spheres.iter().enumerate().rev() {
-            if let Some(first) = firsts.get_mut(&bits(sphere)) {
-                *first = id as u32;
-            }
-        }
-        weights.retain(|(id, _)| firsts.get(&bits(&spheres[*id as usize])) == Some(id));
+        let duplicates = Duplicates::of(scene.spheres());
+        weights.retain(|(id, _)| duplicates.first_of(*id) == *id);
         let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
         // Each has one by right, and its share of the others.
         let others = (1_u64 << 32) - weights.len() as u64;
@@ -97,11 +87,6 @@ impl Emitters {
         let before = if place == 0 { 0.0 } else { f64::from(self.last[place - 1]) + 1.0 };
         (f64::from(self.last[place]) + 1.0 - before) / 2_f64.powi(32)
     }
-}
-
-/// Alike for spheres whose numbers are equal: zeros lose their signs.
-fn bits(sphere: &[f32; 4]) -> [u32; 4] {
-    sphere.map(|x| (x + 0.0).to_bits())
 }
 
 fn brightness(color: [f64; 3], finish: &Finish) -> f64 {

@@ -18,6 +18,7 @@ use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 mod appearance;
 mod checked;
 mod color_map;
+mod duplicates;
 mod frame;
 mod surfaces;
 mod update;
@@ -27,6 +28,7 @@ pub(crate) use appearance::alpha_of;
 pub use appearance::{Appearance, Colors};
 pub(crate) use checked::SceneAppearance;
 pub use color_map::{ColorMap, ColorMapError};
+pub(crate) use duplicates::Duplicates;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it; and what they look like.
@@ -193,11 +195,16 @@ impl Scene {
         if self.appearance.is_opaque() {
             return None;
         }
-        let is_opaque = |id: &usize| self.finish(*id as u32).opacity >= 1.0;
         let spheres: Vec<[f32; 4]> =
-            (0..self.len()).filter(is_opaque).map(|id| self.spheres[id]).collect();
+            self.opaque_ids().map(|id| self.spheres[id as usize]).collect();
         let bounds = frame::bounds_in_frame(self.origin, &spheres);
         Some(Self::in_frame(self.origin, spheres, LinearRgb::WHITE.into(), bounds))
+    }
+
+    /// Indices of the opaque spheres, in their order.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn opaque_ids(&self) -> impl Iterator<Item = u32> {
+        (0..self.len() as u32).filter(|id| self.finish(*id).opacity >= 1.0)
     }
 
     /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.

@@ -82,13 +82,14 @@ fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
 }
 
 /// A path, in the order of its slots.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Path {
     origin: [f32; 3],
     flags: u32,
     direction: [f32; 3],
     density: f32,
-    left: [f32; 4],
+    /// Which sphere it leaves, and how far its far wall is.
+    left: (u32, f32),
     through: [f32; 4],
     radiance: [f32; 4],
     first: [f32; 4],
@@ -105,12 +106,11 @@ impl Path {
         let slots = [
             bits(self.origin, self.flags),
             bits(self.direction, self.density.to_bits()),
-            self.left.map(f32::to_bits),
+            [self.left.0, 0, self.left.1.to_bits(), u32::MAX],
             self.through.map(f32::to_bits),
             self.radiance.map(f32::to_bits),
             self.first.map(f32::to_bits),
             [0, 0, one, 0],
-            [0; 4],
             [0; 4],
             [0; 4],
         ];
@@ -153,9 +153,11 @@ impl LegalDevice {
             origin: ray.origin,
             flags: ALIVE | FULL,
             direction: ray.direction,
+            density: 0.0,
+            left: (NO_ID, 0.0),
             through: [1.0; 4],
+            radiance: [0.0; 4],
             first: [0.0, 0.0, 0.0, ray.distance],
-            ..Path::default()
         }
     }
 
@@ -164,12 +166,12 @@ impl LegalDevice {
         let (ray, is_inside) = self.enter(&made.uploaded, path.origin, path.direction);
         let mut hit = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         if path.flags & INSIDE != 0 {
-            let middle = self.middle_of(path.left, path.origin, path.direction);
-            hit = Hit { t: self.mul(2.0, middle).max(0.0), id: last.id, distance: 0.0 };
+            hit = Hit { t: path.left.1, id: last.id, distance: 0.0 };
         }
+        let left = scene.spheres().get(path.left.0 as usize);
         for (sphere, id) in scene.spheres().iter().zip(0..) {
             let is_first = !scene.spheres()[..id as usize].contains(sphere);
-            if is_inside && is_first && *sphere != path.left {
+            if is_inside && is_first && Some(sphere) != left {
                 let t = self.intersect(&ray, *sphere);
                 if t < hit.t {
                     hit = Hit { t, id, distance: ray.distance };
@@ -233,7 +235,7 @@ impl LegalDevice {
         let ray = TracedRay { origin, direction: d, distance: hit.distance };
         let triangle = self.triangle(&ray, sphere);
         let middle = self.middle_of(sphere, origin, d);
-        let is_far_wall = path.flags & INSIDE != 0 && sphere == path.left;
+        let is_far_wall = path.flags & INSIDE != 0 && hit.id == path.left.0;
         let half = if is_far_wall { middle.abs() } else { triangle.from_foot.abs() };
         let from_foot = if is_far_wall || hit.t > middle { half } else { -half };
         let outward = self.vector(|this, k| this.mul_add(from_foot, d[k], -triangle.foot[k]));
@@ -252,8 +254,6 @@ impl LegalDevice {
         }
         next.radiance[3] = 1.0;
         next.origin = position;
-        next.left = sphere;
-
         let axes = self.axes(normal);
         let u = pair(seed, 0, 2 + 8 * surface).map(|bits| unit(bits) as f32);
         let [x, y] = self.concentric_disk(u);
@@ -272,6 +272,11 @@ impl LegalDevice {
         let [r, g, b] = self.vector(|this, k| this.divide(carried[k], survival.max(1e-30)));
         next.through = [r, g, b, 0.0];
         let side = if is_back { INSIDE } else { 0 };
+        next.left = (hit.id, 0.0);
+        if is_back {
+            let middle = self.middle_of(sphere, position, next.direction);
+            next.left.1 = self.mul(2.0, middle).max(0.0);
+        }
         next.flags = SCATTERED | side | if is_alive { ALIVE } else { 0 };
         next
     }

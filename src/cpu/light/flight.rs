@@ -126,9 +126,15 @@ pub(super) fn is_occluded(
         Hiding::All => true,
         Hiding::Opaque => stage.scene.finish(id).opacity >= 1.0,
     };
+    // Of what is in the place of the sphere that is left, that one alone is there.
+    let is_there = |id: u32| match flight.start {
+        Start::Inside(own) => id == own || !stage.is_same(own, id),
+        Start::Free | Start::Outside(_) | Start::Ground => true,
+    };
     ground(stage, flight).is_some_and(|t| t < t_max)
         || (0..stage.scene.len() as u32)
-            .filter(|id| !exempt.is_some_and(|own| stage.is_same(own, *id)) && hides(*id))
+            .filter(|id| !exempt.is_some_and(|own| stage.is_same(own, *id)))
+            .filter(|id| hides(*id) && is_there(*id))
             .any(|id| sphere(stage, flight, id).is_some_and(|wall| wall.distance < t_max))
 }
 

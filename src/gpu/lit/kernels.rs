@@ -3,6 +3,7 @@
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::shaders::{Kernel, Part, Turn, camera_parts, part, structure_parts};
+use crate::gpu::shape_ids::LeftBy;
 
 /// What of a lighting decides which kernels it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -66,7 +67,6 @@ impl Schedule {
 pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
-        part!("origin_none.wgsl"),
         part!("path_address.wgsl"),
         part!("look.wgsl"),
         part!("sampling.wgsl"),
@@ -92,9 +92,15 @@ pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
 }
 
 /// Finds the nearest sphere of every path's ray.
-pub(super) fn extend_kernel(structure: Structure, turn: Turn, schedule: Schedule) -> Kernel {
+pub(super) fn extend_kernel(
+    structure: Structure,
+    left_by: LeftBy,
+    turn: Turn,
+    schedule: Schedule,
+) -> Kernel {
     let mut parts = base(schedule);
-    parts.extend([part!("origin_sphere.wgsl"), part!("spend.wgsl"), part!("brick.wgsl")]);
+    parts.extend(origin_parts(left_by));
+    parts.extend([part!("spend.wgsl"), part!("brick.wgsl")]);
     parts.push(match turn {
         Turn::First => part!("first_segment.wgsl"),
         Turn::Later => part!("later_brick.wgsl"),
@@ -105,32 +111,51 @@ pub(super) fn extend_kernel(structure: Structure, turn: Turn, schedule: Schedule
 }
 
 /// Finds whether anything is between paths' surfaces and lights.
-pub(super) fn occlude_kernel(structure: Structure) -> Kernel {
+pub(super) fn occlude_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
     let mut parts = base(Schedule::Queue);
-    parts.extend([part!("spend.wgsl"), part!("brick.wgsl"), part!("origin_and_target.wgsl")]);
+    parts.extend([
+        part!("spend.wgsl"),
+        part!("brick.wgsl"),
+        part!("look.wgsl"),
+        part!("emitter.wgsl"),
+    ]);
+    parts.extend(match left_by {
+        LeftBy::Place => {
+            vec![part!("own_shape.wgsl"), part!("origin_place_and_light.wgsl")]
+        }
+        LeftBy::Id => vec![part!("origin_id_and_light.wgsl")],
+    });
     parts.extend(structure_parts(structure));
     parts.push(part!("occlude.wgsl"));
     Kernel { entry_point: "occlude", parts }
 }
 
 /// In a studio, finds whether a light is hidden.
-pub(super) fn shadow_kernel(structure: Structure) -> Kernel {
-    let mut parts = hidden_light(structure);
+pub(super) fn shadow_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
+    let mut parts = hidden_light(structure, left_by);
     parts.extend([part!("lamp.wgsl"), part!("shadow.wgsl")]);
     Kernel { entry_point: "shadow", parts }
 }
 
 /// In a studio, finds whether something is near in a direction of ambient light.
-pub(super) fn ambient_kernel(structure: Structure) -> Kernel {
-    let mut parts = hidden_light(structure);
+pub(super) fn ambient_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
+    let mut parts = hidden_light(structure, left_by);
     parts.push(part!("ambient.wgsl"));
     Kernel { entry_point: "ambient", parts }
 }
 
-fn hidden_light(structure: Structure) -> Vec<Part> {
+/// How rays that start on a shape are told apart from it.
+fn origin_parts(left_by: LeftBy) -> Vec<Part> {
+    match left_by {
+        LeftBy::Place => vec![part!("own_shape.wgsl"), part!("origin_place.wgsl")],
+        LeftBy::Id => vec![part!("origin_id.wgsl")],
+    }
+}
+
+fn hidden_light(structure: Structure, left_by: LeftBy) -> Vec<Part> {
     let mut parts = base(Schedule::Queue);
+    parts.extend(origin_parts(left_by));
     parts.extend([
-        part!("origin_sphere.wgsl"),
         part!("path_address.wgsl"),
         part!("spend.wgsl"),
         part!("brick.wgsl"),
@@ -193,6 +218,7 @@ pub(super) fn scatter_kernel(
         part!("vertex.wgsl"),
         part!("material.wgsl"),
         part!("surface_point.wgsl"),
+        part!("emitter.wgsl"),
         part!("emitters.wgsl"),
         part!("lamp.wgsl"),
         part!("by_chance.wgsl"),
@@ -231,7 +257,6 @@ pub(super) fn scatter_kernel(
 /// Adds samples to pixels.
 pub(super) fn deposit_kernel(mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
-    parts.push(part!("origin_none.wgsl"));
     parts.push(match mode {
         Mode::Path(_, Sources::Any, _) => part!("settle_light.wgsl"),
         Mode::Path(..) | Mode::Studio => part!("settle_plain.wgsl"),
@@ -243,14 +268,14 @@ pub(super) fn deposit_kernel(mode: Mode) -> Kernel {
 /// Says how many workgroups the next dispatches need.
 pub(super) fn advance_kernel() -> Kernel {
     let mut parts = base(Schedule::Queue);
-    parts.extend([part!("origin_none.wgsl"), part!("advance.wgsl")]);
+    parts.extend([part!("advance.wgsl")]);
     Kernel { entry_point: "advance", parts }
 }
 
 /// Sums up how much samples vary.
 pub(super) fn noise_kernel() -> Kernel {
     let mut parts = base(Schedule::Pixels);
-    parts.extend([part!("origin_none.wgsl"), part!("film_sums.wgsl"), part!("noise.wgsl")]);
+    parts.extend([part!("film_sums.wgsl"), part!("noise.wgsl")]);
     Kernel { entry_point: "noise", parts }
 }
 
@@ -273,6 +298,7 @@ fn base(schedule: Schedule) -> Vec<Part> {
         part!("enter.wgsl"),
         part!("sphere.wgsl"),
         part!("path_state.wgsl"),
+        part!("left.wgsl"),
         part!("queue.wgsl"),
         part!("schedule.wgsl"),
         schedule.part(),
@@ -281,12 +307,7 @@ fn base(schedule: Schedule) -> Vec<Part> {
 
 fn shading(schedule: Schedule) -> Vec<Part> {
     let mut parts = base(schedule);
-    parts.extend([
-        part!("origin_none.wgsl"),
-        part!("path_address.wgsl"),
-        part!("trigonometry.wgsl"),
-        part!("look.wgsl"),
-    ]);
+    parts.extend([part!("path_address.wgsl"), part!("trigonometry.wgsl"), part!("look.wgsl")]);
     parts
 }
 
@@ -323,11 +344,14 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         let cameras = CameraKind::ALL.iter();
         kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
     }
-    for &structure in Structure::ALL {
+    for (&structure, left_by) in
+        Structure::ALL.iter().flat_map(|of| LeftBy::ALL.map(|left_by| (of, left_by)))
+    {
         for turn in [Turn::First, Turn::Later] {
-            kernels.extend(SCHEDULES.map(|by| extend_kernel(structure, turn, by)));
+            kernels.extend(SCHEDULES.map(|by| extend_kernel(structure, left_by, turn, by)));
         }
-        kernels.extend([occlude_kernel, shadow_kernel, ambient_kernel].map(|of| of(structure)));
+        let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
+        kernels.extend(searches.map(|of| of(structure, left_by)));
     }
     kernels.extend(SCHEDULES.map(surface_kernel));
     kernels

@@ -54,6 +54,7 @@ impl LitScene<'_> {
             mode: lit.mode,
             structure: self.all.structure(),
             occluders: self.occluders.structure(),
+            left_by: [self.all, self.occluders].map(SceneBuffers::left_by),
             several_bricks: self.all.bricks().len() > 1,
         }
     }

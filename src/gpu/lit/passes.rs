@@ -16,6 +16,7 @@ use crate::gpu::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::records;
 use crate::gpu::renderer_options::RendererOptions;
 use crate::gpu::shaders::{Kernel, Turn};
+use crate::gpu::shape_ids::LeftBy;
 
 /// What sets of passes differ in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,6 +26,8 @@ pub(in crate::gpu) struct LitKey {
     pub(in crate::gpu) structure: Structure,
     /// Of what casts shadows.
     pub(in crate::gpu) occluders: Structure,
+    /// How rays are kept from what they start on: in all of the scene, and in what casts shadows.
+    pub(in crate::gpu) left_by: [LeftBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
 }
@@ -124,16 +127,18 @@ impl LitPasses {
         let brick = |index: usize| &scene.brick[index].1;
         let surfaces = &scene.surface;
         let LitLayouts { frame, advance, film, look, sky } = &layouts;
+        let [left_by, light_left_by] = key.left_by;
+        let (occluders, lit_brick) = (key.occluders, [frame, brick(1), look]);
         let extend = |turn| {
-            let kernel = |by| kernels::extend_kernel(key.structure, turn, by);
+            let kernel = |by| kernels::extend_kernel(key.structure, left_by, turn, by);
             both(&kernel, &[frame, brick(0)])
         };
         let shade = match key.mode {
             Mode::Studio => ShadePasses::Studio {
                 surface: both(&kernels::surface_kernel, &[frame, surfaces, look])?,
-                shadow: build(kernels::shadow_kernel(key.occluders), &[frame, brick(1), look])?,
+                shadow: build(kernels::shadow_kernel(occluders, light_left_by), &lit_brick)?,
                 illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, look])?,
-                ambient: build(kernels::ambient_kernel(key.occluders), &[frame, brick(1), look])?,
+                ambient: build(kernels::ambient_kernel(occluders, light_left_by), &lit_brick)?,
                 gather: build(kernels::gather_kernel(), &[frame, surfaces, look])?,
             },
             Mode::Path(surface, sources, kind) => {
@@ -144,7 +149,7 @@ impl LitPasses {
                 }
                 ShadePasses::Path {
                     scatter: both(&kernel, &groups)?,
-                    occlude: build(kernels::occlude_kernel(key.occluders), &[frame, brick(1)])?,
+                    occlude: build(kernels::occlude_kernel(occluders, light_left_by), &lit_brick)?,
                 }
             }
         };
@@ -204,8 +209,12 @@ mod tests {
                 // The structure with the most buffers.
                 let structure = Structure::NestedGrid(ListLayout::Referenced);
                 let (occluders, several_bricks) = (structure, true);
-                let key = LitKey { camera, mode, structure, occluders, several_bricks };
-                LitPasses::new(&device, key, &[]).unwrap();
+                for left_by in LeftBy::ALL {
+                    let left_by = [left_by; 2];
+                    let key =
+                        LitKey { camera, mode, structure, occluders, left_by, several_bricks };
+                    LitPasses::new(&device, key, &[]).unwrap();
+                }
             }
         }
     }

@@ -76,11 +76,14 @@ pub(in crate::gpu) const CATCHER: u32 = 16;
 /// `vec4f`s of a path's state that every path and every studio has: slots up to the hit in `shaders/path_state.wgsl`.
 pub(super) const COMMON_SLOTS: u64 = 7;
 
-/// With what a path that looks for light, or a studio, keeps.
-pub(super) const LIGHT_SLOTS: u64 = 10;
+/// With what a path that looks for light keeps.
+pub(super) const LIGHT_SLOTS: u64 = 9;
 
 /// With what absorbs light on the way.
-pub(super) const MEDIUM_SLOTS: u64 = 11;
+pub(super) const MEDIUM_SLOTS: u64 = 10;
+
+/// With what a studio keeps.
+pub(super) const STUDIO_SLOTS: u64 = 10;
 
 /// `vec4f`s of a pixel's sums: `shaders/film_sums.wgsl`.
 pub(in crate::gpu) const FILM_SLOTS: u64 = 3;

@@ -5,12 +5,12 @@ use wgpu::Limits;
 use super::kernels::{Mode, Sources, Surfaces};
 use super::records::{
     COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
-    PIXELS_PER_VARIATION, QUEUE_HEAD,
+    PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
 };
 use crate::film::Film;
 use crate::gpu::tiles::WORKGROUP_SIDE;
 
-/// The most paths that are followed at a time. Their state then takes 56 to 88 MiB.
+/// The most paths that are followed at a time. Their state then takes 56 to 80 MiB.
 const MOST_PATHS: u64 = 1 << 19;
 
 /// How many samples of a pixel are followed together, if there are so many: each of them then costs less, because their
@@ -97,6 +97,7 @@ fn slots(mode: Mode) -> u64 {
     match mode {
         Mode::Path(Surfaces::Any, ..) => MEDIUM_SLOTS,
         Mode::Path(Surfaces::Matt, Sources::None, _) => COMMON_SLOTS,
-        Mode::Path(Surfaces::Matt, Sources::Any, _) | Mode::Studio => LIGHT_SLOTS,
+        Mode::Path(Surfaces::Matt, Sources::Any, _) => LIGHT_SLOTS,
+        Mode::Studio => STUDIO_SLOTS,
     }
 }

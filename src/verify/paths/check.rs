@@ -3,8 +3,9 @@
 use super::certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
 use super::expected::{Expected, Mismatch};
 use super::kernel::{Address, Hit, Kernel, settled};
-use super::recording::{PathRecording, PathState, RecordedSample, flag, slot};
-use super::{search, start, upload};
+use super::recording::{NO_EMITTER, PathRecording, PathState, RecordedSample, flag, slot};
+use super::search::{self, Searched};
+use super::{start, upload};
 use crate::material::{Finish, Material};
 use crate::parallel::{map_parts, ranges};
 use crate::verify::camera::CameraModel;
@@ -220,6 +221,11 @@ impl PathCheck<'_> {
         })
     }
 
+    fn searched(&self) -> Searched<'_> {
+        let Checker { scene, candidates, .. } = self.checker;
+        Searched { model: &self.model, scene, candidates }
+    }
+
     fn extend(
         &self,
         state: &PathState,
@@ -228,9 +234,7 @@ impl PathCheck<'_> {
         legal: &mut LegalHits,
     ) -> Result<Verdict, Mismatch> {
         let mut expected = Expected::default();
-        let candidates = &self.checker.candidates;
-        search::check_hit(&self.model, candidates, state, last, hit, &mut expected, legal)
-            .map(simple)
+        search::check_hit(self.searched(), state, last, hit, &mut expected, legal).map(simple)
     }
 
     fn scatter(
@@ -259,8 +263,13 @@ impl PathCheck<'_> {
 
     fn occlude(&self, state: &PathState, open: f32) -> Result<Verdict, Mismatch> {
         let mut expected = Expected::default();
-        let candidates = &self.checker.candidates;
-        search::check_open(&self.model, candidates, state, open, &mut expected).map(simple)
+        let PathRecording { tables, look, .. } = self.recording;
+        let emitter = state.left().emitter;
+        let sought = (emitter != NO_EMITTER)
+            .then(|| tables.get(look.emitter_first as usize + 3 * emitter as usize))
+            .flatten()
+            .map(|sphere| sphere.map(f32::from_bits));
+        search::check_open(self.searched(), state, sought, open, &mut expected).map(simple)
     }
 
     /// What a sample adds to the picture.

@@ -6,6 +6,7 @@ use super::expected::{Expected, Mismatch};
 use super::recording::{PathRecording, PathState, UploadedLook, flag, slot};
 use super::vertex::Vertex;
 use super::warp::Axes;
+use crate::image::NO_ID;
 use crate::sampling::{pair, pixel_seed};
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
@@ -65,6 +66,7 @@ const DIRECTION: Name = (PathStage::Scatter, "where the path goes");
 const DENSITY: Name = (PathStage::Scatter, "the density of going there");
 const FLAGS: Name = (PathStage::Scatter, "the path's flags");
 const LEFT: Name = (PathStage::Vertex, "the sphere that the path leaves");
+const FAR_WALL: Name = (PathStage::Scatter, "the far wall of the sphere that the path leaves");
 const THROUGHPUT: Name = (PathStage::Scatter, "what the path carries");
 const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
 const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
@@ -112,9 +114,7 @@ impl<'a> Kernel<'a> {
         } else {
             through.times(medium.map(|m| (-m * vertex.distance).exp()))
         };
-        let [x, y, z, radius] = vertex.sphere;
-        self.expected.vector(LEFT, after.vector(slot::LEFT), Vector::had([x, y, z]))?;
-        self.expected.number(LEFT, after.number(slot::LEFT), Number::had(radius))?;
+        self.compare_left(&vertex)?;
         if vertex.is_passed {
             return self.pass(&vertex, settled, arriving);
         }
@@ -144,6 +144,20 @@ impl<'a> Kernel<'a> {
         }
         self.look_for_light(&at, arriving)?;
         self.bounce(&at, arriving)
+    }
+
+    /// The sphere that is left, and its far wall on the way that the path takes.
+    fn compare_left(&mut self, at: &Vertex) -> Result<(), Mismatch> {
+        let (after, left) = (self.after, self.after.left());
+        let (id, place) = if at.is_sphere() { (self.hit.id, self.hit.place) } else { (NO_ID, 0) };
+        self.expected.bits(LEFT, left.id, id)?;
+        self.expected.bits(LEFT, left.place, place)?;
+        let far_wall = if after.has(flag::INSIDE) {
+            at.far_wall(Vector::had(after.vector(slot::DIRECTION)))
+        } else {
+            Number::ZERO
+        };
+        self.expected.number(FAR_WALL, left.far_wall, far_wall)
     }
 
     /// The radiance so far, and the light that was looked for last if nothing is in between.
@@ -185,7 +199,7 @@ impl<'a> Kernel<'a> {
         self.expected.bits(FLAGS, after.flags(), 0)?;
         self.compare_no_light()?;
         self.same(&[slot::DIRECTION, slot::LEFT, slot::THROUGHPUT, slot::FIRST])?;
-        self.same(&[slot::TARGET, slot::MEDIUM])
+        self.same(&[slot::MEDIUM])
     }
 
     /// The path ends on a surface. Where it would have gone, does not matter.

@@ -3,7 +3,7 @@
 use super::certificate::PathStage;
 use super::expected::Mismatch;
 use super::kernel::{Kernel, Surface, unit};
-use super::recording::{flag, slot};
+use super::recording::{NO_EMITTER, flag, slot};
 use super::warp::{axes_around, cone_direction, cone_of_sphere, pi};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
@@ -21,7 +21,8 @@ struct Found {
     density: Number,
     /// Over the density.
     radiance: Vector,
-    sphere: [f32; 4],
+    /// Which emitter it is, or [`NO_EMITTER`].
+    emitter: u32,
 }
 
 /// An emissive sphere as kernels have it.
@@ -33,7 +34,7 @@ struct Emitter {
 
 const DIRECTION: (PathStage, &str) = (PathStage::Light, "the direction towards the light");
 const DISTANCE: (PathStage, &str) = (PathStage::Light, "how far the light is");
-const TARGET: (PathStage, &str) = (PathStage::Light, "the sphere that is looked for");
+const EMITTER: (PathStage, &str) = (PathStage::Light, "the sphere that is looked for");
 
 impl Kernel<'_> {
     /// Lights at the eye, on what the camera sees.
@@ -59,7 +60,8 @@ impl Kernel<'_> {
     pub(super) fn look_for_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (look, after) = (self.look(), self.after);
         if look.source_count == 0 {
-            return self.same(&[slot::SHADOW, slot::PENDING, slot::TARGET]);
+            self.expected.bits(EMITTER, after.left().emitter, NO_EMITTER)?;
+            return self.same(&[slot::SHADOW, slot::PENDING]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
         let place = unit(which) * Number::known(look.source_count.into());
@@ -75,9 +77,7 @@ impl Kernel<'_> {
             self.find_sky(u)
         };
         self.expected.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
-        let [x, y, z, radius] = found.sphere;
-        self.expected.vector(TARGET, after.vector(slot::TARGET), Vector::had([x, y, z]))?;
-        self.expected.number(TARGET, after.number(slot::TARGET), Number::had(radius))?;
+        self.expected.bits(EMITTER, after.left().emitter, found.emitter)?;
 
         let color = Vector::had(at.vertex.color);
         let toward = at.axes.to_local(found.direction);
@@ -104,9 +104,7 @@ impl Kernel<'_> {
             return false;
         }
         if vertex.is_back {
-            let [x, y, z, _] = vertex.sphere;
-            let to_center = Vector::had([x, y, z]) - vertex.position;
-            let to_wall = (Number::TWO * to_center.dot(found.direction)).max(Number::ZERO);
+            let to_wall = vertex.far_wall(found.direction);
             if self.choices.decide(to_wall.is_less(found.distance)) {
                 return false;
             }
@@ -139,7 +137,7 @@ impl Kernel<'_> {
             distance,
             density,
             radiance: strength * (pi() * sources),
-            sphere: [0.0; 4],
+            emitter: NO_EMITTER,
         };
         if kind == DIRECTIONAL {
             let direction = axes_around(place, self.choices).to_world(cone_direction(u, size));
@@ -226,7 +224,8 @@ impl Kernel<'_> {
     }
 
     fn find_sphere(&mut self, position: Vector, u: [u32; 2], choice: u32) -> Found {
-        let found = self.emitter(self.find_emitter(1, choice));
+        let emitter = self.find_emitter(1, choice);
+        let found = self.emitter(emitter);
         let density = self.emitter_density(&found, position) / self.sources();
         let [x, y, z, radius] = found.sphere;
         let radius = Number::had(radius);
@@ -246,7 +245,7 @@ impl Kernel<'_> {
             let divisor = density.max(Number::constant(1e-30));
             found.radiance.map(|c| c / divisor)
         };
-        Found { direction, distance, density, radiance, sphere: found.sphere }
+        Found { direction, distance, density, radiance, emitter }
     }
 
     fn find_sky(&mut self, u: [u32; 2]) -> Found {
@@ -259,7 +258,7 @@ impl Kernel<'_> {
             self.sky_radiance(direction).map(|c| c / divisor)
         };
         let distance = Number::known(NO_HIT.into());
-        Found { direction, distance, density, radiance, sphere: [0.0; 4] }
+        Found { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
 
     /// What light that is met counts, if it might have been looked for with a density.

@@ -66,7 +66,7 @@ pub struct PathState {
 
 impl PathState {
     /// How many slots there are.
-    pub const SLOTS: usize = 10;
+    pub const SLOTS: usize = 9;
 
     /// The slot of the light that is looked for, whose last number says whether nothing is in between.
     pub const PENDING: usize = 7;
@@ -84,6 +84,12 @@ impl PathState {
         self.slots[slot][3]
     }
 
+    /// What the path leaves.
+    pub(super) fn left(&self) -> Left {
+        let [id, place, far_wall, emitter] = self.slots[slot::LEFT];
+        Left { id, place, far_wall: f32::from_bits(far_wall), emitter }
+    }
+
     pub(super) fn flags(&self) -> u32 {
         self.bits(slot::ORIGIN)
     }
@@ -92,6 +98,22 @@ impl PathState {
         self.flags() & flag != 0
     }
 }
+
+/// What a path leaves: `shaders/left.wgsl`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Left {
+    /// The sphere; [`NO_ID`](crate::image::NO_ID) for none.
+    pub(super) id: u32,
+    /// Where the device has it.
+    pub(super) place: u32,
+    /// How far its far wall is, where the path goes inside; else 0.
+    pub(super) far_wall: f32,
+    /// Which emitter is looked for, or [`NO_EMITTER`].
+    pub(super) emitter: u32,
+}
+
+/// For [`Left::emitter`].
+pub(super) const NO_EMITTER: u32 = u32::MAX;
 
 /// The slots that paths use.
 pub(super) mod slot {
@@ -103,8 +125,7 @@ pub(super) mod slot {
     pub(in crate::verify) const FIRST: usize = 5;
     pub(in crate::verify) const SHADOW: usize = 6;
     pub(in crate::verify) const PENDING: usize = super::PathState::PENDING;
-    pub(in crate::verify) const TARGET: usize = 8;
-    pub(in crate::verify) const MEDIUM: usize = 9;
+    pub(in crate::verify) const MEDIUM: usize = 8;
 }
 
 /// Flags of a path, and of a look.

@@ -1,5 +1,5 @@
 //! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/trace.wgsl`,
-//! `entry_path.wgsl`, `first_segment.wgsl`, `origin_sphere.wgsl`, `occlude.wgsl` and `origin_and_target.wgsl`.
+//! `entry_path.wgsl`, `first_segment.wgsl`, `occlude.wgsl` and the parts of names with `origin`.
 
 use glam::{DVec3, Vec4};
 
@@ -8,16 +8,25 @@ use super::expected::{Expected, Mismatch};
 use super::kernel::Hit;
 use super::recording::{PathState, flag, slot};
 use crate::image::NO_ID;
+use crate::scene::Scene;
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
 use crate::verify::candidates::Candidates;
 use crate::verify::hit::{LegalHit, LegalHits, legal_hit};
 use crate::verify::line::Line;
-use crate::verify::number::{Number, Vector};
+use crate::verify::number::Number;
 use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::Slack;
 
 const STAGE: PathStage = PathStage::Extend;
+
+/// What rays are searched for in.
+#[derive(Clone, Copy)]
+pub(super) struct Searched<'a> {
+    pub(super) model: &'a CameraModel,
+    pub(super) scene: &'a Scene,
+    pub(super) candidates: &'a Candidates,
+}
 
 /// A ray of a path, from where it enters the scene's box.
 struct Entry {
@@ -73,8 +82,7 @@ fn four(state: &PathState, which: usize) -> [f32; 4] {
 
 /// Judges what a ray has met; says whether there was a choice. `last` is what the path met before.
 pub(super) fn check_hit(
-    model: &CameraModel,
-    candidates: &Candidates,
+    Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
     last: Option<Hit>,
     found: Hit,
@@ -85,25 +93,25 @@ pub(super) fn check_hit(
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
     legal.clear();
-    let left = four(state, slot::LEFT);
-    let own = last.filter(|_| state.has(flag::INSIDE));
-    let own = own.map(|last| (last, far_wall(origin, direction, left)));
-    if let Some((_, wall)) = own {
-        let Interval { high, .. } = wall.interval();
+    let left = state.left();
+    let left_sphere = scene.spheres().get(left.id as usize).copied();
+    // The far wall has been compared when the path was scattered, and is known exactly.
+    let wall = f64::from(left.far_wall);
+    let own = last.zip(left_sphere).filter(|_| state.has(flag::INSIDE));
+    if own.is_some() {
         legal.miss = false;
-        legal.limit = high;
+        legal.limit = wall;
     }
     if entry.entered.may_meet_box {
-        let is_left = |sphere| is_same(sphere, left);
+        let is_left = |sphere| left_sphere.is_some_and(|left| is_same(sphere, left));
         legal.find_nearer(candidates, &entry.line, entry.slack, is_left);
         legal.miss |= entry.entered.may_miss_box && own.is_none();
     }
-    if let Some((Hit { id, .. }, wall)) = own {
-        let Interval { low, high } = wall.interval();
-        if low <= legal.limit {
-            let (near, far) = (None, Some(Interval { low, high }));
-            legal.spheres.push(LegalHit { id, near, far, sphere: left.map(f32::to_bits) });
-        }
+    if let Some((Hit { id, .. }, sphere)) = own
+        && wall <= legal.limit
+    {
+        let (near, far) = (None, Some(Interval { low: wall, high: wall }));
+        legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
     }
     let is_open = legal.count() > 1;
     let fail = |what, words| Err(expected.fail(STAGE, what, words));
@@ -132,17 +140,12 @@ pub(super) fn check_hit(
     Ok(is_open)
 }
 
-/// The far wall of the sphere on which a ray starts, inside.
-fn far_wall(origin: [f32; 3], direction: [f32; 3], [x, y, z, _]: [f32; 4]) -> Number {
-    let to_center = Vector::had([x, y, z]) - Vector::had(origin);
-    (Number::TWO * to_center.dot(Vector::had(direction))).max(Number::ZERO)
-}
-
-/// Judges whether a light that is looked for was found; says whether there was a choice.
+/// Judges whether a light that is looked for was found; says whether there was a choice. `sought` is the emitter, if it
+/// is one.
 pub(super) fn check_open(
-    model: &CameraModel,
-    candidates: &Candidates,
+    Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
+    sought: Option<[f32; 4]>,
     open: f32,
     expected: &mut Expected,
 ) -> Result<bool, Mismatch> {
@@ -153,11 +156,16 @@ pub(super) fn check_open(
     let Interval { low, high } = entry.entered.enter;
     let rest = (Number::had(distance) - Number::between(low, high)).interval();
     let (mut may_be_hidden, mut must_be_hidden) = (false, false);
-    let exempt = [four(state, slot::LEFT), four(state, slot::TARGET)];
+    let left = state.left();
+    let is_exempt = |sphere: [f32; 4]| {
+        let left = scene.spheres().get(left.id as usize);
+        let own = left.is_some_and(|left| is_same(sphere, *left));
+        own || sought.is_some_and(|sought| is_same(sphere, sought))
+    };
     if entry.entered.may_meet_box && rest.high > 0.0 {
         let moved = entry.slack.across + entry.slack.along;
         candidates.visit(&entry.line, moved, rest.high, |candidate| {
-            if exempt.iter().any(|sphere| is_same(candidate.sphere, *sphere)) {
+            if is_exempt(candidate.sphere) {
                 return rest.high;
             }
             if let Some((hit, may_miss)) = legal_hit(candidate, &entry.line, entry.slack) {

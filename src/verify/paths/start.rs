@@ -5,8 +5,9 @@ use glam::{DVec2, DVec3};
 use super::certificate::PathStage;
 use super::expected::{Expected, Mismatch};
 use super::kernel::Address;
-use super::recording::{PathRecording, PathState, flag, slot};
+use super::recording::{NO_EMITTER, PathRecording, PathState, flag, slot};
 use crate::film::{Film, YAxis};
+use crate::image::NO_ID;
 use crate::sampling::{pair, pixel_seed, unit};
 use crate::verify::camera::{CameraModel, Location};
 use crate::verify::choices::Choices;
@@ -57,6 +58,7 @@ pub(super) fn check(
     slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
     let [x, y, z, _] = found.slots[slot::DIRECTION];
     slots[slot::DIRECTION] = [x, y, z, 0];
+    slots[slot::LEFT] = [NO_ID, 0, 0, NO_EMITTER];
     slots[slot::THROUGHPUT] = [one; 4];
     let [r, g, b] = radiance.map(f32::to_bits);
     slots[slot::RADIANCE] = [r, g, b, 0];

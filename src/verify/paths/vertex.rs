@@ -1,6 +1,6 @@
 //! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/vertex.wgsl`.
 
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 
 use super::certificate::PathStage;
 use super::expected::Mismatch;
@@ -37,6 +37,13 @@ pub(super) struct Vertex {
 impl Vertex {
     pub(super) fn is_sphere(&self) -> bool {
         self.sphere[3] > 0.0
+    }
+
+    /// How far it is from the surface of a sphere to its other side; 0 if that is not inside.
+    pub(super) fn far_wall(&self, direction: Vector) -> Number {
+        let [x, y, z, _] = self.sphere;
+        let to_center = Vector::had([x, y, z]) - self.position;
+        (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
     }
 }
 
@@ -166,8 +173,7 @@ impl Kernel<'_> {
         let center = Vector::had([x, y, z]);
         let direction = Vector::had(before.vector(slot::DIRECTION));
         let middle = (center - *origin).dot(direction);
-        let left = Vec4::from(before.slots[slot::LEFT].map(f32::from_bits));
-        let is_far_wall = before.has(flag::INSIDE) && Vec4::from(sphere) == left;
+        let is_far_wall = before.has(flag::INSIDE) && hit.id == before.left().id;
         let (half, exact) = if is_far_wall {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)

@@ -41,6 +41,7 @@ pub(crate) fn studios() -> Vec<(&'static str, LitView)> {
         ("studio_near_occlusion", view(&shiny(), on_ground(studio(occluded(Some(0.7)))))),
         ("studio_sphere_light", view(&shiny(), on_ground(soft_light()))),
         ("studio_opacity", view(&clear(), on_ground(studio(occluded(Some(1.0)))))),
+        ("studio_opacity_of_equals", view(&equals(), on_ground(studio(occluded(Some(1.0)))))),
         ("studio_shadow_catcher", view(&matt(), catcher())),
         ("studio_depth_cue", view(&matt(), cued())),
         ("studio_without_light", view(&matt(), dark())),
@@ -62,6 +63,7 @@ pub(crate) fn paths() -> Vec<(&'static str, LitView)> {
         ("path_sky_image", view(&shiny(), on_ground(under_image()))),
         ("path_opacity", view(&clear(), on_ground(path(multiple)))),
         ("path_clear_glass", view(&clear_glass(), on_ground(path(multiple)))),
+        ("path_opacity_of_equals", view(&equals(), on_ground(path(multiple)))),
         ("path_inside_a_sphere", view(&inside(), night(multiple))),
         ("path_tiny", moved(&shiny(), path(multiple), 1e-4, 0.0)),
         ("path_huge", moved(&shiny(), path(multiple), 1e6, 0.0)),
@@ -131,6 +133,17 @@ fn clear() -> Vec<Sphere> {
     for (sphere, opacity) in spheres.iter_mut().zip([0.4, 1.0, 0.6, 1.0, 0.2]) {
         *sphere = sphere.with_opacity(opacity);
     }
+    spheres
+}
+
+/// Each sphere again, opaque where the first is not, which is the one that is seen, and the other way round.
+fn equals() -> Vec<Sphere> {
+    let opposite = |sphere: &Sphere| {
+        let opacity = if sphere.finish.opacity < 1.0 { 1.0 } else { 0.3 };
+        Sphere::new(sphere.center, sphere.radius, gray(0.1)).with_opacity(opacity)
+    };
+    let mut spheres = clear();
+    spheres.extend(clear().iter().map(opposite));
     spheres
 }
 

@@ -8,7 +8,7 @@ mod scenes;
 use std::path::Path;
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
 use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, ShaderEdit};
 use pinhole::verify::{Checker, PathCertificate, PathRecording};
@@ -34,9 +34,24 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials.push(Trial::test("paths::legal::in_bricks", || {
         legal_in(AccelChoice::List, SMALL_BINDING)
     }));
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
+    {
+        let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
+        trials.push(Trial::test(name, move || {
+            let view = scenes::thrice();
+            is_legal(&view, &record_in(headless()?, &view, in_bricks(&view, choice))?)
+        }));
+    }
     for fault in faults::all() {
         let name = format!("paths::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || is_found(&fault)));
+        trials.push(Trial::test(name, move || is_found(&fault, record)));
+    }
+    for fault in faults::of_ids() {
+        let name = format!("paths::faults::{}", fault.name);
+        let record = |device: &Headless, view: &LitView| {
+            record_in(device, view, in_bricks(view, AccelChoice::Tree))
+        };
+        trials.push(Trial::test(name, move || is_found(&fault, record)));
     }
     for (name, spoil) in inputs::ALL {
         let name = format!("paths::faults::input_{name}");
@@ -54,11 +69,7 @@ fn record(headless: &Headless, view: &LitView) -> Result<PathRecording, Failed> 
     record_in(headless, view, headless.plan_accel(&view.scene, AccelChoice::Auto).build(spheres))
 }
 
-fn record_in(
-    headless: &Headless,
-    view: &LitView,
-    accel: pinhole::accel::Accel,
-) -> Result<PathRecording, Failed> {
+fn record_in(headless: &Headless, view: &LitView, accel: Accel) -> Result<PathRecording, Failed> {
     let buffers = headless.upload(&view.scene, &accel.into())?;
     let go_on = &mut |_: &_| Decision::GoOn;
     Ok(headless.record_paths(&buffers, &view.seen(), &view.settings, 0..2, go_on)?)
@@ -94,8 +105,23 @@ fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     is_legal(&view, &record_in(headless()?, &view, accel)?)
 }
 
+/// In bricks among which equal spheres are divided.
+fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::for_rays(spheres, choice, SMALL_BINDING, u64::MAX).build(spheres);
+    let brick_of = |sphere: &[f32; 4]| {
+        let place = |brick: &Brick| brick.spheres.iter().any(|other| other[..3] == sphere[..3]);
+        accel.bricks().iter().filter(|brick| place(brick)).count()
+    };
+    assert!(spheres.iter().any(|sphere| brick_of(sphere) > 1), "none is in several");
+    accel
+}
+
 /// By the stage that it is a fault of.
-fn is_found(fault: &Fault) -> Result<(), Failed> {
+fn is_found(
+    fault: &Fault,
+    record: impl Fn(&Headless, &LitView) -> Result<PathRecording, Failed>,
+) -> Result<(), Failed> {
     let Fault { file, find, replace, stage, .. } = *fault;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
     if !std::fs::read_to_string(path)?.contains(find) {

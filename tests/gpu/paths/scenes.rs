@@ -344,6 +344,26 @@ pub(crate) fn many() -> LitView {
     view(&spheres, RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
+/// Each of many spheres three times, the first of them last; what they look like differs.
+pub(crate) fn thrice() -> LitView {
+    let LitView { scene, .. } = many();
+    let count = scene.len() as u32;
+    let origin = scene.origin();
+    let of = |id: u32, moved: u32| {
+        let [x, y, z, radius] = scene.spheres()[id as usize].map(f64::from);
+        let finish = scene.finish((id + moved) % count);
+        let center = (DVec3::new(x, y, z) + origin).to_array();
+        ball(center, radius, scene.color((id + moved) % count))
+            .with_material(finish.material)
+            .with_opacity(finish.opacity)
+    };
+    let spheres: Vec<Sphere> = (0..3)
+        .flat_map(|turn| (0..count).map(move |id| (id, turn)))
+        .map(|(id, turn)| of(id, turn))
+        .collect();
+    LitView { scene: Scene::new(&spheres).unwrap(), ..many() }
+}
+
 pub(crate) fn mixed() -> Vec<Sphere> {
     let mut spheres = lamps();
     spheres[5] = spheres[5].with_material(glass_of(1.4, 0.2, None));

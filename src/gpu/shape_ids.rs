@@ -1,0 +1,62 @@
+//! What kernels call the shapes of a structure.
+
+use std::borrow::Cow;
+
+use crate::accel::Accel;
+use crate::scene::{Duplicates, Scene};
+
+/// How a ray is kept from meeting the shape that it starts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum LeftBy {
+    /// It knows the shape's place in the structure that it searches, and no equal shape is in another brick. Costs
+    /// nothing for each test.
+    Place,
+    /// It knows the shape's id. A read for each test.
+    Id,
+}
+
+impl LeftBy {
+    /// Both.
+    #[cfg(test)]
+    pub(super) const ALL: [Self; 2] = [Self::Place, Self::Id];
+}
+
+/// By which ids kernels know the spheres of a structure, and rays those that they start on.
+#[derive(Clone, Debug)]
+pub(super) struct ShapeIds {
+    /// Of every sphere that the structure was built of; `None` if that is its index.
+    ids: Option<Vec<u32>>,
+    pub(super) left_by: LeftBy,
+}
+
+impl ShapeIds {
+    /// For a structure of all spheres.
+    pub(super) fn of_all(scene: &Scene, accel: &Accel) -> Self {
+        // Where equal spheres are in one brick, their places will do.
+        let duplicates = if accel.may_part_equals() {
+            Duplicates::of(scene.spheres())
+        } else {
+            Duplicates::default()
+        };
+        if duplicates.is_empty() {
+            return Self { ids: None, left_by: LeftBy::Place };
+        }
+        let ids = (0..scene.len() as u32).map(|id| duplicates.first_of(id)).collect();
+        Self { ids: Some(ids), left_by: LeftBy::Id }
+    }
+
+    /// For a structure of the opaque spheres alone, by their indices among all.
+    pub(super) fn of_opaque(scene: &Scene) -> Self {
+        let duplicates = Duplicates::of(scene.spheres());
+        let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
+        Self { ids: Some(ids), left_by: LeftBy::Id }
+    }
+
+    /// What spheres are called that the structure knows by these numbers.
+    pub(super) fn of<'a>(&self, numbers: &'a [u32]) -> Cow<'a, [u32]> {
+        match &self.ids {
+            None => numbers.into(),
+            Some(ids) => numbers.iter().map(|number| ids[*number as usize]).collect(),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Spheres in the place of another.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::parallel::map_chunks;
+
+/// Spheres whose centre and radius are those of one before them. Of several at the same distance the first is met, so
+/// they are never seen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Duplicates {
+    /// Of every sphere, the first that is equal to it; empty if each is the first.
+    firsts: Vec<u32>,
+}
+
+impl Duplicates {
+    /// Of spheres, each a centre and a radius. Takes time in proportion to their number, and 4 bytes for each while it
+    /// runs.
+    pub(crate) fn of(spheres: &[[f32; 4]]) -> Self {
+        let mut suspects = suspects(spheres);
+        let bits_of = |id: &u32| bits(&spheres[*id as usize]);
+        suspects.sort_unstable_by_key(|id| (bits_of(id), *id));
+        let equal = suspects.chunk_by(|a, b| bits_of(a) == bits_of(b));
+        let mut firsts = Vec::new();
+        for group in equal.filter(|group| group.len() > 1) {
+            if firsts.is_empty() {
+                firsts = (0..spheres.len() as u32).collect();
+            }
+            for id in group {
+                firsts[*id as usize] = group[0];
+            }
+        }
+        Self { firsts }
+    }
+
+    /// Whether no sphere is in the place of another.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.firsts.is_empty()
+    }
+
+    /// The first sphere that is equal to one; mostly itself.
+    pub(crate) fn first_of(&self, id: u32) -> u32 {
+        self.firsts.get(id as usize).copied().unwrap_or(id)
+    }
+}
+
+/// All spheres that have an equal, and few others.
+fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
+    const BITS_PER_SPHERE: usize = 16;
+    let words = (spheres.len() * BITS_PER_SPHERE / 64).next_power_of_two();
+    let clear = || -> Vec<AtomicU64> { (0..words).map(|_| AtomicU64::new(0)).collect() };
+    // Spheres that are equal have the same place.
+    let place = |sphere: &[f32; 4]| {
+        let hash = hash(sphere);
+        ((hash >> 6) as usize & (words - 1), 1 << (hash & 63))
+    };
+    let (seen, seen_twice) = (clear(), clear());
+    map_chunks(spheres, |_, spheres| {
+        for sphere in spheres {
+            let (word, bit) = place(sphere);
+            if seen[word].fetch_or(bit, Ordering::Relaxed) & bit != 0 {
+                seen_twice[word].fetch_or(bit, Ordering::Relaxed);
+            }
+        }
+    });
+    let found = map_chunks(spheres, |first, spheres| -> Vec<u32> {
+        (first as u32..)
+            .zip(spheres)
+            .filter(|(_, sphere)| {
+                let (word, bit) = place(sphere);
+                seen_twice[word].load(Ordering::Relaxed) & bit != 0
+            })
+            .map(|(id, _)| id)
+            .collect()
+    });
+    found.concat()
+}
+
+/// Well mixed in its lower bits: two rounds of multiplying and folding.
+fn hash(sphere: &[f32; 4]) -> u64 {
+    const ODD: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xd6e8_feb8_6659_fd93];
+    let [x, y, z, radius] = bits(sphere).map(u64::from);
+    let fold = |x: u64, odd: u64| {
+        let product = x.wrapping_mul(odd);
+        product ^ product >> 32
+    };
+    fold(fold(x | y << 32, ODD[0]) ^ (z | radius << 32), ODD[1])
+}
+
+/// Alike for spheres whose numbers are equal: zeros lose their signs.
+fn bits(sphere: &[f32; 4]) -> [u32; 4] {
+    sphere.map(|x| (x + 0.0).to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn firsts(spheres: &[[f32; 4]]) -> Vec<u32> {
+        let duplicates = Duplicates::of(spheres);
+        (0..spheres.len() as u32).map(|id| duplicates.first_of(id)).collect()
+    }
+
+    #[test]
+    fn equal_numbers_are_equal_spheres() {
+        let [a, b] = [[0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 3.5]];
+        let minus = [-0.0, 1.0, 2.0, 3.0];
+        assert_eq!(firsts(&[b, a, minus, b, a]), [0, 1, 1, 0, 1]);
+        assert!(Duplicates::of(&[a, b]).is_empty() && Duplicates::of(&[]).is_empty());
+    }
+
+    /// As a search among all spheres before each.
+    #[test]
+    fn many_are_found_among_many() {
+        let mut random = fastrand::Rng::with_seed(31);
+        for (count, sides) in [(300, 4), (3000, 30), (3000, 1 << 20), (2000, 1)] {
+            let spheres: Vec<[f32; 4]> = (0..count)
+                .map(|_| {
+                    let [x, y] = [0; 2].map(|_| random.u32(..sides) as f32);
+                    [x, y, 5.0 - x, 1.0 + y]
+                })
+                .collect();
+            let wanted: Vec<u32> = spheres
+                .iter()
+                .map(|sphere| {
+                    let is_equal =
+                        |other: &[f32; 4]| other.map(f32::to_bits) == sphere.map(f32::to_bits);
+                    spheres.iter().position(is_equal).unwrap() as u32
+                })
+                .collect();
+            assert_eq!(firsts(&spheres), wanted, "{count} of {sides}");
+        }
+    }
+}
