@@ -161,8 +161,8 @@ impl Accel {
     }
 
     /// Whether spheres with the same centre may be in several bricks.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn may_part_equals(&self) -> bool {
+    #[must_use]
+    pub fn may_part_equals(&self) -> bool {
         self.may_part_equals
     }
 

@@ -33,6 +33,7 @@ impl Duplicates {
     }
 
     /// Whether no sphere is in the place of another.
+    #[cfg(any(feature = "gpu", test))]
     pub(crate) fn is_empty(&self) -> bool {
         self.firsts.is_empty()
     }
