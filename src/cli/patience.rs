@@ -26,7 +26,8 @@ pub(super) struct PatienceArgs {
     /// Take samples until the noise is at most this part of the light, such as 0.01, up to --samples
     #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// Of a lit picture, on Ctrl-C write what the samples so far give, at least one; a second Ctrl-C writes nothing
+    /// Of a lit picture, on Ctrl-C write what the samples so far give, and with --time wait for one of every pixel; a
+    /// second Ctrl-C writes nothing
     #[arg(long)]
     keep_partial: bool,
 }
@@ -127,6 +128,8 @@ pub(super) struct Watching {
     started: Instant,
     /// Whether the user knows that the first sample is waited for.
     has_said: Cell<bool>,
+    /// If the time was up before every pixel had a sample: about which part of them had.
+    too_short: Cell<Option<f64>>,
 }
 
 #[cfg(feature = "gpu")]
@@ -135,8 +138,16 @@ impl Watching {
     pub(super) fn new(patience: Patience, pictures: usize, pixels: u64, is_lit: bool) -> Self {
         let time = patience.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
         let measures_noise = is_lit && (patience.noise.is_some() || progress::is_seen());
-        let (started, has_said) = (Instant::now(), Cell::new(false));
-        Self { patience, time, measures_noise, is_lit, pixels, started, has_said }
+        Self {
+            patience,
+            time,
+            measures_noise,
+            is_lit,
+            pixels,
+            started: Instant::now(),
+            has_said: Cell::new(false),
+            too_short: Cell::new(None),
+        }
     }
 
     /// Shows how far it is, and decides how it goes on.
@@ -153,6 +164,11 @@ impl Watching {
             return Decision::Finish;
         }
         if (is_interrupted || is_late) && !has_any {
+            if !self.patience.keep_partial {
+                // Of one sample of every pixel.
+                self.too_short.set(Some(progress.part * f64::from(progress.total)));
+                return Decision::Stop;
+            }
             self.say_first_sample(is_interrupted);
             return Decision::GoOn;
         }
@@ -165,6 +181,16 @@ impl Watching {
         } else {
             Decision::GoOn
         }
+    }
+
+    /// What to say if the time was too short for a sample of every pixel.
+    pub(super) fn too_short(&self) -> Option<Failure> {
+        let (part, time) = (self.too_short.get()?, self.time?.as_secs_f64());
+        Some(Failure::Job(anyhow::anyhow!(
+            "--time: after {time:.3} s {:.0} % of the pixels have a sample, and a picture needs one of each; \
+             nothing was written; give more time or a smaller --size, or wait for it with --keep-partial",
+            (100.0 * part).clamp(0.0, 99.0)
+        )))
     }
 
     /// A picture needs one sample of every pixel; says once that it is still waited for.

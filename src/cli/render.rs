@@ -171,6 +171,7 @@ fn on_gpu(
     let is_lit = !settings.integrator.is_primary();
     let plan = |choice| plan(headless, input, views, layers, choice);
     let rendered = with_structures(headless, scene, choice, plan, |structures| {
+        let mut too_short = None;
         let (done, is_stopped) = interrupt::on_device_keeping(|| {
             let buffers = headless.upload(scene, &structures)?;
             drop(structures);
@@ -179,10 +180,14 @@ fn on_gpu(
                 let pixels = film.pixel_count();
                 let watching = Watching::new(*patience, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch)?;
-                Ok((picture, watching))
+                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
+                too_short = watching.too_short();
+                Ok((picture?, watching))
             })
         });
+        if let Some(failure) = too_short {
+            return Err(failure);
+        }
         if is_stopped && !patience.keeps_partial() {
             return Err(Failure::Stopped);
         }

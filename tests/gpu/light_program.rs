@@ -90,10 +90,19 @@ fn noise(headless: &'static Headless) {
 fn time(headless: &'static Headless) {
     let folder = folder();
     let flags = "render scene.toml -o out.png --layer samples=s.npy --time";
-    for (time, most) in [("0.001s", u32::MAX), ("1h --samples 3", 3)] {
+    for (time, most) in [("0.001s --keep-partial", u32::MAX), ("1h --samples 3", 3)] {
         run(folder.path(), headless, &format!("{flags} {time}"));
         assert!((1..=most).contains(&samples(folder.path())), "{time}");
     }
+    // Too short for a sample of every pixel.
+    std::fs::remove_file(folder.path().join("out.png")).unwrap();
+    let flags = "render scene.toml -o out.png --integrator path --size 4000x3000 --time 0.02s";
+    let output = command(folder.path(), headless, flags).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let words = "nothing was written; give more time or a smaller --size, or wait for it with --keep-partial\n";
+    assert!(said.starts_with("error: --time: after 0.020 s ") && said.ends_with(words), "{said}");
+    assert!(!folder.path().join("out.png").exists());
 }
 
 fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration) -> Output {
