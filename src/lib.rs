@@ -29,9 +29,9 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `scene-file`, `xyz`, `png`, `exr`, `hdr` and `npy` are readers and
-//! writers; `run-file` keeps what a device rendered; `cli` (default) is the program. An embedder wants
-//! `default-features = false, features = ["gpu"]`.
+//! and the CPU reference on all cores; `npy`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
+//! writers; `run-file` keeps what a device rendered; `all-formats` is all of these. An embedder wants
+//! `default-features = false, features = ["gpu"]`. The program is the package `pinhole-cli`.
 //!
 //! # Units
 //! World space is right-handed, lengths are in scene units, angles in radians. Colours are linear
@@ -48,9 +48,6 @@ pub mod accel;
 pub mod basis;
 pub mod bounds;
 pub mod camera;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
 pub mod color;
 pub mod cpu;
 pub mod denoise;
@@ -80,7 +77,8 @@ pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
 pub mod sphere;
-mod text;
+#[doc(hidden)]
+pub mod text;
 pub mod tone;
 pub mod verify;
 

@@ -14,7 +14,8 @@ pub struct RangeError {
 
 impl RangeError {
     /// The number as people write it: a whole number has no point.
-    pub(crate) fn value(&self) -> String {
+    #[must_use]
+    pub fn value(&self) -> String {
         format!("{:?}", self.value).trim_end_matches(".0").to_owned()
     }
 

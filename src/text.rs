@@ -1,14 +1,8 @@
 //! Fitting foreign text into a one-line message.
 
 /// The text on one line, whatever white space it has; control characters are escaped.
-#[cfg(any(
-    feature = "scene-file",
-    feature = "npy",
-    feature = "exr",
-    feature = "hdr",
-    feature = "cli"
-))]
-pub(crate) fn one_line(text: &str) -> String {
+#[must_use]
+pub fn one_line(text: &str) -> String {
     let mut line = String::new();
     for c in text.split_whitespace().collect::<Vec<_>>().join(" ").chars() {
         if c.is_control() {

@@ -31,7 +31,7 @@ pub use panorama::PanoramaCamera;
 #[cfg(feature = "scene-file")]
 pub use panorama::PanoramaParameters;
 #[cfg(feature = "scene-file")]
-pub(crate) use parameters::CameraParameters;
+pub use parameters::CameraParameters;
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
 pub use pinhole::PinholeParameters;

@@ -6,24 +6,32 @@ use super::{Camera, CameraError, camera_table};
 use crate::bounds::Bounds;
 use crate::exact::Table;
 
+/// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct CameraParameters(ByKind);
+
 macro_rules! define_camera_parameters {
     ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
-        /// The table `[camera.NAME]`.
+        /// By kind of camera.
         #[derive(Clone, Copy, Debug, Deserialize)]
-        pub(crate) enum CameraParameters {
+        enum ByKind {
             $(#[serde(rename = $name)] $variant(Table<super::$parameters>),)+
         }
 
         impl CameraParameters {
-            /// The camera, or of two eyes that in the middle, for a film of the given aspect ratio and, if it has to frame the scene, a
-            /// box.
-            pub(crate) fn camera(
+            /// The camera (between two eyes, the one in the middle) for a film of this aspect ratio. It frames `bounds`
+            /// if the parameters give it no place.
+            ///
+            /// # Errors
+            /// If a parameter is out of range, or parameters exclude each other.
+            pub fn camera(
                 &self,
                 aspect: f64,
                 bounds: &Bounds,
             ) -> Result<Box<dyn Camera>, CameraError> {
-                match self {
-                    $(Self::$variant(parameters) => {
+                match &self.0 {
+                    $(ByKind::$variant(parameters) => {
                         Ok(Box::new(parameters.0.camera(aspect, bounds)?))
                     })+
                 }
@@ -34,15 +42,18 @@ macro_rules! define_camera_parameters {
 camera_table!(define_camera_parameters);
 
 impl CameraParameters {
-    /// Left and right eye, if there are two.
-    pub(crate) fn stereo_pair(
+    /// The cameras of the left and of the right eye, if there are two.
+    ///
+    /// # Errors
+    /// As [`CameraParameters::camera`].
+    pub fn stereo_pair(
         &self,
         aspect: f64,
         bounds: &Bounds,
     ) -> Result<Option<[Box<dyn Camera>; 2]>, CameraError> {
-        Ok(match self {
-            Self::Pinhole(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
-            Self::Panorama(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
+        Ok(match &self.0 {
+            ByKind::Pinhole(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
+            ByKind::Panorama(table) => table.0.stereo_pair(aspect, bounds)?.map(boxed),
             _ => None,
         })
     }
@@ -54,6 +65,6 @@ fn boxed<C: Camera + 'static>(pair: [C; 2]) -> [Box<dyn Camera>; 2] {
 
 impl Default for CameraParameters {
     fn default() -> Self {
-        Self::Pinhole(Table::default())
+        Self(ByKind::Pinhole(Table::default()))
     }
 }

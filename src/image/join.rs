@@ -7,7 +7,7 @@ impl Image {
     ///
     /// # Errors
     /// If the memory cannot be reserved.
-    pub(crate) fn side_by_side([left, right]: [&Self; 2]) -> Result<Self, ImageTooLarge> {
+    pub fn side_by_side([left, right]: [&Self; 2]) -> Result<Self, ImageTooLarge> {
         let in_both = left.layers().iter().filter(|layer| right.layers().contains(*layer));
         let (width, height) = (left.width + right.width, left.height.min(right.height));
         let mut both = Self::new(width, height, in_both.collect())?;

@@ -1,6 +1,5 @@
 //! Linear f32 pixels and data layers.
 
-#[cfg(feature = "cli")]
 mod join;
 mod layer;
 mod rows;

@@ -45,9 +45,11 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
     write([picture.width(), picture.height()], color_type, depth, &samples)
 }
 
-/// A PNG file of so many pixels, of three bytes each.
-#[cfg(feature = "cli")]
-pub(crate) fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
+/// A PNG file of an image of width and height `size`, whose pixels have three bytes each, row by row from the top.
+///
+/// # Errors
+/// If there are not as many bytes as that takes.
+pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
     write(size, ColorType::Rgb, BitDepth::Eight, rgb)
 }
 

@@ -200,7 +200,11 @@ fn check_brightness(
 }
 
 impl Sampling {
-    pub(crate) fn check(&self) -> Result<(), RangeError> {
+    /// Whether every number is within its range.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self) -> Result<(), RangeError> {
         let most = f64::from(Self::MAX_SAMPLES);
         let range = "from 1 to 16777216";
         RangeError::unless_within("samples", self.samples.into(), [1.0, most], range).map(drop)
@@ -208,14 +212,22 @@ impl Sampling {
 }
 
 impl PathTracing {
-    pub(crate) fn check(&self) -> Result<(), RangeError> {
+    /// Whether every number is within its range.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
     }
 }
 
 impl Studio {
-    pub(crate) fn check(&self) -> Result<(), RangeError> {
+    /// Whether every number is within its range.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;
         if let Some(occlusion) = &self.occlusion {

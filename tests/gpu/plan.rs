@@ -1,7 +1,4 @@
-//! The program on an adapter: plans, measurements, and being stopped.
-
-use std::path::Path;
-use std::process::{Command, Output};
+//! A plan of a picture, and what is then allocated.
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
@@ -9,46 +6,11 @@ use pinhole::camera::PinholeCamera;
 use pinhole::generate::Kind;
 use pinhole::gpu::Headless;
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View};
-use tempfile::TempDir;
 
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
-    let mut trials = vec![
-        trial("plan::it_bounds_what_is_built", bounds),
-        trial("plan::it_is_printed_for_people_and_programs", printed),
-        trial("plan::what_does_not_fit_is_refused_with_one_line", refused),
-        trial("plan::structures_and_limits_change_no_picture", same_picture),
-        trial("bench::a_file_is_measured_with_two_structures", bench),
-    ];
-    if cfg!(unix) {
-        trials.push(trial("interrupt::tracing_is_stopped", stopped));
-    }
-    trials
-}
-
-fn program(folder: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command.current_dir(folder).args(arguments.split(' '));
-    command
-}
-
-fn run(folder: &TempDir, arguments: &str) -> Output {
-    program(folder.path(), arguments).output().unwrap()
-}
-
-#[track_caller]
-fn stdout(folder: &TempDir, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments}: {stderr}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn folder_with(count: u32) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    stdout(&folder, &format!("generate clusters -n {count} -o a.npy"));
-    folder
+    vec![trial("plan::it_bounds_what_is_built", bounds)]
 }
 
 fn bounds(headless: &'static Headless) {
@@ -70,103 +32,5 @@ fn bounds(headless: &'static Headless) {
             assert!(buffers.bytes() <= planned + small, "{kind:?}, {choice}");
             assert!(plan.check(&headless.device().limits(), None).is_ok());
         }
-    }
-}
-
-fn printed(headless: &'static Headless) {
-    let folder = folder_with(2000);
-    let text = stdout(&folder, "plan a.npy --accel tree --size 640x480");
-    for words in ["spheres: 2000", "8-wide tree (asked for)", "640x480", "hits", "fits\n"] {
-        assert!(text.contains(words), "{text} lacks {words}");
-    }
-    let text = stdout(&folder, "plan a.npy --size 9000x9000 --layer depth --json");
-    let plan: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(plan["fits"], true);
-    assert_eq!(plan["problem"], serde_json::Value::Null);
-    assert_eq!(plan["scene"]["spheres"], 2000);
-    assert_eq!(plan["adapter"]["name"], headless.adapter_info().name);
-    assert!(plan["picture"]["tiles"].as_u64().unwrap() >= 20, "{text}");
-    let buffers = plan["buffers"].as_array().unwrap();
-    let bytes = |buffer: &serde_json::Value| buffer["bytes"].as_u64().unwrap();
-    assert_eq!(plan["device_bytes"].as_u64(), Some(buffers.iter().map(bytes).sum()));
-    assert!(buffers.iter().any(|buffer| buffer["name"] == "depth read-back"));
-}
-
-/// What is free changes from run to run.
-fn without_free_bytes(stderr: &[u8]) -> String {
-    let line = String::from_utf8(stderr.to_vec()).unwrap();
-    let (start, rest) = line.split_once(", but ").unwrap();
-    let (_, end) = rest.split_once(' ').unwrap();
-    format!("{start}, but N {end}")
-}
-
-fn refused(_: &'static Headless) {
-    let folder = folder_with(100);
-    let view = "a.npy --size 4000000x4000000";
-    let (plan, json) =
-        (run(&folder, &format!("plan {view}")), run(&folder, &format!("plan {view} --json")));
-    let render = run(&folder, &format!("render {view} -o out.png --backend gpu"));
-    for output in [&plan, &json, &render] {
-        assert_eq!(output.status.code(), Some(1));
-        let line = without_free_bytes(&output.stderr);
-        assert_eq!(line, without_free_bytes(&plan.stderr));
-        assert!(line.contains("the picture needs ") && line.contains("a smaller size"), "{line}");
-        assert_eq!(line.lines().count(), 1);
-    }
-    assert!(String::from_utf8(plan.stdout).unwrap().ends_with("does not fit\n"));
-    let report: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
-    assert_eq!(report["fits"], false);
-    let line = String::from_utf8(json.stderr).unwrap();
-    assert_eq!(report["problem"].as_str(), line.trim_end().strip_prefix("error: "));
-    assert!(!folder.path().join("out.png").exists());
-}
-
-fn same_picture(_: &'static Headless) {
-    let folder = folder_with(500);
-    let view = "render a.npy -o - --size 70x50 --backend gpu";
-    let picture = run(&folder, view).stdout;
-    assert!(!picture.is_empty());
-    for flags in ["--accel grid", "--accel tree", "--accel list", "--limits webgpu"] {
-        let output = run(&folder, &format!("{view} {flags}"));
-        assert!(output.status.success(), "{flags}: {}", String::from_utf8_lossy(&output.stderr));
-        assert!(output.stdout == picture, "{flags}");
-    }
-}
-
-fn bench(headless: &'static Headless) {
-    let folder = folder_with(300);
-    let text = stdout(&folder, "bench a.npy --reps 2 --size 32x24 --json");
-    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(report["adapter"]["name"], headless.adapter_info().name);
-    let scene = &report["scenes"][0];
-    assert_eq!((&scene["name"], &scene["spheres"]), (&"a.npy".into(), &300.into()));
-    let runs = scene["runs"].as_array().unwrap();
-    assert_eq!(runs.len(), 2);
-    for run in runs {
-        assert_eq!(run["rays"], 32 * 24);
-        assert!(run["trace_wall"]["median_seconds"].as_f64().unwrap() > 0.0);
-        assert!(run["submissions"].as_u64().unwrap() > 0);
-    }
-    assert!(scene["note"].as_str().unwrap().starts_with("auto chose "));
-    let text = stdout(&folder, "bench a.npy --reps 1 --size 32x24 --accel list");
-    assert!(text.contains("list: list") && text.contains("any Mrays/s"), "{text}");
-}
-
-/// 30,000 spheres for each of 16 million rays. The eye is among them, so that no ray is done at once.
-fn stopped(_: &'static Headless) {
-    let folder = folder_with(30_000);
-    let render = "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
-    for delay in [100, 300, 1000] {
-        let mut command = program(folder.path(), render);
-        let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(delay));
-        let id = child.id().to_string();
-        assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(130), "{stderr}");
-        assert_eq!(stderr, "stopped; nothing was written\n");
-        let files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
-        assert_eq!(files.len(), 1, "{files:?}");
     }
 }

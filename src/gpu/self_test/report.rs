@@ -57,7 +57,9 @@ pub struct SelfTestReport {
 }
 
 impl SelfTestReport {
-    pub(crate) fn new(properties: Vec<TestedProperty>) -> Self {
+    /// A report of what was tested.
+    #[must_use]
+    pub fn new(properties: Vec<TestedProperty>) -> Self {
         Self { properties }
     }
 

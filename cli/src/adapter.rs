@@ -1,0 +1,56 @@
+//! The device in use, as reports name it.
+
+use serde::Serialize;
+
+#[cfg(feature = "gpu")]
+use super::bench_report::{DEVICE_CLOCK, HOST_CLOCK};
+#[cfg(feature = "gpu")]
+use pinhole::gpu::Headless;
+use pinhole::verify::run_file::Provenance;
+
+#[derive(Serialize)]
+pub(super) struct AdapterReport {
+    pub(super) name: String,
+    pub(super) backend: String,
+    pub(super) device_type: String,
+    pub(super) driver: String,
+    pub(super) driver_info: String,
+}
+
+impl AdapterReport {
+    #[cfg(feature = "gpu")]
+    pub(super) fn of(headless: &Headless) -> Self {
+        let info = headless.adapter_info();
+        Self {
+            name: info.name.clone(),
+            backend: format!("{:?}", info.backend),
+            device_type: format!("{:?}", info.device_type),
+            driver: info.driver.clone(),
+            driver_info: info.driver_info.clone(),
+        }
+    }
+
+    /// The one that a run comes from.
+    pub(super) fn of_run(provenance: &Provenance) -> Self {
+        let Provenance { adapter, backend, device_type, driver, driver_info, .. } = provenance;
+        Self {
+            name: adapter.clone(),
+            backend: backend.clone(),
+            device_type: device_type.clone(),
+            driver: driver.clone(),
+            driver_info: driver_info.clone(),
+        }
+    }
+
+    /// Which clock tells how long it works.
+    #[cfg(feature = "gpu")]
+    pub(super) fn clock(&self) -> &'static str {
+        if self.device_type == "Cpu" { HOST_CLOCK } else { DEVICE_CLOCK }
+    }
+
+    /// On one line.
+    pub(super) fn line(&self) -> String {
+        let Self { name, backend, device_type, driver, driver_info } = self;
+        format!("{name} ({backend}, {device_type}), driver: {driver} {driver_info}")
+    }
+}

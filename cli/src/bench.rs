@@ -1,0 +1,190 @@
+//! `pinhole bench`: structures measured on an adapter, and whether the choice between them was right.
+
+use std::time::Instant;
+
+use anyhow::Context;
+
+use super::adapter::AdapterReport;
+use super::args::BenchArgs;
+use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
+use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
+use super::device::{WantedAdapter, explained};
+use super::failure::Failure;
+use super::input::parse_size;
+use super::speak::{answer, tell};
+use super::{interrupt, memory, process, progress, threads};
+use pinhole::accel::{AccelChoice, Structure};
+use pinhole::camera::View;
+use pinhole::gpu::{
+    GpuError, Headless, PictureRequest, Query, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
+};
+use pinhole::image::LayerSet;
+use pinhole::render::RenderSettings;
+
+pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
+    let size = args.size.as_deref().map(parse_size).transpose()?;
+    let sources = if args.scenes.is_empty() {
+        DEFAULT.into_iter().map(BenchSource::Standard).collect()
+    } else {
+        let sources = args.scenes.iter().map(|scene| BenchSource::new(scene, args, size));
+        sources.collect::<Result<Vec<_>, _>>()?
+    };
+    let adapter = WantedAdapter::new(&args.adapter);
+    threads::start()?;
+    let headless = adapter.open_any()?;
+    let mut report = BenchReport {
+        version: env!("CARGO_PKG_VERSION"),
+        adapter: AdapterReport::of(&headless),
+        reps: args.reps,
+        scenes: Vec::new(),
+    };
+    if !args.json {
+        say(&report.heading())?;
+    }
+    for source in sources {
+        let scene = source.load(size)?;
+        let measured = measure_scene(&headless, &scene, args)?;
+        if !args.json {
+            say(&measured.readable())?;
+        }
+        report.scenes.push(measured);
+    }
+    if args.json {
+        say(&(serde_json::to_string_pretty(&report).context("the report")? + "\n"))?;
+    }
+    Ok(())
+}
+
+/// As soon as it is known: all scenes take minutes.
+fn say(text: &str) -> Result<(), Failure> {
+    progress::clear();
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+}
+
+fn measure_scene(
+    headless: &Headless,
+    scene: &BenchScene,
+    args: &BenchArgs,
+) -> Result<SceneReport, Failure> {
+    let mut choices: Vec<AccelChoice> = args.accel.iter().map(|accel| (*accel).into()).collect();
+    if choices.is_empty() {
+        let planned = headless.plan_accel(&scene.scene, AccelChoice::Auto).structure;
+        let other = match planned {
+            Structure::WideTree => AccelChoice::Grid,
+            _ => AccelChoice::Tree,
+        };
+        choices = vec![AccelChoice::Auto, other];
+    }
+    let mut runs = Vec::new();
+    for choice in choices {
+        runs.push(measure(headless, scene, choice, args.reps)?);
+    }
+    Ok(SceneReport::new(scene, runs))
+}
+
+/// One structure, from planning it to tracing it.
+fn measure(
+    headless: &Headless,
+    scene: &BenchScene,
+    choice: AccelChoice,
+    reps: u32,
+) -> Result<RunReport, Failure> {
+    let BenchScene { name, scene: spheres, camera, film, .. } = scene;
+    let failed = |error: GpuError| explained(headless, &error);
+    progress::stage(format!("{name}: building, {choice}"));
+    let started = Instant::now();
+    let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
+    let request = PictureRequest {
+        scene: spheres,
+        view,
+        settings: &settings,
+        layers: LayerSet::COLOR,
+        host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
+    };
+    // For many pictures, not for this one.
+    let accel = headless.plan_accel(spheres, choice);
+    let structures = StructurePlans { accel, occluders: None };
+    let plan = RenderPlan::new(&request, structures, &headless.device_limits());
+    plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
+    tell(format_args!(
+        "{name}: {}, at most {} on the device, and {} of the host's memory beside the scene and the driver",
+        plan.accel.structure.name(),
+        memory::readable(plan.device_bytes),
+        memory::readable(plan.host_bytes),
+    ));
+    let structures = plan.build(spheres);
+    let build = started.elapsed();
+    let structure = structures.accel.structure();
+
+    let started = Instant::now();
+    let buffers =
+        interrupt::on_device(|| headless.upload(spheres, &structures))?.map_err(failed)?;
+    drop(structures);
+    let upload = started.elapsed();
+
+    progress::stage(format!("{name}: first render, {}", structure.name()));
+    let started = Instant::now();
+    let first = interrupt::on_device(|| {
+        let watch = &mut |_: &_| interrupt::decide();
+        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch)
+    })?;
+    first.map(drop).map_err(failed)?;
+    let first_render = started.elapsed();
+
+    let repeat = |query| repeat(headless, &buffers, name, &view, query, reps);
+    let (nearest, any) = (repeat(Query::Nearest)?, repeat(Query::Any)?);
+    let longest = nearest.iter().map(|time| time.longest).max().unwrap_or_default();
+    // The scene as it was built; the frame as it was planned.
+    let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
+    let device_bytes = buffers.bytes() + frame.sum::<u64>();
+    let clock = AdapterReport::of(headless).clock();
+    let rays = film.pixel_count();
+    let wall = |times: &[TraceTime]| Spread::of(times.iter().map(|time| Some(time.wall)));
+    let device = |times: &[TraceTime]| Spread::of(times.iter().map(|time| time.device));
+    let (trace_wall, trace_device) = (wall(&nearest), device(&nearest));
+    let (any_wall, any_device) = (wall(&any), device(&any));
+    let rate = |wall: Option<Spread>, device: Option<Spread>| {
+        let spread = if clock == DEVICE_CLOCK { device.or(wall) } else { wall };
+        spread.map(|spread| rays as f64 / spread.median_seconds)
+    };
+    Ok(RunReport {
+        choice: choice.to_string(),
+        structure: structure.name(),
+        reason: plan.accel.reason.clone(),
+        build_seconds: build.as_secs_f64(),
+        upload_seconds: upload.as_secs_f64(),
+        first_render_seconds: first_render.as_secs_f64(),
+        trace_wall,
+        trace_device,
+        any_wall,
+        any_device,
+        clock,
+        rays,
+        rays_per_second: rate(trace_wall, trace_device),
+        any_rays_per_second: rate(any_wall, any_device),
+        submissions: nearest.iter().map(|time| time.submissions).max().unwrap_or(0),
+        longest_submission_seconds: longest.as_secs_f64(),
+        device_bytes,
+        device_bytes_per_sphere: (!spheres.is_empty())
+            .then(|| device_bytes as f64 / spheres.len() as f64),
+        peak_memory_bytes: process::peak_bytes(),
+    })
+}
+
+/// Traces the whole picture a number of times.
+fn repeat(
+    headless: &Headless,
+    buffers: &SceneBuffers,
+    name: &str,
+    view: &View<'_>,
+    query: Query,
+    reps: u32,
+) -> Result<Vec<TraceTime>, Failure> {
+    (0..reps)
+        .map(|rep| {
+            progress::stage(format!("{name}: {query:?} hit, {} of {reps}", rep + 1));
+            let time = interrupt::on_device(|| headless.measure(buffers, view, query))?;
+            time.map_err(|error| explained(headless, &error))
+        })
+        .collect()
+}

@@ -1,0 +1,49 @@
+//! `pinhole demo`: a first scene file and its picture.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+
+use super::args::DemoArgs;
+use super::device::Device;
+use super::failure::Failure;
+use super::input::Source;
+use super::picture::Outputs;
+use super::render::render;
+use super::speak::tell;
+use super::threads;
+use pinhole::image::LayerSet;
+
+const SCENE: &str = include_str!("../../examples/three-spheres.toml");
+const SCENE_FILE: &str = "three-spheres.toml";
+const PICTURE_FILE: &str = "three-spheres.png";
+
+pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
+    let device = Device::new(&args.device, None)?;
+    let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
+    let scene_file = PathBuf::from(SCENE_FILE);
+    let is_there = is_there(&scene_file)?;
+    threads::start()?;
+    let input = Source::of_scene(&scene_file).scene_from_text(SCENE)?;
+    let image = render(&input, LayerSet::COLOR, &device.open()?)?;
+    outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
+    tell(format_args!(
+        "wrote {SCENE_FILE} and {PICTURE_FILE}; change the scene and run \
+         `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
+    ));
+    Ok(())
+}
+
+/// Whether the demo's scene file is there already. One that the user has changed is never overwritten.
+fn is_there(scene_file: &Path) -> Result<bool, Failure> {
+    match std::fs::read(scene_file) {
+        Ok(found) if found == SCENE.as_bytes() => Ok(true),
+        Ok(_) => Err(Failure::usage(format!(
+            "{SCENE_FILE}: this file exists and is not the demo's; \
+             rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(anyhow!(error)).context(format!("{SCENE_FILE}: cannot be read"))?,
+    }
+}

@@ -1,0 +1,192 @@
+//! `pinhole info`.
+
+use anyhow::Context;
+use serde::Serialize;
+
+use super::args::InfoArgs;
+#[cfg(feature = "gpu")]
+use super::device::WantedAdapter;
+use super::failure::Failure;
+#[cfg(feature = "gpu")]
+use super::self_test::SelfTested;
+use super::speak::answer;
+
+/// What is known of this program and the machine.
+#[derive(Serialize)]
+struct Info {
+    /// Of the program.
+    version: &'static str,
+    /// The best first; `render` takes the one that is `chosen`.
+    adapters: Vec<AdapterReport>,
+    /// Why none is chosen, in the words of `render`.
+    problem: Option<String>,
+    #[cfg(feature = "gpu")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    self_test: Option<SelfTested>,
+}
+
+#[derive(Serialize)]
+struct AdapterReport {
+    name: String,
+    backend: String,
+    device_type: String,
+    driver: String,
+    driver_info: String,
+    chosen: bool,
+    limits: Limits,
+    features: Features,
+}
+
+/// The limits that bound pictures and scenes.
+#[derive(Serialize)]
+struct Limits {
+    max_texture_dimension_2d: u64,
+    max_buffer_size: u64,
+    max_storage_buffer_binding_size: u64,
+    max_storage_buffers_per_shader_stage: u64,
+    max_storage_textures_per_shader_stage: u64,
+    max_compute_workgroups_per_dimension: u64,
+    max_compute_invocations_per_workgroup: u64,
+    max_compute_workgroup_storage_size: u64,
+}
+
+/// The optional features that bear on tracing.
+#[derive(Serialize)]
+struct Features {
+    timestamp_query: bool,
+    subgroup: bool,
+    shader_f64: bool,
+    ray_query: bool,
+}
+
+pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    #[cfg(feature = "gpu")]
+    if args.self_test {
+        return run_self_test(args);
+    } else if args.adapter.is_some() {
+        return Err(Failure::usage(
+            "--adapter chooses what to test; add --self-test, or drop it, as all adapters are listed",
+        ));
+    }
+    print(&info(), args.json)
+}
+
+/// Programs get the report beside the listing, people get it alone.
+#[cfg(feature = "gpu")]
+fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
+    let tested = SelfTested::new(&WantedAdapter::named(args.adapter.clone()))?;
+    let verdict = tested.verdict();
+    if args.json {
+        print(&Info { self_test: Some(tested), ..info() }, true)?;
+    } else {
+        let text = format!("pinhole {VERSION}\n\n{}", tested.readable());
+        answer(text.as_bytes()).context("standard output: cannot be written")?;
+    }
+    verdict
+}
+
+fn print(info: &Info, json: bool) -> Result<(), Failure> {
+    let text = if json {
+        serde_json::to_string_pretty(info).context("the report")? + "\n"
+    } else {
+        readable(info)
+    };
+    Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
+}
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+#[cfg(feature = "gpu")]
+fn info() -> Info {
+    use pinhole::gpu::{GpuError, adapter};
+
+    let adapters = adapter::adapters();
+    // The same choice as `render` makes, also when WGPU_ADAPTER_NAME asks for another adapter.
+    let choice = adapter::index_of_choice(&adapters, None);
+    let is_chosen = |index| choice == Ok(index);
+    let reports = adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index)));
+    Info {
+        version: VERSION,
+        adapters: reports.collect(),
+        problem: choice.as_ref().err().map(|error| match error {
+            GpuError::NoAdapter => format!("{error}; `render` uses the CPU reference"),
+            refused => format!("`render` refuses: {refused}"),
+        }),
+        self_test: None,
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn report(adapter: &pinhole::gpu::wgpu::Adapter, chosen: bool) -> AdapterReport {
+    use pinhole::gpu::wgpu;
+
+    let info = adapter.get_info();
+    let limits = adapter.limits();
+    let features = adapter.features();
+    let has = |feature| features.contains(feature);
+    AdapterReport {
+        name: info.name,
+        backend: format!("{:?}", info.backend),
+        device_type: format!("{:?}", info.device_type),
+        driver: info.driver,
+        driver_info: info.driver_info,
+        chosen,
+        limits: Limits {
+            max_texture_dimension_2d: limits.max_texture_dimension_2d.into(),
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            max_storage_buffers_per_shader_stage: limits
+                .max_storage_buffers_per_shader_stage
+                .into(),
+            max_storage_textures_per_shader_stage: limits
+                .max_storage_textures_per_shader_stage
+                .into(),
+            max_compute_workgroups_per_dimension: limits
+                .max_compute_workgroups_per_dimension
+                .into(),
+            max_compute_invocations_per_workgroup: limits
+                .max_compute_invocations_per_workgroup
+                .into(),
+            max_compute_workgroup_storage_size: limits.max_compute_workgroup_storage_size.into(),
+        },
+        features: Features {
+            timestamp_query: has(wgpu::Features::TIMESTAMP_QUERY),
+            subgroup: has(wgpu::Features::SUBGROUP),
+            shader_f64: has(wgpu::Features::SHADER_F64),
+            ray_query: has(wgpu::Features::EXPERIMENTAL_RAY_QUERY),
+        },
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn info() -> Info {
+    let problem = "built without the feature `gpu`; `render` uses the CPU reference";
+    Info { version: VERSION, adapters: Vec::new(), problem: Some(problem.to_owned()) }
+}
+
+fn readable(info: &Info) -> String {
+    let mut text = format!("pinhole {}\n", info.version);
+    if let Some(problem) = &info.problem {
+        text += &format!("{problem}\n");
+    }
+    for adapter in &info.adapters {
+        let mark = if adapter.chosen { ", used by `render`" } else { "" };
+        text += &format!(
+            "\n{} ({}, {}{mark})\n  driver: {} {}\n",
+            adapter.name, adapter.backend, adapter.device_type, adapter.driver, adapter.driver_info
+        );
+        for (group, values) in [
+            ("limits", serde_json::to_value(&adapter.limits)),
+            ("features", serde_json::to_value(&adapter.features)),
+        ] {
+            text += &format!("  {group}\n");
+            let Ok(serde_json::Value::Object(values)) = values else {
+                continue;
+            };
+            for (name, value) in values {
+                text += &format!("    {name}: {value}\n");
+            }
+        }
+    }
+    text
+}

@@ -1,0 +1,349 @@
+//! From a path to a scene and a view of it.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Error, Result, anyhow, bail};
+
+#[cfg(feature = "gpu")]
+use super::args::BenchArgs;
+use super::args::{InputArgs, ViewArgs};
+use super::data::{Data, DataFormat, DataOptions, as_usage};
+use super::failure::Failure;
+use super::light::{self, LightFlags};
+use super::memory;
+use super::progress;
+use pinhole::camera::{Camera, CameraError, CameraParameters, View};
+use pinhole::color::LinearRgb;
+use pinhole::encoding::Encoding;
+use pinhole::environment::Environment;
+use pinhole::film::Film;
+use pinhole::io::{environment, xyz};
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::scene_file::{DEFAULT_COLOR, IntegratorKind, SceneFile};
+
+/// Everything that a render needs.
+pub(super) struct Input {
+    pub(super) scene: Scene,
+    /// Of two eyes, that in the middle.
+    pub(super) camera: Box<dyn Camera>,
+    /// Left and right, if there are two.
+    pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
+    pub(super) film: Film,
+    /// How the picture is made.
+    pub(super) settings: RenderSettings,
+    pub(super) encoding: Encoding,
+    /// What says how large the picture is: a flag or a file.
+    pub(super) size_from: String,
+    /// What the user should know although it is no error.
+    pub(super) notes: Vec<String>,
+    /// The files that were read.
+    pub(super) files: Vec<PathBuf>,
+}
+
+impl Input {
+    /// What the camera, or the one between two eyes, sees.
+    pub(super) fn view(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
+}
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Scene,
+    Data(DataFormat),
+}
+
+impl Format {
+    /// The format that an extension stands for.
+    fn of(path: &Path) -> Result<Self> {
+        match (DataFormat::of(path), extension(path).as_deref()) {
+            (Some(format), _) => Ok(Self::Data(format)),
+            (None, Some("toml")) => Ok(Self::Scene),
+            (None, Some("bin")) => bail!(
+                "{}: .bin does not say what is in the file; if it is x, y, z, radius in \
+                 little-endian f32, add --format raw-f32x4",
+                path.display()
+            ),
+            _ => bail!(
+                "{}: the extension names no format that can be read; there are .toml (scene) and \
+                 .xyz, .extxyz, .npy, .npz (data), and .bin with --format raw-f32x4",
+                path.display()
+            ),
+        }
+    }
+}
+
+fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
+    if let Some(radius) = options.radius
+        && !(radius.is_finite() && radius > 0.0)
+    {
+        return Err(Failure::usage(format!(
+            "--radius {radius}: a radius must be finite and greater than 0"
+        )));
+    }
+    match format {
+        Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
+        Format::Scene => Ok(()),
+    }
+}
+
+/// What stands behind the last dot of a file's name, in small letters.
+pub(super) fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
+}
+
+/// A file and what flags say of it, checked as far as they can be before it is read.
+pub(super) struct Source {
+    path: PathBuf,
+    format: Format,
+    size: Option<(u32, u32)>,
+    options: DataOptions,
+    camera: Option<CameraParameters>,
+    light: LightFlags,
+}
+
+impl Source {
+    pub(super) fn new(InputArgs { path, view }: &InputArgs) -> Result<Self, Failure> {
+        Self::of_view(path, view)
+    }
+
+    /// Of a path with flags.
+    pub(super) fn of_view(path: &Path, args: &ViewArgs) -> Result<Self, Failure> {
+        let format = match args.format {
+            Some(format) => Format::Data(format),
+            None => Format::of(path).map_err(Failure::Usage)?,
+        };
+        let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
+        let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
+        let options = DataOptions { frame: args.frame, radius: args.radius, color };
+        check_flags(format, &options)?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            format,
+            size: args.size.as_deref().map(parse_size).transpose()?,
+            options,
+            camera: args.camera.parameters()?,
+            light: LightFlags::default(),
+        })
+    }
+
+    /// The same with flags that say how it is lit.
+    pub(super) fn with_light(self, light: LightFlags) -> Self {
+        Self { light, ..self }
+    }
+
+    /// A scene file without flags.
+    pub(super) fn of_scene(path: &Path) -> Self {
+        let options = DataOptions::default();
+        Self {
+            path: path.to_path_buf(),
+            format: Format::Scene,
+            size: None,
+            options,
+            camera: None,
+            light: LightFlags::default(),
+        }
+    }
+
+    /// A file to measure.
+    #[cfg(feature = "gpu")]
+    pub(super) fn of_bench(
+        path: &Path,
+        args: &BenchArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
+        let format = match args.format {
+            Some(format) if Format::of(path).ok() != Some(Format::Scene) => Format::Data(format),
+            _ => Format::of(path).map_err(Failure::Usage)?,
+        };
+        let options = DataOptions { radius: args.radius, ..DataOptions::default() };
+        check_flags(format, &options)?;
+        Ok(Self { format, size, options, ..Self::of_scene(path) })
+    }
+
+    /// Reads the file, and the data that it names.
+    pub(super) fn load(&self) -> Result<Input, Failure> {
+        let path = &self.path;
+        progress::stage(format!("reading {}", path.display()));
+        let Format::Data(format) = self.format else {
+            let text = String::from_utf8(read(path)?).map_err(|_| {
+                anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
+            })?;
+            return self.scene_from_text(&text);
+        };
+        let bytes = read(path)?;
+        let (data, mut notes) =
+            Data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        drop(bytes);
+        let place = || path.display().to_string();
+        let (film, size_from) = self.film(Film::default())?;
+        let scene = data.scene(self.options.color.unwrap_or_else(default_color));
+        let scene = scene.with_context(place)?;
+        if scene.is_empty() {
+            notes.push(format!("{}: there are no spheres in it", path.display()));
+        }
+        let parameters = self.camera.unwrap_or_default();
+        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(place)?;
+        let settings = self.light.over(light::plain(self.light.integrator(None)))?;
+        let encoding = Encoding::default();
+        let files = vec![path.clone()];
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+    }
+
+    /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
+    pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
+        let place = || self.path.display().to_string();
+        let file = SceneFile::parse(text).with_context(place)?;
+        let (data, color, notes) = self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator());
+        let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
+        let sky_file = sky_file.map(|file| self.beside(file));
+        let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
+        let data_file = file.data().map(|data| self.beside(&data.file));
+        let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
+        let (film, size_from) = self.film(file.film)?;
+        let scene = match data {
+            Data::Spheres(spheres) | Data::Atoms(xyz::Frame { spheres, .. }) => {
+                file.scene(&spheres)
+            }
+            Data::Points(points) => file.scene_with_points(points, color),
+        };
+        let scene = scene.with_context(place)?;
+        let (camera, eyes) = match &self.camera {
+            Some(parameters) => cameras(parameters, &film, &scene).with_context(place)?,
+            None => (
+                file.camera(&film, &scene).with_context(place)?,
+                file.stereo_pair(&film, &scene).with_context(place)?,
+            ),
+        };
+        let settings = file.settings(kind, &scene, camera.as_ref(), image).with_context(place)?;
+        let settings = self.light.over(settings)?;
+        let encoding = file.encoding;
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+    }
+
+    /// The image of a sky.
+    fn environment(&self, path: &Path) -> Result<Environment> {
+        let in_scene = || format!("{}: `[sky]`", self.path.display());
+        progress::stage(format!("reading {}", path.display()));
+        let bytes = read(path).with_context(in_scene)?;
+        let read = environment::read(&bytes);
+        read.with_context(|| path.display().to_string()).with_context(in_scene)
+    }
+
+    /// A path that is relative to the scene file's folder.
+    fn beside(&self, path: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(path)
+    }
+
+    /// The data of a scene file, its colour if it has none, and notes.
+    fn data_of(&self, file: &SceneFile) -> Result<(Data, LinearRgb, Vec<String>), Failure> {
+        let flags = self.options;
+        let Some(data) = file.data() else {
+            let given = [
+                ("--frame", flags.frame.is_some()),
+                ("--radius", flags.radius.is_some()),
+                ("--color", flags.color.is_some()),
+            ];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((flag, _)) => Err(Failure::usage(format!(
+                    "{}: {flag} needs a scene with `data`, and this scene has none",
+                    self.path.display()
+                ))),
+                None => Ok((Data::Spheres(Vec::new()), default_color(), Vec::new())),
+            };
+        };
+        let path = self.beside(&data.file);
+        let in_scene = || format!("{}: `data`", self.path.display());
+        let Some(format) = DataFormat::of(&path) else {
+            let problem = if extension(&path).as_deref() == Some("toml") {
+                anyhow!("it names another scene file")
+            } else {
+                anyhow!(
+                    "{}: the extension names no format that a scene can use; \
+                     there are .xyz, .extxyz, .npy, .npz",
+                    path.display()
+                )
+            };
+            return Err(problem.context(in_scene()).into());
+        };
+        let keys = DataOptions { frame: data.frame, radius: data.radius, color: data.color };
+        flags.check(format, "--").map_err(Failure::usage)?;
+        keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
+        let options = flags.or(keys);
+        let bytes = read(&path).with_context(in_scene)?;
+        let (mut spheres, mut notes) =
+            Data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        notes.extend(spheres.dress(data).map_err(|message| anyhow!(message).context(in_scene()))?);
+        spheres.scale_radii(data.radius_scale);
+        Ok((spheres, options.color.unwrap_or_else(default_color), notes))
+    }
+
+    /// The film, and what its size comes from.
+    fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
+        let Some((width, height)) = self.size else {
+            return Ok((from_file, self.path.display().to_string()));
+        };
+        let film = Film::new(width, height)
+            .map_err(|error| Failure::usage(format!("--size: {error}")))?
+            .with_y_axis(from_file.y_axis());
+        Ok((film, "--size".to_owned()))
+    }
+}
+
+/// The camera, and its eyes if it has two.
+type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);
+
+fn cameras(
+    parameters: &CameraParameters,
+    film: &Film,
+    scene: &Scene,
+) -> Result<Cameras, CameraError> {
+    let (aspect, bounds) = (film.aspect(), scene.bounds_to_frame());
+    Ok((parameters.camera(aspect, &bounds)?, parameters.stereo_pair(aspect, &bounds)?))
+}
+
+fn default_color() -> LinearRgb {
+    LinearRgb::from_srgb8(DEFAULT_COLOR)
+}
+
+/// `WxH`
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
+    let sides = text.split_once(['x', 'X']);
+    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
+        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
+    )
+}
+
+/// How much is read at first of what does not say how large it is.
+const FIRST_PIECE: u64 = 1 << 20;
+
+/// All of a file, in one piece of memory of its size.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    if path.is_dir() {
+        bail!("{}: this is a folder; name a file", path.display());
+    }
+    let cannot_read = || format!("{}: cannot be read", path.display());
+    let mut file = std::fs::File::open(path).with_context(cannot_read)?;
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    let what = format!("{}: to read {size} bytes takes", path.display());
+    memory::check_reading(&what, size).map_err(Error::msg)?;
+    let mut bytes = Vec::new();
+    usize::try_from(size)
+        .ok()
+        .and_then(|size| bytes.try_reserve_exact(size).ok())
+        .with_context(|| format!("{}: there is no memory for {size} bytes", path.display()))?;
+    // A pipe and a device say 0; what is behind them is weighed piece by piece.
+    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
+    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
+        == piece
+    {
+        piece = bytes.len() as u64;
+        let what = format!("{}: to read on after {piece} bytes takes", path.display());
+        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,124 @@
+//! The program `pinhole`: raw arguments, then a checked job made of library types, then its run.
+//!
+//! The only place that sees clap, prints, or touches the file system.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+mod adapter;
+mod args;
+#[cfg(feature = "gpu")]
+mod bench;
+#[cfg(feature = "gpu")]
+mod bench_report;
+#[cfg(feature = "gpu")]
+mod bench_scene;
+mod camera;
+mod data;
+mod demo;
+mod device;
+mod encoding;
+mod failure;
+mod generate;
+mod info;
+mod input;
+mod interrupt;
+mod light;
+mod memory;
+mod output;
+mod patience;
+mod picture;
+#[cfg(feature = "gpu")]
+mod plan;
+mod process;
+mod progress;
+mod render;
+#[cfg(feature = "gpu")]
+mod self_test;
+mod speak;
+#[cfg(feature = "gpu")]
+mod table;
+mod threads;
+mod verify;
+mod verify_output;
+mod verify_page;
+mod verify_paths;
+mod verify_pictures;
+mod verify_report;
+mod views;
+#[cfg(feature = "gpu")]
+mod with_scene;
+
+use args::{Arguments, Command};
+use speak::{answer, tell, tell_all};
+
+fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    quieten_device_select();
+    run()
+}
+
+/// Without a desktop session, Mesa's device-select layer fails to reach a Wayland display and has
+/// libwayland print a line that starts with `error:`, for every Vulkan instance. What the layer does,
+/// putting one GPU first, the program does by itself, so it is switched off; but not for a user who has
+/// configured it.
+#[cfg(target_os = "linux")]
+#[expect(unsafe_code, reason = "the layer reads nothing but the environment")]
+fn quieten_device_select() {
+    let is_set = |name| std::env::var_os(name).is_some();
+    if !is_set("XDG_RUNTIME_DIR") && !is_set("MESA_VK_DEVICE_SELECT") {
+        // SAFETY: the first thing that `main` does; there is no other thread yet.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// Runs the program. Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed,
+/// 130 stopped.
+fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error),
+    };
+    let result = interrupt::install().and_then(|()| match arguments.command {
+        Command::Render(args) => render::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Plan(args) => plan::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Bench(args) => bench::run(&args),
+        Command::Demo(args) => demo::run(&args),
+        Command::Generate(args) => generate::run(&args),
+        Command::Info(args) => info::run(&args),
+    });
+    progress::clear();
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            tell(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+/// Prints help or version as clap has them, and an error as one line.
+fn explain(error: &clap::Error) -> ExitCode {
+    let text = error.to_string();
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match answer(text.as_bytes()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(_) => failure::FAILED.into(),
+        },
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            tell_all(&text);
+            failure::USAGE.into()
+        }
+        _ => {
+            let message = text.split("\n\nUsage:").next().unwrap_or_default();
+            let message = message.split("\n\nFor more information").next().unwrap_or_default();
+            tell(message);
+            failure::USAGE.into()
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! How long a picture is worked on: for a time, until little noise is left, or until a signal.
+
+#[cfg(feature = "gpu")]
+use std::cell::Cell;
+use std::time::Duration;
+#[cfg(feature = "gpu")]
+use std::time::Instant;
+
+use clap::Args;
+
+use super::failure::Failure;
+#[cfg(feature = "gpu")]
+use super::{interrupt, progress, speak::tell};
+#[cfg(feature = "gpu")]
+use pinhole::gpu::{Decision, Progress};
+
+/// As of [`super::light::LightArgs`].
+const HEADING: &str =
+    "Light (any of these, as any table of a scene's that is about light, gives a lit picture)";
+
+#[derive(Debug, Args)]
+pub(super) struct PatienceArgs {
+    /// Take samples for so long, such as 20s or 1.5m, up to --samples
+    #[arg(long, help_heading = HEADING, value_name = "TIME")]
+    time: Option<String>,
+    /// Take samples until the noise is at most this part of the light, such as 0.01, up to --samples
+    #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
+    noise: Option<f64>,
+    /// Of a lit picture, on Ctrl-C write what the samples so far give, and with --time wait for one of every pixel; a
+    /// second Ctrl-C writes nothing
+    #[arg(long)]
+    keep_partial: bool,
+}
+
+/// What was given, checked.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Patience {
+    time: Option<Duration>,
+    noise: Option<f64>,
+    keep_partial: bool,
+}
+
+/// With fewer samples, little noise may be luck.
+#[cfg(feature = "gpu")]
+const LEAST_SAMPLES: u32 = 16;
+
+impl Patience {
+    pub(super) fn new(args: &PatienceArgs) -> Result<Self, Failure> {
+        let &PatienceArgs { noise, keep_partial, ref time } = args;
+        if let Some(noise) = noise
+            && !(noise.is_finite() && noise > 0.0)
+        {
+            return Err(Failure::usage(format!(
+                "--noise {noise}: it must be finite and greater than 0, such as 0.01"
+            )));
+        }
+        let time = time.as_deref().map(parse_time).transpose()?;
+        Ok(Self { time, noise, keep_partial })
+    }
+
+    /// The flag from which the number of samples follows.
+    pub(super) fn open_end(&self) -> Option<&'static str> {
+        let by_noise = self.noise.map(|_| "--noise");
+        self.time.map(|_| "--time").or(by_noise)
+    }
+
+    /// Whether a signal leaves the picture as it is.
+    #[cfg(feature = "gpu")]
+    pub(super) fn keeps_partial(&self) -> bool {
+        self.keep_partial
+    }
+
+    /// Refuses what the CPU reference has not.
+    pub(super) fn check_on_cpu(&self) -> Result<(), Failure> {
+        let given = [
+            ("--time", self.time.is_some()),
+            ("--noise", self.noise.is_some()),
+            ("--keep-partial", self.keep_partial),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((flag, _)) => Err(Failure::usage(format!(
+                "{flag} needs an adapter; the CPU reference finishes pixel after pixel, with --samples"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// What a picture without light has no use for.
+    pub(super) fn check_without_light(&self) -> Result<(), Failure> {
+        if self.keep_partial {
+            return Err(Failure::usage(
+                "--keep-partial concerns lit pictures, and this one has one sample a pixel; drop it, \
+                 or ask for light, such as with --integrator studio",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A number of seconds, minutes or hours.
+fn parse_time(text: &str) -> Result<Duration, Failure> {
+    let wrong = || {
+        Failure::usage(format!(
+            "--time {text}: write a time greater than 0, such as 20s, 1.5m or 2h"
+        ))
+    };
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match &text[number.len()..] {
+        "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let seconds = number.parse::<f64>().map_err(|_| wrong())? * unit;
+    let time = Duration::try_from_secs_f64(seconds).map_err(|_| wrong())?;
+    if time.is_zero() { Err(wrong()) } else { Ok(time) }
+}
+
+/// Patience with one picture of several.
+#[cfg(feature = "gpu")]
+pub(super) struct Watching {
+    patience: Patience,
+    time: Option<Duration>,
+    /// Of a lit picture; others have no noise.
+    measures_noise: bool,
+    is_lit: bool,
+    pixels: u64,
+    started: Instant,
+    /// Whether the user knows that the first sample is waited for.
+    has_said: Cell<bool>,
+    /// If the time was up before every pixel had a sample: about which part of them had.
+    too_short: Cell<Option<f64>>,
+}
+
+#[cfg(feature = "gpu")]
+impl Watching {
+    /// From now on; all pictures share the time.
+    pub(super) fn new(patience: Patience, pictures: usize, pixels: u64, is_lit: bool) -> Self {
+        let time = patience.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
+        let measures_noise = is_lit && (patience.noise.is_some() || progress::is_seen());
+        Self {
+            patience,
+            time,
+            measures_noise,
+            is_lit,
+            pixels,
+            started: Instant::now(),
+            has_said: Cell::new(false),
+            too_short: Cell::new(None),
+        }
+    }
+
+    /// Shows how far it is, and decides how it goes on.
+    pub(super) fn decide(&self, progress: &Progress) -> Decision {
+        let elapsed = self.started.elapsed();
+        self.show(progress, elapsed);
+        let has_any = progress.samples > 0;
+        let is_late = self.time.is_some_and(|time| elapsed >= time);
+        let is_interrupted = interrupt::is_requested();
+        if is_interrupted && !self.patience.keep_partial {
+            return Decision::Stop;
+        }
+        if is_interrupted && has_any {
+            return Decision::Finish;
+        }
+        if (is_interrupted || is_late) && !has_any {
+            if !self.patience.keep_partial {
+                // Of one sample of every pixel.
+                self.too_short.set(Some(progress.part * f64::from(progress.total)));
+                return Decision::Stop;
+            }
+            self.say_first_sample(is_interrupted);
+            return Decision::GoOn;
+        }
+        let is_smooth = progress.samples >= LEAST_SAMPLES
+            && self.patience.noise.zip(progress.noise).is_some_and(|(most, noise)| noise <= most);
+        if has_any && (is_late || is_smooth) {
+            Decision::Finish
+        } else if self.measures_noise {
+            Decision::MeasureNoise
+        } else {
+            Decision::GoOn
+        }
+    }
+
+    /// What to say if the time was too short for a sample of every pixel.
+    pub(super) fn too_short(&self) -> Option<Failure> {
+        let (part, time) = (self.too_short.get()?, self.time?.as_secs_f64());
+        Some(Failure::Job(anyhow::anyhow!(
+            "--time: after {time:.3} s {:.0} % of the pixels have a sample, and a picture needs one of each; \
+             nothing was written; give more time or a smaller --size, or wait for it with --keep-partial",
+            (100.0 * part).clamp(0.0, 99.0)
+        )))
+    }
+
+    /// A picture needs one sample of every pixel; says once that it is still waited for.
+    fn say_first_sample(&self, is_interrupted: bool) {
+        if self.has_said.replace(true) {
+            return;
+        }
+        if is_interrupted {
+            tell(
+                "note: stopping once every pixel has its first sample; Ctrl-C once more ends without a picture",
+            );
+        } else {
+            tell(
+                "note: the time is up; the picture is written once every pixel has its first sample",
+            );
+        }
+    }
+
+    fn show(&self, progress: &Progress, elapsed: Duration) {
+        if !self.is_lit {
+            return progress::tracing(progress.part);
+        }
+        let seconds = elapsed.as_secs_f64();
+        let by_time = self.time.map_or(0.0, |time| seconds / time.as_secs_f64());
+        // Noise falls with the root of the samples.
+        let by_noise = self
+            .patience
+            .noise
+            .zip(progress.noise)
+            .map_or(0.0, |(most, noise)| (most / noise.max(f64::MIN_POSITIVE)).powi(2));
+        let part = progress.part.max(by_time).max(by_noise).clamp(0.0, 1.0);
+        let taken = progress.part * f64::from(progress.total) * self.pixels as f64;
+        let noise =
+            progress.noise.map_or(String::new(), |noise| format!(", noise {:.2}%", 100.0 * noise));
+        let of_total = if self.patience.open_end().is_some() {
+            String::new()
+        } else {
+            format!(" of {}", progress.total)
+        };
+        let message = format!(
+            "{}{of_total} samples{noise}, {:.1} million a second",
+            progress.samples,
+            taken / seconds.max(1e-3) / 1e6
+        );
+        progress::rendering(part, message);
+    }
+
+    /// What to say of a picture that is done.
+    pub(super) fn verdict(
+        &self,
+        samples: u32,
+        total: u32,
+        noise: Option<f64>,
+        is_stopped: bool,
+    ) -> Option<String> {
+        if is_stopped && samples < total {
+            return Some(format!("stopped; the picture has {samples} samples a pixel"));
+        }
+        let wanted = self.patience.noise?;
+        let left = noise.filter(|noise| *noise > wanted)?;
+        Some(format!(
+            "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}"
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times() {
+        let time = |text| parse_time(text).map_err(|failure| failure.message());
+        for (text, seconds) in [("20s", 20.0), ("1.5m", 90.0), ("2min", 120.0), ("0.5h", 1800.0)] {
+            assert_eq!(time(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
+        }
+        for text in ["", "20", "s", "0s", "-1s", "1d", "infs", "NaNs", "1e300h", "20 s", "1m30s"] {
+            let wrong =
+                format!("--time {text}: write a time greater than 0, such as 20s, 1.5m or 2h");
+            assert_eq!(time(text), Err(wrong), "{text}");
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! What `render` and `demo` write: a picture, and layers beside it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use tempfile::NamedTempFile;
+
+use super::failure::Failure;
+use super::input::extension;
+use super::interrupt;
+use super::output::{check_distinct, check_place, name_all, spare, unnamed, unnamed_with};
+use super::progress;
+use super::speak::answer;
+use pinhole::encoding::Encoding;
+use pinhole::image::{Image, Layer, LayerSet};
+use pinhole::io::{exr, npy, png};
+
+/// As what a picture is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PictureFormat {
+    Png,
+    Exr,
+}
+
+/// Where the results go, checked before any work is done.
+#[derive(Debug)]
+pub(super) struct Outputs {
+    format: PictureFormat,
+    /// `None` is standard output.
+    picture: Option<PathBuf>,
+    /// Layers in the picture's own file.
+    inside: LayerSet,
+    layers: Vec<(Layer, PathBuf)>,
+}
+
+impl Outputs {
+    /// Checks what the user typed: extensions, folders, layers, and that no file is named twice.
+    pub(super) fn new(picture: &Path, layers: &[String]) -> Result<Self, Failure> {
+        let is_file = picture != Path::new("-");
+        let format = if is_file { format_of(picture)? } else { PictureFormat::Png };
+        let mut outputs = Self {
+            format,
+            picture: is_file.then(|| picture.to_path_buf()),
+            inside: LayerSet::COLOR,
+            layers: Vec::new(),
+        };
+        for text in layers {
+            match parse_layer(text)? {
+                (layer, Some(path)) => outputs.layers.push((layer, path)),
+                (layer, None) if format == PictureFormat::Exr => {
+                    outputs.inside = outputs.inside.with(layer);
+                }
+                (layer, None) => {
+                    return Err(Failure::usage(format!(
+                        "--layer {text}: a PNG has no room for layers; write LAYER=FILE.npy, such as \
+                         {layer}={layer}.npy, or give -o a name that ends with .exr"
+                    )));
+                }
+            }
+        }
+        check_distinct(outputs.paths())?;
+        Ok(outputs)
+    }
+
+    pub(super) fn format(&self) -> PictureFormat {
+        self.format
+    }
+
+    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
+    }
+
+    /// Refuses to overwrite what was read.
+    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        spare(self.paths(), inputs)
+    }
+
+    /// The layers to render.
+    pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
+        let alpha = encoding.transparent().then_some(Layer::Alpha);
+        self.layers.iter().map(|(layer, _)| *layer).chain(self.inside.iter()).chain(alpha).collect()
+    }
+
+    /// Encodes and writes everything, and `text` to a file if there is one; files get their names once
+    /// all of them are complete. `adapter` is what rendered.
+    pub(super) fn write(
+        &self,
+        image: &Image,
+        encoding: &Encoding,
+        adapter: Option<&str>,
+        text: Option<(&PathBuf, &str)>,
+    ) -> Result<()> {
+        progress::stage("writing");
+        let mut files = Vec::new();
+        if let Some((path, text)) = text {
+            files.push((path, unnamed(path, text.as_bytes())?));
+        }
+        files.extend(self.files(image, encoding, adapter)?);
+        let for_standard_output = match &self.picture {
+            None => Some(png::encode(image, encoding)?),
+            Some(_) => None,
+        };
+        name_all(files)?;
+        if let Some(picture) = for_standard_output {
+            interrupt::words(
+                "stopped; what was written to standard output is not the whole picture",
+            );
+            answer(&picture).context("standard output: cannot be written")?;
+        }
+        Ok(())
+    }
+
+    /// Files that have no names yet.
+    fn files(
+        &self,
+        image: &Image,
+        encoding: &Encoding,
+        adapter: Option<&str>,
+    ) -> Result<Vec<(&PathBuf, NamedTempFile)>> {
+        let mut files = Vec::new();
+        match (&self.picture, self.format) {
+            (None, _) => {}
+            (Some(path), PictureFormat::Png) => {
+                files.push((path, unnamed(path, &png::encode(image, encoding)?)?));
+            }
+            (Some(path), PictureFormat::Exr) => {
+                let file = unnamed_with(path, |file| {
+                    let sink = std::io::BufWriter::new(file);
+                    match exr::write(image, self.inside, encoding, adapter, sink) {
+                        Err(exr::ExrError::Sink(error)) => Err(error),
+                        written => written.map_err(std::io::Error::other),
+                    }
+                })?;
+                files.push((path, file));
+            }
+        }
+        for (layer, path) in &self.layers {
+            files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
+        }
+        Ok(files)
+    }
+
+    /// Outputs for the left and for the right eye, beside those that were named.
+    pub(super) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
+        let Some(picture) = &self.picture else {
+            return Err(Failure::usage(
+                "--stereo two-files: standard output takes one picture; name a file",
+            ));
+        };
+        let outputs = ["left", "right"].map(|eye| Self {
+            format: self.format,
+            picture: Some(with_eye(picture, eye)),
+            inside: self.inside,
+            layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
+        });
+        let paths = || outputs.iter().flat_map(Self::paths);
+        paths().try_for_each(|path| check_place(path))?;
+        check_distinct(paths())?;
+        Ok(outputs)
+    }
+
+    /// As [`Outputs::write`], for both eyes.
+    pub(super) fn write_both(
+        outputs: &[Self; 2],
+        images: &[Image],
+        encoding: &Encoding,
+        adapter: Option<&str>,
+    ) -> Result<()> {
+        progress::stage("writing");
+        let mut files = Vec::new();
+        for (outputs, image) in outputs.iter().zip(images) {
+            files.extend(outputs.files(image, encoding, adapter)?);
+        }
+        name_all(files)
+    }
+}
+
+/// NAME-left.png of NAME.png.
+fn with_eye(path: &Path, eye: &str) -> PathBuf {
+    let [stem, extension] = [path.file_stem(), path.extension()].map(Option::unwrap_or_default);
+    let mut name = stem.to_os_string();
+    name.push(format!("-{eye}."));
+    name.push(extension);
+    path.with_file_name(name)
+}
+
+/// The format that a picture's extension stands for, if the file can be written.
+fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
+    let format = match extension(path).as_deref() {
+        Some("png") => PictureFormat::Png,
+        Some("exr") => PictureFormat::Exr,
+        _ => {
+            return Err(Failure::usage(format!(
+                "{}: a picture is written as .png or .exr; change its extension",
+                path.display()
+            )));
+        }
+    };
+    check_place(path)?;
+    Ok(format)
+}
+
+/// `LAYER`, or `LAYER=FILE.npy`
+fn parse_layer(text: &str) -> Result<(Layer, Option<PathBuf>), Failure> {
+    let (name, path) = match text.split_once('=') {
+        Some((name, path)) => (name, Some(Path::new(path))),
+        None => (text, None),
+    };
+    if path == Some(Path::new("")) {
+        return Err(Failure::usage(format!("--layer {text}: name a file behind the =")));
+    }
+    let layer = name.parse().map_err(|error| Failure::usage(format!("--layer {text}: {error}")))?;
+    if let Some(path) = path {
+        if extension(path).as_deref() != Some("npy") {
+            return Err(Failure::usage(format!(
+                "{}: this output is written as .npy; change its extension",
+                path.display()
+            )));
+        }
+        check_place(path)?;
+    }
+    Ok((layer, path.map(Path::to_path_buf)))
+}

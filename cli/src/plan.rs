@@ -1,0 +1,230 @@
+//! `pinhole plan`: what a render would take, and whether it fits. Nothing is allocated on the device.
+
+use anyhow::Context;
+use serde::Serialize;
+
+use super::adapter::AdapterReport;
+use super::args::PlanArgs;
+use super::device::{WantedAdapter, choice, explained};
+use super::failure::Failure;
+use super::input::{Input, Source};
+use super::light::LightFlags;
+use super::memory;
+use super::progress;
+use super::render;
+use super::speak::{answer, tell};
+use super::table::table;
+use super::threads;
+use super::views::Views;
+use pinhole::accel::PlannedBuffer;
+use pinhole::gpu::{Headless, RenderPlan};
+use pinhole::image::{Layer, LayerSet};
+
+/// The JSON document.
+#[derive(Serialize)]
+struct Report {
+    version: &'static str,
+    scene: SceneReport,
+    structure: StructureReport,
+    picture: PictureReport,
+    buffers: Vec<BufferReport>,
+    device_bytes: u64,
+    device_bytes_per_sphere: Option<f64>,
+    host_bytes: u64,
+    host_peak: &'static str,
+    host_bytes_available: Option<u64>,
+    adapter: AdapterReport,
+    limits: LimitsReport,
+    fits: bool,
+    problem: Option<String>,
+}
+
+#[derive(Serialize)]
+struct SceneReport {
+    spheres: usize,
+    /// In the world.
+    min: Option<[f64; 3]>,
+    max: Option<[f64; 3]>,
+    radius_min: f32,
+    radius_mean: f32,
+    radius_max: f32,
+}
+
+#[derive(Serialize)]
+struct StructureReport {
+    name: &'static str,
+    reason: String,
+    bricks: usize,
+}
+
+#[derive(Serialize)]
+struct PictureReport {
+    width: u32,
+    height: u32,
+    tile_width: u32,
+    tile_height: u32,
+    tiles: u64,
+    submissions_at_least: u64,
+}
+
+#[derive(Serialize)]
+struct BufferReport {
+    name: &'static str,
+    bytes: u64,
+    bytes_per_binding: u64,
+    bindings: u64,
+}
+
+/// Those that bound scenes and pictures.
+#[derive(Serialize)]
+struct LimitsReport {
+    max_storage_buffer_binding_size: u64,
+    max_buffer_size: u64,
+    max_texture_dimension_2d: u32,
+}
+
+pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
+    let source = Source::new(&args.input)?.with_light(LightFlags::new(&args.light)?);
+    let layers = args.layers.iter().try_fold(LayerSet::COLOR, |layers, name| {
+        let layer = name.parse::<Layer>();
+        layer
+            .map(|layer| layers.with(layer))
+            .map_err(|error| Failure::usage(format!("--layer {name}: {error}")))
+    })?;
+    let adapter = WantedAdapter::new(&args.adapter);
+    threads::start()?;
+    let input = source.load()?;
+    for note in &input.notes {
+        tell(format_args!("note: {note}"));
+    }
+    // As `render` has it.
+    let alpha = input.encoding.transparent().then_some(Layer::Alpha);
+    let layers = layers.iter().chain(alpha).collect();
+    let headless = adapter.open_any()?;
+    progress::stage("planning");
+    let choice = choice(args.accel.accel);
+    let plan = render::plan(&headless, &input, &Views::of(&input), layers, choice);
+    let available = memory::available();
+    let verdict = plan
+        .check(&headless.device().limits(), available)
+        .map_err(|error| explained(&headless, &error));
+    let problem = verdict.as_ref().err().map(Failure::message);
+    let report = Report::new(&input, plan, &headless, available, problem);
+    let text = if args.json {
+        serde_json::to_string_pretty(&report).context("the report")? + "\n"
+    } else {
+        report.readable()
+    };
+    progress::clear();
+    answer(text.as_bytes()).context("standard output: cannot be written")?;
+    verdict
+}
+
+impl Report {
+    fn new(
+        input: &Input,
+        plan: RenderPlan,
+        headless: &Headless,
+        host_bytes_available: Option<u64>,
+        problem: Option<String>,
+    ) -> Self {
+        let limits = headless.device().limits();
+        let statistics = &plan.accel.statistics;
+        let bounds = input.scene.bounds();
+        let buffers = [&plan.scene_buffers, &plan.tile_buffers, &plan.tile_textures];
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: SceneReport {
+                spheres: statistics.count,
+                min: bounds.map(|bounds| bounds.min().to_array()),
+                max: bounds.map(|bounds| bounds.max().to_array()),
+                radius_min: statistics.radius_min,
+                radius_mean: statistics.radius_mean,
+                radius_max: statistics.radius_max,
+            },
+            picture: PictureReport {
+                width: input.film.width(),
+                height: input.film.height(),
+                tile_width: plan.tile_size[0],
+                tile_height: plan.tile_size[1],
+                tiles: plan.tile_count,
+                submissions_at_least: plan.least_submissions(),
+            },
+            buffers: buffers.into_iter().flatten().map(BufferReport::of).collect(),
+            device_bytes: plan.device_bytes,
+            device_bytes_per_sphere: plan.device_bytes_per_sphere(),
+            host_bytes: plan.host_bytes,
+            host_peak: plan.host_peak.what(),
+            host_bytes_available,
+            adapter: AdapterReport::of(headless),
+            limits: LimitsReport {
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                max_buffer_size: limits.max_buffer_size,
+                max_texture_dimension_2d: limits.max_texture_dimension_2d,
+            },
+            structure: StructureReport {
+                name: plan.accel.structure.name(),
+                reason: plan.accel.reason,
+                bricks: plan.accel.brick_count,
+            },
+            fits: problem.is_none(),
+            problem,
+        }
+    }
+
+    fn readable(&self) -> String {
+        let Self { scene, structure, picture, limits, .. } = self;
+        let mut text = format!("spheres: {}\n", scene.spheres);
+        if let (Some(min), Some(max)) = (scene.min, scene.max) {
+            text += &format!("bounds: {min:?} to {max:?}\n");
+            let SceneReport { radius_min, radius_mean, radius_max, .. } = scene;
+            text += &format!("radii: {radius_min} to {radius_max}, mean {radius_mean}\n");
+        }
+        let StructureReport { name, reason, bricks } = structure;
+        text += &format!("structure: {name} ({reason}); bricks: {bricks}\n");
+        let PictureReport { width, height, tile_width, tile_height, tiles, .. } = picture;
+        text += &format!(
+            "picture: {width}x{height}; tiles: {tiles} of at most {tile_width}x{tile_height}\n\
+             submissions: they adapt to 60 ms; at least {}\n\nbuffers, at most\n",
+            picture.submissions_at_least
+        );
+        let rows: Vec<_> = self.buffers.iter().map(BufferReport::row).collect();
+        text += &table(["name", "bytes", "bytes per binding", "bindings"], &rows);
+        let per_sphere = self
+            .device_bytes_per_sphere
+            .map_or_else(String::new, |bytes| format!("; {bytes:.1} bytes per sphere"));
+        text += &format!("\ndevice: {}{per_sphere}\n", in_words(self.device_bytes));
+        let available = self.host_bytes_available.map_or("not known".to_owned(), in_words);
+        text += &format!(
+            "host: {} for {}, beside the scene; free: {available}\n",
+            in_words(self.host_bytes),
+            self.host_peak
+        );
+        text += &format!("adapter: {}\n", self.adapter.line());
+        text += &format!(
+            "limits: max_storage_buffer_binding_size {}, max_buffer_size {}, \
+             max_texture_dimension_2d {}\n",
+            limits.max_storage_buffer_binding_size,
+            limits.max_buffer_size,
+            limits.max_texture_dimension_2d
+        );
+        text += if self.fits { "fits\n" } else { "does not fit\n" };
+        text
+    }
+}
+
+impl BufferReport {
+    fn of(planned: &PlannedBuffer) -> Self {
+        let PlannedBuffer { name, bytes, bytes_per_binding } = *planned;
+        Self { name, bytes, bytes_per_binding, bindings: bytes / bytes_per_binding.max(1) }
+    }
+
+    fn row(&self) -> [String; 4] {
+        let Self { name, bytes, bytes_per_binding, bindings } = self;
+        [(*name).to_owned(), bytes.to_string(), bytes_per_binding.to_string(), bindings.to_string()]
+    }
+}
+
+fn in_words(bytes: u64) -> String {
+    format!("{bytes} bytes ({})", memory::readable(bytes))
+}

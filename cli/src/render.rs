@@ -1,0 +1,217 @@
+//! `pinhole render`.
+
+use anyhow::Context;
+
+use super::args::{RenderArgs, Stereo};
+#[cfg(feature = "gpu")]
+use super::device::explained;
+use super::device::{Device, Opened};
+use super::encoding::EncodingFlags;
+use super::failure::Failure;
+use super::input::{Input, Source};
+#[cfg(feature = "gpu")]
+use super::interrupt;
+use super::light::LightFlags;
+use super::memory;
+use super::patience::Patience;
+#[cfg(feature = "gpu")]
+use super::patience::Watching;
+use super::picture::Outputs;
+use super::progress;
+use super::speak::tell;
+use super::threads;
+use super::views::Views;
+#[cfg(feature = "gpu")]
+use super::with_scene::with_structures;
+#[cfg(feature = "gpu")]
+use pinhole::accel::AccelChoice;
+use pinhole::camera::View;
+use pinhole::cpu;
+#[cfg(feature = "gpu")]
+use pinhole::gpu::{Headless, RenderPlan};
+use pinhole::image::{Image, LayerSet};
+
+/// A render, checked as far as it can be before the input is read.
+struct Job {
+    source: Source,
+    outputs: Outputs,
+    encoding: EncodingFlags,
+    patience: Patience,
+    device: Device,
+    stereo: Option<Stereo>,
+}
+
+impl Job {
+    fn new(args: &RenderArgs) -> Result<Self, Failure> {
+        let outputs = Outputs::new(&args.output, &args.layers)?;
+        let patience = Patience::new(&args.patience)?;
+        let light = LightFlags::new(&args.light)?.with_open_end(patience.open_end());
+        Ok(Self {
+            source: Source::new(&args.input)?.with_light(light),
+            patience,
+            encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            outputs,
+            device: Device::new(&args.device, args.accel.accel)?,
+            stereo: args.stereo,
+        })
+    }
+}
+
+pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let job = Job::new(args)?;
+    threads::start()?;
+    // Loading a driver and reading a file leave each other half of the time.
+    let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
+    job.outputs.spare(&input.files)?;
+    for note in &input.notes {
+        tell(format_args!("note: {note}"));
+    }
+    let encoding = job.encoding.over(input.encoding);
+    input.settings.is_transparent = encoding.transparent();
+    if input.settings.integrator.is_primary() {
+        job.patience.check_without_light()?;
+    }
+    for note in input.settings.notes(&input.scene) {
+        tell(format_args!("note: {note}"));
+    }
+    let layers = job.outputs.layers(&encoding);
+    let views = Views::of(&input);
+    if job.stereo.is_some() && views.count() == 1 {
+        return Err(Failure::usage(
+            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+        ));
+    }
+    let adapter = opened.adapter();
+    if job.stereo == Some(Stereo::TwoFiles) {
+        let outputs = job.outputs.of_eyes()?;
+        outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
+        let images = render_views(&input, &job.patience, &views, layers, &opened)?;
+        return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
+    }
+    let image = match render_views(&input, &job.patience, &views, layers, &opened)? {
+        Views::One(image) => image,
+        Views::Two([left, right]) => {
+            Image::side_by_side([&left, &right]).context("both eyes in one picture")?
+        }
+    };
+    Ok(job.outputs.write(&image, &encoding, adapter, None)?)
+}
+
+/// Renders what the camera, or the one between two eyes, sees.
+pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
+    let view = Views::One(input.view());
+    match render_views(input, &Patience::default(), &view, layers, opened)? {
+        Views::One(image) | Views::Two([image, _]) => Ok(image),
+    }
+}
+
+/// Renders on the device, and says so if that is not what the user would expect.
+fn render_views(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Views<Image>, Failure> {
+    match opened {
+        Opened::Cpu => on_cpu(input, patience, views, layers),
+        #[cfg(feature = "gpu")]
+        Opened::CpuInstead => {
+            check_on_cpu(input, patience, views, layers)?;
+            tell(
+                "note: no Vulkan, Metal or DX12 adapter was found; \
+                 rendering on the CPU reference, which is slower",
+            );
+            on_cpu(input, patience, views, layers)
+        }
+        #[cfg(feature = "gpu")]
+        Opened::Device { headless, choice, doubt } => {
+            doubt.iter().for_each(tell);
+            on_gpu(headless, input, patience, views, layers, *choice)
+        }
+    }
+}
+
+/// Refuses what the CPU reference has not, and what does not fit.
+fn check_on_cpu(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+) -> Result<(), Failure> {
+    if !input.settings.integrator.is_primary() {
+        patience.check_on_cpu()?;
+    }
+    memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))
+}
+
+fn on_cpu(
+    input: &Input,
+    patience: &Patience,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+) -> Result<Views<Image>, Failure> {
+    check_on_cpu(input, patience, views, layers)?;
+    progress::stage("rendering on the CPU reference");
+    let Input { scene, settings, .. } = input;
+    let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
+    Ok(images.context("the CPU reference")?)
+}
+
+#[cfg(feature = "gpu")]
+fn on_gpu(
+    headless: &Headless,
+    input: &Input,
+    patience: &Patience,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    choice: AccelChoice,
+) -> Result<Views<Image>, Failure> {
+    let Input { scene, film, settings, .. } = input;
+    let is_lit = !settings.integrator.is_primary();
+    let plan = |choice| plan(headless, input, views, layers, choice);
+    let rendered = with_structures(headless, scene, choice, plan, |structures| {
+        let mut too_short = None;
+        let (done, is_stopped) = interrupt::on_device_keeping(|| {
+            let buffers = headless.upload(scene, &structures)?;
+            drop(structures);
+            progress::stage("preparing");
+            views.try_each(|view| {
+                let pixels = film.pixel_count();
+                let watching = Watching::new(*patience, views.count(), pixels, is_lit);
+                let watch = &mut |progress: &_| watching.decide(progress);
+                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
+                too_short = watching.too_short();
+                Ok((picture?, watching))
+            })
+        });
+        if let Some(failure) = too_short {
+            return Err(failure);
+        }
+        if is_stopped && !patience.keeps_partial() {
+            return Err(Failure::Stopped);
+        }
+        Ok(done.map(|pictures| (pictures, is_stopped)))
+    })?;
+    let ((pictures, is_stopped), _) = rendered.map_err(|error| explained(headless, &error))?;
+    let total = settings.sampling.samples;
+    for (picture, watching) in pictures.as_slice() {
+        let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
+        verdict.iter().for_each(tell);
+    }
+    Ok(pictures.map(|(picture, _)| picture.image))
+}
+
+/// What the pictures of an input will take.
+#[cfg(feature = "gpu")]
+pub(super) fn plan(
+    headless: &Headless,
+    input: &Input,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    choice: AccelChoice,
+) -> RenderPlan {
+    let Input { scene, settings, .. } = input;
+    let beside = views.bytes_beside(layers);
+    headless.plan(scene, &input.view(), settings, layers, choice, beside)
+}

@@ -1,0 +1,181 @@
+//! The self-test of an adapter: for `pinhole info`, and the quick part before a render.
+
+use std::collections::BTreeMap;
+
+use anyhow::anyhow;
+use serde::Serialize;
+
+use super::adapter::AdapterReport;
+use super::device::{WantedAdapter, explained_alone};
+use super::failure::Failure;
+use super::{interrupt, progress};
+use pinhole::gpu::{
+    GpuError, Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty,
+};
+
+/// What was found of an adapter.
+#[derive(Serialize)]
+pub(super) struct SelfTested {
+    adapter: AdapterReport,
+    passed: bool,
+    properties: Vec<PropertyReport>,
+    /// What is wrong with it.
+    #[serde(skip)]
+    failure: Option<String>,
+}
+
+#[derive(Serialize)]
+struct PropertyReport {
+    name: &'static str,
+    passed: bool,
+    outcome: &'static str,
+    words: String,
+    figures: BTreeMap<&'static str, f64>,
+}
+
+impl SelfTested {
+    /// Tests all of it.
+    pub(super) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
+        let headless = wanted.open_any()?;
+        let report = test(&headless)?;
+        progress::clear();
+        Ok(Self {
+            adapter: AdapterReport::of(&headless),
+            passed: report.passed(),
+            properties: report.properties().iter().map(PropertyReport::new).collect(),
+            failure: failure(&headless.adapter_info().name, &report),
+        })
+    }
+
+    pub(super) fn readable(&self) -> String {
+        let mut text = self.adapter.line() + "\n";
+        for PropertyReport { name, outcome, words, .. } in &self.properties {
+            text += &format!("  {outcome:<6}  {name}: {words}\n");
+        }
+        text
+    }
+
+    /// A failure, if it lacks a property.
+    pub(super) fn verdict(&self) -> Result<(), Failure> {
+        unproven(self.failure.as_deref())
+    }
+}
+
+/// Tests all of an adapter that is open; a failure, if it lacks a property.
+pub(super) fn check(headless: &Headless) -> Result<(), Failure> {
+    let report = test(headless)?;
+    unproven(failure(&headless.adapter_info().name, &report).as_deref())
+}
+
+fn test(headless: &Headless) -> Result<SelfTestReport, Failure> {
+    progress::stage("testing the adapter");
+    let tested = interrupt::on_device(|| headless.self_test(SelfTestExtent::Full))?;
+    tested.map_err(|error| explained_alone(headless, &error))
+}
+
+fn unproven(failure: Option<&str>) -> Result<(), Failure> {
+    failure.map_or(Ok(()), |failure| Err(Failure::Unproven(anyhow!("{failure}"))))
+}
+
+impl PropertyReport {
+    fn new(property: &TestedProperty) -> Self {
+        let TestedProperty { name, outcome, ref words, ref figures } = *property;
+        Self {
+            name,
+            passed: property.passed(),
+            outcome: match outcome {
+                PropertyOutcome::Passed => "ok",
+                PropertyOutcome::Noted => "note",
+                PropertyOutcome::Failed => "FAILED",
+            },
+            words: words.clone(),
+            figures: figures.iter().copied().collect(),
+        }
+    }
+}
+
+/// The first thing that an adapter gets wrong.
+fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
+    let failure = report.first_failure()?;
+    Some(format!("{adapter} fails the self-test ({failure})"))
+}
+
+/// Tests the little that takes no time; gives the warning for a device whose pictures may be wrong.
+pub(super) fn doubt(headless: &Headless) -> Option<String> {
+    warning(&headless.adapter_info().name, headless.self_test(SelfTestExtent::Quick))
+}
+
+fn warning(adapter: &str, tested: Result<SelfTestReport, GpuError>) -> Option<String> {
+    let failure = match tested {
+        Ok(report) => failure(adapter, &report)?,
+        // The render may succeed all the same, or says it again.
+        Err(error) => format!("{adapter} cannot do the self-test ({error})"),
+    };
+    Some(format!("warning: {failure}; check its pictures with `pinhole verify`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tested(failure: Option<&str>) -> SelfTested {
+        let text = || "some".to_owned();
+        let adapter = AdapterReport {
+            name: text(),
+            backend: text(),
+            device_type: text(),
+            driver: text(),
+            driver_info: text(),
+        };
+        let property = PropertyReport {
+            name: "fence",
+            passed: failure.is_none(),
+            outcome: if failure.is_none() { "ok" } else { "FAILED" },
+            words: "the words".to_owned(),
+            figures: BTreeMap::from([("tested", 3.0)]),
+        };
+        let failure = failure.map(str::to_owned);
+        SelfTested { adapter, passed: failure.is_none(), properties: vec![property], failure }
+    }
+
+    #[test]
+    fn a_property_that_fails_is_marked_and_is_the_programs_failure() {
+        let failed = tested(Some("some fails the self-test (fence: the words)"));
+        assert!(failed.readable().contains("\n  FAILED  fence: the words\n"));
+        match failed.verdict() {
+            Err(failure @ Failure::Unproven(_)) => {
+                assert_eq!(
+                    failure.to_string(),
+                    "error: some fails the self-test (fence: the words)"
+                );
+                assert_eq!(failure.exit_code(), super::super::failure::UNPROVEN.into());
+            }
+            other => panic!("{other:?}"),
+        }
+        let passed = tested(None);
+        assert!(passed.readable().contains("\n  ok      fence: the words\n"));
+        assert!(passed.verdict().is_ok());
+    }
+
+    #[test]
+    fn a_warning_names_adapter_and_property() {
+        let report = |outcome| {
+            let words = "the words".to_owned();
+            SelfTestReport::new(vec![TestedProperty {
+                name: "fence",
+                outcome,
+                words,
+                figures: vec![],
+            }])
+        };
+        for good in [PropertyOutcome::Passed, PropertyOutcome::Noted] {
+            assert_eq!(warning("some", Ok(report(good))), None);
+        }
+        assert_eq!(
+            warning("some", Ok(report(PropertyOutcome::Failed))).unwrap(),
+            "warning: some fails the self-test (fence: the words); check its pictures with `pinhole verify`"
+        );
+        let lost = GpuError::DeviceLost { message: "gone".to_owned() };
+        assert!(warning("some", Err(lost)).unwrap().contains("cannot do the self-test"));
+    }
+}

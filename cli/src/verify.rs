@@ -1,0 +1,181 @@
+//! `pinhole verify`: renders on an adapter, or reads what one rendered, and decides whether it is legal.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+
+use super::args::VerifyArgs;
+use super::failure::Failure;
+use super::input::read;
+use super::speak::answer;
+use super::verify_output::VerifyOutputs;
+use super::verify_report::Report;
+use super::{progress, threads};
+use pinhole::verify::run_file::{self, Run};
+use pinhole::verify::{Certificate, Checker, PathCertificate, Verdict};
+
+pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let (run, outputs, paths) = match (&args.replay, &args.path) {
+        (Some(path), _) => {
+            let (run, outputs) = replayed(path, args)?;
+            (run, outputs, None)
+        }
+        (None, Some(path)) => recorded::recorded(path, args)?,
+        (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
+    };
+    progress::stage("checking");
+    let checker = Checker::new(&run.scene).context("the checker")?;
+    let certificate = checker.certify(&run.recording);
+    drop(checker);
+    let report = Report::new(&run, &certificate, paths.as_ref());
+    progress::clear();
+    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    outputs.write(&run, &certificate, &report)?;
+    verdict(&certificate)?;
+    paths.as_ref().map_or(Ok(()), verdict_of_paths)
+}
+
+/// What somebody saved.
+fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
+    let outputs = VerifyOutputs::new(args)?;
+    outputs.spare(&[path.to_path_buf()])?;
+    threads::start()?;
+    progress::stage(format!("reading {}", path.display()));
+    let bytes = read(path)?;
+    let run = run_file::read(&bytes).with_context(|| path.display().to_string())?;
+    Ok((run, outputs))
+}
+
+fn verdict(certificate: &Certificate) -> Result<(), Failure> {
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::Unproven(anyhow!("the picture is not legal: {error}")));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::Unproven(anyhow!(
+            "the picture is not legal: {} of {} pixels; the first is {first}",
+            certificate.count(Verdict::Violation),
+            certificate.verdicts.len()
+        ))),
+    }
+}
+
+fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
+    if let Some(error) = &certificate.upload {
+        return Err(Failure::Unproven(anyhow!("the paths are not legal: {error}")));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::Unproven(anyhow!(
+            "the paths are not legal: {} of {} stages; the first is {first}",
+            certificate.violation_count,
+            certificate.stages().checked
+        ))),
+    }
+}
+
+/// A recording, where its results go, and what was found of its paths if it has any.
+type Recorded = (Run, VerifyOutputs, Option<PathCertificate>);
+
+#[cfg(not(feature = "gpu"))]
+mod recorded {
+    use super::*;
+
+    pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<Recorded, Failure> {
+        Err(Failure::usage(
+            "this program was built without the feature `gpu`; it has only `pinhole verify --replay RUN`",
+        ))
+    }
+}
+
+#[cfg(feature = "gpu")]
+mod recorded {
+    use super::*;
+    use crate::adapter::AdapterReport;
+    use crate::device::{WantedAdapter, choice, explained_alone};
+    use crate::input::Source;
+    use crate::speak::tell;
+    use crate::verify_report::command_line;
+    use crate::with_scene::with_structures;
+    use crate::{interrupt, memory, progress, self_test, verify_paths};
+    use pinhole::accel::Structure;
+    use pinhole::gpu::{Headless, Progress};
+    use pinhole::render::Integrator;
+    use pinhole::verify::run_file::Provenance;
+
+    /// What an adapter makes of a scene now.
+    pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
+        let source = Source::of_view(path, &args.view)?;
+        let outputs = VerifyOutputs::new(args)?;
+        let wanted = WantedAdapter::new(&args.adapter);
+        threads::start()?;
+        let input = source.load()?;
+        outputs.spare(&input.files)?;
+        for note in &input.notes {
+            tell(format_args!("note: {note}"));
+        }
+        if input.eyes.is_some() {
+            tell("note: the camera has two eyes; what is checked is the picture from between them");
+        }
+        let is_lit = !input.settings.integrator.is_primary();
+        let has_paths = matches!(input.settings.integrator, Integrator::Path(_));
+        if !has_paths && args.paths.is_some() {
+            return Err(Failure::usage("--paths needs a scene whose integrator is `path`"));
+        }
+        if is_lit && !has_paths {
+            tell(
+                "note: the scene asks for light; what is checked is its picture without, by one ray a pixel",
+            );
+        }
+        if has_paths && args.save.is_some() {
+            tell("note: what --save keeps is the picture by one ray a pixel, and no paths");
+        }
+        let headless = wanted.open_any()?;
+        self_test::check(&headless)?;
+        let (scene, view) = (&input.scene, &input.view());
+        let settings = &input.settings.by_primary_rays();
+        let choice = choice(args.accel.accel);
+        let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+        let plan = |choice| headless.plan_record(scene, view, choice, encoding);
+        let done = with_structures(&headless, scene, choice, plan, |structures| {
+            interrupt::on_device(|| {
+                let buffers = headless.upload(scene, &structures)?;
+                drop(structures);
+                progress::stage("preparing");
+                let watch = &mut |progress: &Progress| {
+                    progress::tracing(progress.part);
+                    interrupt::decide()
+                };
+                headless.record_and_render(&buffers, view, settings, watch)
+            })
+        })?;
+        let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
+        let provenance = provenance(&headless, structure);
+        let samples = args.paths.unwrap_or(1);
+        let certify = || verify_paths::certify(&headless, &input, samples, choice);
+        let paths = has_paths.then(certify).transpose()?;
+        Ok((Run { scene: input.scene, recording, provenance }, outputs, paths))
+    }
+
+    fn provenance(headless: &Headless, structure: Structure) -> Provenance {
+        let AdapterReport { name, backend, device_type, driver, driver_info } =
+            AdapterReport::of(headless);
+        let limits = headless.device().limits();
+        let limits = [
+            ("max_buffer_size", limits.max_buffer_size),
+            ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+            ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
+        ];
+        Provenance {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            command: command_line(),
+            adapter: name,
+            backend,
+            device_type,
+            driver,
+            driver_info,
+            structure: structure.name().to_owned(),
+            limits: limits.map(|(name, limit)| (name.to_owned(), limit)).into(),
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The files of `pinhole verify`: all of them, or none.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+use super::args::VerifyArgs;
+use super::failure::Failure;
+use super::output::{
+    NewFolder, check_distinct, check_place, name_all, spare, unnamed, unnamed_with,
+};
+use super::progress;
+use super::verify_page::page;
+use super::verify_report::Report;
+use pinhole::verify::Certificate;
+use pinhole::verify::run_file::{self, Run};
+
+/// The page in the folder of a report.
+const PAGE: &str = "report.html";
+
+/// Where the results go, checked before any work is done.
+pub(super) struct VerifyOutputs {
+    json: Option<PathBuf>,
+    save: Option<PathBuf>,
+    folder: Option<NewFolder>,
+    page: Option<PathBuf>,
+    /// A run file that holds what is judged.
+    run: Option<PathBuf>,
+}
+
+impl VerifyOutputs {
+    pub(super) fn new(args: &VerifyArgs) -> Result<Self, Failure> {
+        for path in args.json.iter().chain(&args.save) {
+            check_place(path)?;
+        }
+        let folder = args.report.as_deref().map(|path| NewFolder::new(path, PAGE)).transpose()?;
+        let outputs = Self {
+            json: args.json.clone(),
+            save: args.save.clone(),
+            folder,
+            page: args.report.as_deref().map(|folder| folder.join(PAGE)),
+            run: args.replay.clone().or(args.save.clone()),
+        };
+        check_distinct(outputs.paths())?;
+        // A folder that is yet to be made has a name as well.
+        check_distinct(args.json.iter().chain(&args.save).chain(&args.report))?;
+        Ok(outputs)
+    }
+
+    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.json.iter().chain(&self.save).chain(&self.page)
+    }
+
+    /// Refuses to overwrite what was read.
+    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        spare(self.paths(), inputs)
+    }
+
+    /// Encodes and writes everything.
+    pub(super) fn write(
+        &self,
+        run: &Run,
+        certificate: &Certificate,
+        report: &Report,
+    ) -> Result<()> {
+        match &self.folder {
+            Some(folder) => folder.with(|| self.write_files(run, certificate, report)),
+            None => self.write_files(run, certificate, report),
+        }
+    }
+
+    fn write_files(&self, run: &Run, certificate: &Certificate, report: &Report) -> Result<()> {
+        let mut files = Vec::new();
+        if let Some(path) = &self.json {
+            progress::stage("writing");
+            let json = serde_json::to_string_pretty(report).context("the report")? + "\n";
+            files.push((path, unnamed(path, json.as_bytes())?));
+        }
+        if let Some(path) = &self.page {
+            progress::stage("drawing the report");
+            let page = page(run, certificate, report, self.run.as_deref().map(Path::display))?;
+            files.push((path, unnamed(path, page.as_bytes())?));
+        }
+        if let Some(path) = &self.save {
+            progress::stage("writing the run");
+            let Run { scene, recording, provenance } = run;
+            let file = unnamed_with(path, |file| {
+                run_file::write(scene, recording, provenance, file.as_file_mut() as &mut dyn Write)
+            })?;
+            files.push((path, file));
+        }
+        name_all(files)
+    }
+}

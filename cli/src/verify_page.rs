@@ -1,0 +1,292 @@
+//! The page of `pinhole verify --report`: one file that needs no other. Everything foreign is escaped.
+
+use std::fmt::Display;
+
+use anyhow::{Context, Result};
+use minijinja::value::Serde;
+use minijinja::{Environment, Value};
+use serde::Serialize;
+
+use super::verify_pictures::{
+    DECIDED_HIT, MISS, Pictures, Window, css, depth_color, verdict_color,
+};
+use super::verify_report::{Listed, Report};
+use pinhole::verify::run_file::Run;
+use pinhole::verify::{Certificate, Verdict, Violation};
+
+/// So many violations are enlarged.
+const ENLARGED: usize = 12;
+
+/// How many colours a scale is drawn with.
+const STOPS: u32 = 12;
+
+/// Side of an enlarged pixel.
+const ZOOM: u32 = 11;
+
+/// A row of the table, and of the legend.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    meaning: &'static str,
+    color: String,
+    /// All that the pictures have for it.
+    swatch: String,
+    count: String,
+    percent: String,
+    /// Of the bar.
+    width: f64,
+}
+
+/// An enlarged violation.
+#[derive(Serialize)]
+struct Enlarged {
+    number: usize,
+    listed: Listed,
+    color: String,
+    mask: String,
+    /// In CSS pixels.
+    width: u32,
+    height: u32,
+    zoom: u32,
+    /// Of the pixel, in CSS pixels.
+    left: u32,
+    top: u32,
+    /// Of the pixel in the whole picture, in percent.
+    x: f64,
+    y: f64,
+}
+
+/// How large the pictures are on a screen.
+#[derive(Debug, PartialEq, Serialize)]
+struct Frame {
+    /// In CSS pixels, if there is so much room; of one that has a row for itself, `wide`.
+    width: f64,
+    wide: f64,
+    /// Width over height.
+    aspect: f64,
+    stretched: bool,
+    /// Whether pixels are seen as squares.
+    sharp: bool,
+}
+
+impl Frame {
+    fn new([width, height]: [u32; 2]) -> Self {
+        /// A frame is at most so many times as long as wide.
+        const LONGEST: f64 = 8.0;
+        /// In CSS pixels.
+        const HEIGHT: f64 = 860.0;
+        const LARGEST_PIXEL: f64 = 32.0;
+        let film = f64::from(width) / f64::from(height);
+        let aspect = film.clamp(1.0 / LONGEST, LONGEST);
+        let least = (HEIGHT * aspect).min(128.0);
+        let most = LARGEST_PIXEL * f64::from(width.max(height)) * aspect.min(1.0);
+        let wide = most.min(HEIGHT * aspect).max(least);
+        Self {
+            width: wide.min(576.0),
+            wide,
+            aspect,
+            stretched: (film - aspect).abs() > 0.0,
+            sharp: width.max(height) <= 300,
+        }
+    }
+}
+
+/// What the template puts in.
+#[derive(Serialize)]
+struct Page<'a> {
+    report: &'a Report,
+    /// Of the program that checks.
+    program: &'static str,
+    /// The file that holds what was judged, if there is one.
+    run_file: Option<String>,
+    pixels: String,
+    spheres: String,
+    violation_count: String,
+    rows: Vec<Row>,
+    worst_depth: String,
+    worst_normal: String,
+    /// In how many pixels `render` makes another picture, if that is known.
+    rendered_otherwise: Option<String>,
+    /// Width and height of the pictures, and how many pixels along an axis are one of theirs.
+    shown: [u32; 2],
+    step: u32,
+    frame: Frame,
+    color: String,
+    depth: String,
+    /// `None` if no pixel was judged.
+    mask: Option<String>,
+    miss: String,
+    scale: String,
+    /// `None` if no sphere is hit.
+    ticks: Option<Vec<String>>,
+    violations: Vec<Enlarged>,
+}
+
+/// The page. `run_file` holds what was judged, if there is such a file.
+pub(super) fn page(
+    run: &Run,
+    certificate: &Certificate,
+    report: &Report,
+    run_file: Option<impl Display>,
+) -> Result<String> {
+    let pictures = Pictures::new(run, certificate);
+    let size = certificate.size;
+    let whole = Window::whole(size);
+    let first = (1..=ENLARGED).zip(&certificate.violations);
+    let page = Page {
+        report,
+        program: env!("CARGO_PKG_VERSION"),
+        run_file: run_file.map(|path| path.to_string()),
+        pixels: grouped(u64::from(size[0]) * u64::from(size[1])),
+        spheres: grouped(report.scene.spheres as u64),
+        violation_count: grouped(report.count(Verdict::Violation) as u64),
+        rows: rows(certificate),
+        worst_depth: format!("{:.4}", certificate.worst_depth),
+        worst_normal: format!("{:.4}", certificate.worst_normal),
+        rendered_otherwise: report.rendered_otherwise.map(|count| grouped(count as u64)),
+        shown: whole.shown(),
+        step: whole.step,
+        frame: Frame::new(size),
+        color: pictures.color(whole)?,
+        depth: pictures.depth_colors(whole)?,
+        mask: match certificate.verdicts.is_empty() {
+            true => None,
+            false => Some(pictures.mask(whole)?),
+        },
+        miss: css(MISS),
+        scale: scale(),
+        ticks: pictures.depths.map(ticks),
+        violations: first
+            .map(|(number, violation)| enlarged(&pictures, number, violation, size))
+            .collect::<Result<_>>()?,
+    };
+    let mut environment = Environment::new();
+    let template = include_str!("verify_page.html");
+    // The name says that what is put in is escaped.
+    environment.add_template("page.html", template).context("the page of the report")?;
+    let template = environment.get_template("page.html").context("the page of the report")?;
+    template.render(Value::from(Serde(page))).context("the page of the report")
+}
+
+fn rows(certificate: &Certificate) -> Vec<Row> {
+    let pixels = certificate.verdicts.len().max(1) as f64;
+    let row = |verdict: &Verdict| {
+        let count = certificate.count(*verdict);
+        let percent = 100.0 * count as f64 / pixels;
+        Row {
+            name: verdict.name(),
+            meaning: match verdict {
+                Verdict::Decided => "one answer is legal, and the device gave it",
+                Verdict::Silhouette => "a sphere and a miss are legal; the device gave one of them",
+                Verdict::Tie => "several spheres are legal; the device gave one of them",
+                Verdict::Violation => "the device gave an answer that is not legal",
+            },
+            color: css(verdict_color(*verdict)),
+            swatch: match (css(verdict_color(*verdict)), verdict) {
+                (miss, Verdict::Decided) => {
+                    format!("linear-gradient(135deg, {miss} 50%, {} 50%)", css(DECIDED_HIT))
+                }
+                (color, _) => color,
+            },
+            count: grouped(count as u64),
+            percent: format!("{percent:.4}"),
+            width: percent,
+        }
+    };
+    Verdict::ALL.iter().map(row).collect()
+}
+
+fn enlarged(
+    pictures: &Pictures<'_>,
+    number: usize,
+    violation: &Violation,
+    size: [u32; 2],
+) -> Result<Enlarged> {
+    let window = Window::around(violation.pixel, size);
+    let [i, j] = violation.pixel;
+    let place = |axis: usize| (violation.pixel[axis] - window.first[axis]) * ZOOM;
+    let percent = |place: u32, side: u32| 100.0 * (f64::from(place) + 0.5) / f64::from(side);
+    Ok(Enlarged {
+        number,
+        listed: violation.into(),
+        color: pictures.color(window)?,
+        mask: pictures.mask(window)?,
+        width: window.size[0] * ZOOM,
+        height: window.size[1] * ZOOM,
+        zoom: ZOOM,
+        left: place(0),
+        top: place(1),
+        x: percent(i, size[0]),
+        y: percent(j, size[1]),
+    })
+}
+
+/// Stops of a CSS gradient, from near to far.
+fn scale() -> String {
+    let stops = (0..=STOPS).map(|stop| css(depth_color(f64::from(stop) / f64::from(STOPS))));
+    stops.collect::<Vec<_>>().join(", ")
+}
+
+/// Five depths along the scale, or the only one.
+fn ticks([least, greatest]: [f32; 2]) -> Vec<String> {
+    if least >= greatest {
+        return vec![significant(least.into())];
+    }
+    let (least, greatest) = (f64::from(least), f64::from(greatest));
+    (0..5).map(|i| significant(least + (greatest - least) * f64::from(i) / 4.0)).collect()
+}
+
+/// With five digits.
+fn significant(value: f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    if (-4.0..6.0).contains(&exponent) {
+        // Between 0 and 8.
+        let decimals = (4.0 - exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+/// Digits in groups of three.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            // A space that neither grows nor breaks.
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_of_any_shape_have_room() {
+        let frame = |size| {
+            let Frame { width, aspect, stretched, sharp, .. } = Frame::new(size);
+            (width, width / aspect, stretched, sharp)
+        };
+        assert_eq!(frame([1, 1]), (128.0, 128.0, false, true));
+        assert_eq!(frame([800, 600]), (576.0, 432.0, false, false));
+        assert_eq!(frame([1, 4096]), (107.5, 860.0, true, false));
+        assert_eq!(frame([4096, 1]), (576.0, 72.0, true, false));
+    }
+
+    #[test]
+    fn numbers_as_people_read_them() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(480_000), "480\u{202f}000");
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
+        for (value, text) in
+            [(0.0, "0.0000"), (4.25, "4.2500"), (123_456.0, "123456"), (1e-9, "1.0000e-9")]
+        {
+            assert_eq!(significant(value), text);
+        }
+    }
+}

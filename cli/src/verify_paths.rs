@@ -1,0 +1,135 @@
+//! `pinhole verify` of a scene whose light is followed along paths: some samples of every pixel, stage by stage.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::verify_report::LISTED;
+use pinhole::verify::{PathCertificate, PathViolation, StageCounts};
+
+/// The object `paths` of the JSON document.
+#[derive(Serialize)]
+pub(super) struct PathReport {
+    paths: u64,
+    stages: BTreeMap<&'static str, Counts>,
+    upload: Option<String>,
+    violation_count: u64,
+    violations: Vec<Listed>,
+    legal: bool,
+    /// The certificate's own line.
+    #[serde(skip)]
+    pub(super) line: String,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    checked: u64,
+    decided: u64,
+    open: u64,
+    undecided: u64,
+}
+
+#[derive(Serialize)]
+struct Listed {
+    pixel: [u32; 2],
+    sample: u32,
+    surface: u32,
+    stage: &'static str,
+    message: String,
+}
+
+impl From<StageCounts> for Counts {
+    fn from(StageCounts { checked, decided, open, undecided }: StageCounts) -> Self {
+        Self { checked, decided, open, undecided }
+    }
+}
+
+impl From<&PathViolation> for Listed {
+    fn from(violation: &PathViolation) -> Self {
+        let PathViolation { pixel, sample, surface, stage, message } = violation;
+        let (stage, message) = (stage.name(), message.clone());
+        Self { pixel: *pixel, sample: *sample, surface: *surface, stage, message }
+    }
+}
+
+impl From<&PathCertificate> for PathReport {
+    fn from(certificate: &PathCertificate) -> Self {
+        let PathCertificate { start, extend, scatter, occlude, settle, .. } = *certificate;
+        let stages = [
+            ("start", start),
+            ("extend", extend),
+            ("scatter", scatter),
+            ("occlude", occlude),
+            ("settle", settle),
+        ];
+        Self {
+            paths: certificate.paths,
+            stages: stages.map(|(name, counts)| (name, counts.into())).into(),
+            upload: certificate.upload.as_ref().map(ToString::to_string),
+            violation_count: certificate.violation_count,
+            violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
+            legal: certificate.is_legal(),
+            line: certificate.to_string(),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+pub(super) use recorded::certify;
+
+#[cfg(feature = "gpu")]
+mod recorded {
+    use anyhow::Context;
+
+    use super::*;
+    use crate::device::explained_alone;
+    use crate::failure::Failure;
+    use crate::input::Input;
+    use crate::views::Views;
+    use crate::with_scene::with_structures;
+    use crate::{interrupt, progress, render};
+    use pinhole::accel::AccelChoice;
+    use pinhole::gpu::Headless;
+    use pinhole::image::LayerSet;
+    use pinhole::verify::Checker;
+
+    /// Follows so many samples on an adapter, one after the other, and judges them.
+    pub(crate) fn certify(
+        headless: &Headless,
+        input: &Input,
+        samples: u32,
+        choice: AccelChoice,
+    ) -> Result<PathCertificate, Failure> {
+        let Input { scene, settings, .. } = input;
+        let (view, views) = (input.view(), Views::of(input));
+        let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+        let done = with_structures(headless, scene, choice, plan, |structures| {
+            let uploaded = interrupt::on_device(|| headless.upload(scene, &structures))?;
+            drop(structures);
+            let buffers = match uploaded {
+                Ok(buffers) => buffers,
+                Err(error) => return Ok(Err(error)),
+            };
+            let checker = Checker::new(scene).context("the checker")?;
+            let mut certificate = PathCertificate::default();
+            for sample in 0..samples {
+                progress::stage(format!("following paths: sample {sample}"));
+                let recording = interrupt::on_device(|| {
+                    let watch = &mut |_: &_| interrupt::decide();
+                    let range = sample..sample + 1;
+                    headless.record_paths(&buffers, &view, settings, range, watch)
+                })?;
+                match recording {
+                    Ok(recording) => {
+                        progress::stage("checking paths");
+                        certificate.join(checker.certify_paths(&recording));
+                    }
+                    Err(error) => return Ok(Err(error)),
+                }
+            }
+            Ok(Ok(certificate))
+        })?;
+        let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
+        Ok(certificate)
+    }
+}

@@ -1,0 +1,213 @@
+//! Pictures of a recording for its report: colour, depth, verdicts, and what is around a violation.
+
+use anyhow::Result;
+
+use pinhole::color::to_srgb8;
+use pinhole::image::NO_ID;
+use pinhole::io::png;
+use pinhole::verify::run_file::Run;
+use pinhole::verify::{Certificate, Verdict};
+use rayon::prelude::*;
+
+/// Pictures that are shown have no longer side than this.
+const LONGEST: u32 = 2048;
+
+/// How many pixels around a violation are shown along an axis.
+const CROP: u32 = 16;
+
+/// Misses in the picture of depths.
+pub(super) const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
+
+/// Where a sphere is hit and that is the one legal answer.
+pub(super) const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
+
+/// Cold is legal, warm is not; all differ for eyes without red or green, and in grey (after Okabe and Ito).
+pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
+    match verdict {
+        Verdict::Decided => [0xe4, 0xeb, 0xef],
+        Verdict::Silhouette => [0x00, 0x72, 0xb2],
+        Verdict::Tie => [0x56, 0xb4, 0xe9],
+        Verdict::Violation => [0xd5, 0x5e, 0x00],
+    }
+}
+
+/// `#rrggbb`
+pub(super) fn css([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// A part of the film, and how many of its pixels along an axis are one that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) first: [u32; 2],
+    pub(super) size: [u32; 2],
+    pub(super) step: u32,
+}
+
+impl Window {
+    /// All of it, made smaller if it is large.
+    pub(super) fn whole(size: [u32; 2]) -> Self {
+        let step = size[0].max(size[1]).div_ceil(LONGEST);
+        Self { first: [0, 0], size, step }
+    }
+
+    /// What is around a pixel.
+    pub(super) fn around(pixel: [u32; 2], film: [u32; 2]) -> Self {
+        let size = film.map(|side| side.min(CROP));
+        let first = |axis: usize| {
+            pixel[axis].saturating_sub(CROP / 2).min(film[axis].saturating_sub(size[axis]))
+        };
+        Self { first: [first(0), first(1)], size, step: 1 }
+    }
+
+    /// Width and height of what is shown.
+    pub(super) fn shown(&self) -> [u32; 2] {
+        self.size.map(|side| side.div_ceil(self.step))
+    }
+}
+
+/// Draws parts of a picture.
+pub(super) struct Pictures<'a> {
+    run: &'a Run,
+    verdicts: &'a [Verdict],
+    width: usize,
+    /// The least and the greatest depth.
+    pub(super) depths: Option<[f32; 2]>,
+}
+
+impl<'a> Pictures<'a> {
+    pub(super) fn new(run: &'a Run, certificate: &'a Certificate) -> Self {
+        let verdicts = &certificate.verdicts[..];
+        let width = run.recording.film.width() as usize;
+        let mut pictures = Self { run, verdicts, width, depths: None };
+        // A depth that is wrong must not spoil the scale.
+        let is_wrong = |i: usize| verdicts.get(i) == Some(&Verdict::Violation);
+        let depths = pictures.depth().iter().enumerate();
+        let depths = depths.filter(|(i, depth)| depth.is_finite() && !is_wrong(*i));
+        pictures.depths = depths.fold(None, |range, (_, depth)| {
+            let [least, greatest] = range.unwrap_or([*depth; 2]);
+            Some([depth.min(least), depth.max(greatest)])
+        });
+        pictures
+    }
+
+    fn depth(&self) -> &'a [f32] {
+        self.run.recording.image.depth().unwrap_or_default()
+    }
+
+    /// The mean of the colours.
+    pub(super) fn color(&self, window: Window) -> Result<String> {
+        let color = self.run.recording.image.color();
+        encoded(window, |pixels| {
+            let mut sum = [0.0; 3];
+            let mut count = 0.0;
+            for i in pixels.indices(self.width) {
+                (0..3).for_each(|channel| sum[channel] += f64::from(color[i][channel]));
+                count += 1.0;
+            }
+            to_srgb8(sum.map(|sum| (sum / count) as f32))
+        })
+    }
+
+    /// The least of the depths.
+    pub(super) fn depth_colors(&self, window: Window) -> Result<String> {
+        let depth = self.depth();
+        let [least, greatest] = self.depths.unwrap_or([0.0; 2]);
+        encoded(window, |pixels| {
+            let found = pixels.indices(self.width).map(|i| depth[i]);
+            let nearest = found.fold(f32::INFINITY, f32::min);
+            if nearest.is_finite() {
+                let range = f64::from(greatest) - f64::from(least);
+                let part = (f64::from(nearest) - f64::from(least)) / range.max(f64::MIN_POSITIVE);
+                depth_color(part)
+            } else {
+                MISS
+            }
+        })
+    }
+
+    /// The worst of the verdicts, so that none is lost where the picture is made smaller.
+    pub(super) fn mask(&self, window: Window) -> Result<String> {
+        let pixels = &self.run.recording.pixels;
+        encoded(window, |block| {
+            let judged = block.indices(self.width).filter_map(|i| {
+                let verdict = self.verdicts.get(i)?;
+                let place = Verdict::ALL.iter().position(|of| of == verdict);
+                Some((place, *verdict, pixels.get(i)?.id != NO_ID))
+            });
+            match judged.max_by_key(|(place, _, is_hit)| (*place, *is_hit)) {
+                Some((_, Verdict::Decided, true)) => DECIDED_HIT,
+                Some((_, verdict, _)) => verdict_color(verdict),
+                None => MISS,
+            }
+        })
+    }
+}
+
+/// Near is bright: 0 is the nearest, 1 the farthest.
+pub(super) fn depth_color(part: f64) -> [u8; 3] {
+    let color = colorous::VIRIDIS.eval_continuous(1.0 - part.clamp(0.0, 1.0));
+    [color.r, color.g, color.b]
+}
+
+/// The pixels that become one.
+struct Block {
+    columns: std::ops::Range<u32>,
+    rows: std::ops::Range<u32>,
+}
+
+impl Block {
+    fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
+        let columns = self.columns.clone();
+        let in_row = move |row| columns.clone().map(move |i| row as usize * width + i as usize);
+        self.rows.clone().flat_map(in_row)
+    }
+}
+
+/// A data URI of a PNG.
+fn encoded(window: Window, color: impl Fn(Block) -> [u8; 3] + Sync + Send) -> Result<String> {
+    let Window { first, size, step } = window;
+    let [width, height] = window.shown();
+    let range = |axis: usize, place: u32| {
+        let start = place * step;
+        first[axis] + start..first[axis] + (start + step).min(size[axis])
+    };
+    let row = |j: usize| -> Vec<[u8; 3]> {
+        // Sides are u32.
+        let rows = range(1, j as u32);
+        (0..width).map(|i| color(Block { columns: range(0, i), rows: rows.clone() })).collect()
+    };
+    let rgb = (0..height as usize).into_par_iter().map(row).collect::<Vec<_>>().concat();
+    let png = png::encode_rgb8([width, height], rgb.as_flattened())?;
+    Ok(format!("data:image/png;base64,{}", data_encoding::BASE64.encode(&png)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_around_a_pixel_stays_within_the_film() {
+        let window = |pixel, film| {
+            let Window { first, size, .. } = Window::around(pixel, film);
+            (first, size)
+        };
+        assert_eq!(window([0, 99], [100, 100]), ([0, 84], [16, 16]));
+        assert_eq!(window([50, 50], [100, 100]), ([42, 42], [16, 16]));
+        assert_eq!(window([0, 0], [1, 1]), ([0, 0], [1, 1]));
+        assert_eq!(window([2, 19], [3, 20]), ([0, 4], [3, 16]));
+    }
+
+    #[test]
+    fn large_pictures_are_made_smaller() {
+        for (size, step, shown) in [
+            ([1, 1], 1, [1, 1]),
+            ([2048, 3], 1, [2048, 3]),
+            ([4096, 4096], 2, [2048, 2048]),
+            ([4097, 1], 3, [1366, 1]),
+        ] {
+            let window = Window::whole(size);
+            assert_eq!((window.step, window.shown()), (step, shown), "{size:?}");
+        }
+    }
+}

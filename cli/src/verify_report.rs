@@ -1,0 +1,168 @@
+//! What `pinhole verify` found, as JSON and as a table.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::adapter::AdapterReport;
+use super::verify_paths::PathReport;
+use pinhole::text::one_line;
+use pinhole::verify::run_file::{Run, scene_sha256};
+use pinhole::verify::{Certificate, PathCertificate, Verdict, Violation};
+
+/// At most so many violations are in the JSON document.
+pub(super) const LISTED: usize = 100;
+
+/// The JSON document.
+#[derive(Serialize)]
+pub(super) struct Report {
+    pub(super) version: String,
+    pub(super) adapter: Adapter,
+    pub(super) scene: Scene,
+    pub(super) picture: Picture,
+    pub(super) counts: BTreeMap<&'static str, usize>,
+    pub(super) decided_fraction: f64,
+    pub(super) worst_depth: f64,
+    pub(super) worst_normal: f64,
+    /// In how many pixels `render` makes another picture; none if that is not known.
+    pub(super) rendered_otherwise: Option<usize>,
+    pub(super) upload: Option<String>,
+    pub(super) violations: Vec<Listed>,
+    /// Of a scene whose light is followed along paths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) paths: Option<PathReport>,
+    pub(super) legal: bool,
+    pub(super) command: String,
+    /// The certificate's own table.
+    #[serde(skip)]
+    table: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct Adapter {
+    #[serde(flatten)]
+    pub(super) adapter: AdapterReport,
+    pub(super) limits: BTreeMap<String, u64>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Scene {
+    pub(super) spheres: usize,
+    pub(super) sha256: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct Picture {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) camera: &'static str,
+    pub(super) y_axis: &'static str,
+    pub(super) shading: &'static str,
+    pub(super) structure: String,
+}
+
+/// A violation in words.
+#[derive(Serialize)]
+pub(super) struct Listed {
+    pub(super) pixel: [u32; 2],
+    pub(super) stage: &'static str,
+    pub(super) message: String,
+}
+
+impl From<&Violation> for Listed {
+    fn from(Violation { pixel, kind }: &Violation) -> Self {
+        Self { pixel: *pixel, stage: kind.stage(), message: kind.to_string() }
+    }
+}
+
+impl Report {
+    pub(super) fn new(
+        run: &Run,
+        certificate: &Certificate,
+        paths: Option<&PathCertificate>,
+    ) -> Self {
+        let Run { scene, recording, provenance } = run;
+        let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
+        Self {
+            version: one_line(&provenance.version),
+            adapter: Adapter {
+                adapter: AdapterReport::of_run(provenance),
+                limits: provenance.limits.clone(),
+            },
+            scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
+            picture: Picture {
+                width: recording.film.width(),
+                height: recording.film.height(),
+                camera: recording.camera.kind.name(),
+                y_axis: recording.film.y_axis().name(),
+                shading: recording.look.shading.name(),
+                structure: one_line(&provenance.structure),
+            },
+            counts: Verdict::ALL.iter().map(count).collect(),
+            decided_fraction: certificate.decided_fraction(),
+            worst_depth: certificate.worst_depth,
+            worst_normal: certificate.worst_normal,
+            rendered_otherwise: certificate.rendered_otherwise,
+            upload: certificate.upload.as_ref().map(ToString::to_string),
+            violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
+            paths: paths.map(PathReport::from),
+            legal: certificate.is_legal() && paths.is_none_or(PathCertificate::is_legal),
+            command: one_line(&provenance.command),
+            table: certificate.to_string(),
+        }
+    }
+
+    /// The verdict in a line.
+    pub(super) fn verdict(&self) -> String {
+        match (self.legal, &self.upload, self.count(Verdict::Violation)) {
+            (true, ..) if self.paths.is_some() => {
+                "legal: every pixel by one ray, and every path, is as a conforming device may have made it"
+                    .to_owned()
+            }
+            (true, ..) => {
+                "legal: every pixel is as a conforming device may have made it".to_owned()
+            }
+            (false, Some(_), _) => {
+                "NOT legal: the device was not given what was asked for".to_owned()
+            }
+            (false, None, 0) => "NOT legal: paths".to_owned(),
+            (false, None, 1) => "NOT legal: 1 violation".to_owned(),
+            (false, None, count) => format!("NOT legal: {count} violations"),
+        }
+    }
+
+    pub(super) fn count(&self, verdict: Verdict) -> usize {
+        self.counts.get(verdict.name()).copied().unwrap_or_default()
+    }
+
+    /// For people. What a run file says of itself is on lines of its own.
+    pub(super) fn table(&self) -> String {
+        let Scene { spheres, sha256 } = &self.scene;
+        let Picture { width, height, camera, structure, .. } = &self.picture;
+        let adapter = one_line(&self.adapter.adapter.line());
+        let paths = self.paths.as_ref().map_or(String::new(), |paths| format!("{}\n", paths.line));
+        format!(
+            "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
+             picture: {width}x{height}, {camera} camera\n\
+             structure: {structure}\n{}\n{paths}{}\n",
+            16 * spheres,
+            self.table,
+            self.verdict()
+        )
+    }
+}
+
+/// What was typed, as a shell would take it.
+#[cfg(feature = "gpu")]
+pub(super) fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1).map(|argument| {
+        let argument = one_line(&argument.to_string_lossy());
+        let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+        if !argument.is_empty() && argument.chars().all(is_plain) {
+            argument
+        } else {
+            format!("'{}'", argument.replace('\'', r"'\''"))
+        }
+    });
+    std::iter::once("pinhole".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}

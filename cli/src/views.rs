@@ -1,0 +1,67 @@
+//! One picture, or one for each eye.
+
+use super::input::Input;
+use super::memory;
+use pinhole::camera::View;
+use pinhole::image::LayerSet;
+
+/// Something for one picture, or for the left eye's and the right eye's.
+pub(super) enum Views<T> {
+    One(T),
+    Two([T; 2]),
+}
+
+impl<T> Views<T> {
+    pub(super) fn as_slice(&self) -> &[T] {
+        match self {
+            Self::One(one) => std::slice::from_ref(one),
+            Self::Two(two) => two,
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.as_slice().len()
+    }
+
+    /// All that `f` makes of them.
+    #[cfg(feature = "gpu")]
+    pub(super) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Views<U> {
+        match self {
+            Self::One(one) => Views::One(f(one)),
+            Self::Two(two) => Views::Two(two.map(f)),
+        }
+    }
+
+    /// The first error, or all that `f` makes of them.
+    pub(super) fn try_each<U, E>(
+        &self,
+        mut f: impl FnMut(&T) -> Result<U, E>,
+    ) -> Result<Views<U>, E> {
+        Ok(match self {
+            Self::One(one) => Views::One(f(one)?),
+            Self::Two([left, right]) => Views::Two([f(left)?, f(right)?]),
+        })
+    }
+}
+
+impl<'a> Views<View<'a>> {
+    pub(super) fn of(input: &'a Input) -> Self {
+        match &input.eyes {
+            None => Self::One(input.view()),
+            Some(eyes) => {
+                let [left, right] = eyes.each_ref();
+                Self::Two([left, right].map(|eye| View::new(eye.as_ref(), input.film)))
+            }
+        }
+    }
+
+    /// How many bytes a pixel are needed beside the layers of one picture.
+    pub(super) fn bytes_beside(&self, layers: LayerSet) -> u64 {
+        let encoding = memory::ENCODING_BYTES_PER_PIXEL;
+        match self {
+            Self::One(_) => encoding,
+            // The other picture, and both in one.
+            Self::Two(_) => 3 * layers.bytes_per_pixel() + 2 * encoding,
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The program on an adapter, as a user runs it: what it writes is what the library renders.
+
+use std::io::Cursor;
+use std::path::Path;
+use std::process::Command;
+
+use libtest_mimic::Trial;
+use pinhole::gpu::Headless;
+use pinhole::{Encoding, LayerSet, color, io};
+
+use crate::trial;
+use crate::view::View;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("render::the_demo_renders_on_the_adapter", demo),
+        trial("render::layers_come_from_the_adapter", layers),
+        trial("render::an_exr_holds_what_the_adapter_rendered", exr),
+        trial("render::info_lists_the_adapter", info),
+        trial("render::self_test_of_the_adapter", self_test),
+    ]
+}
+
+/// Runs `pinhole` in a folder; gives its standard output.
+fn run(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    output.stdout
+}
+
+fn demo(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["demo", "--backend", "gpu"]);
+    let view = View::three_spheres();
+    let expected =
+        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
+    let expected: Vec<u8> = expected.color().iter().flat_map(|c| color::to_srgb8(*c)).collect();
+    let picture = image::open(folder.path().join("three-spheres.png")).unwrap().to_rgb8();
+    assert!(picture.into_raw() == expected, "the demo's picture is not the library's");
+}
+
+fn layers(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("scene.toml"),
+        include_str!("../../../examples/three-spheres-orthographic.toml"),
+    )
+    .unwrap();
+    let adapter = &headless.adapter_info().name;
+    let arguments = "render scene.toml -o out.png --layer depth=depth.npy --layer id=id.npy";
+    let mut arguments: Vec<&str> = arguments.split(' ').collect();
+    arguments.extend(["--adapter", adapter]);
+    run(folder.path(), &arguments);
+
+    let view = View::three_spheres_orthographic();
+    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).unwrap();
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let depth = read("depth.npy");
+    let depth: Vec<f32> = npyz::NpyFile::new(&depth[..]).unwrap().into_vec().unwrap();
+    assert!(depth == image.depth().unwrap(), "depth");
+    let id = read("id.npy");
+    let id: Vec<u32> = npyz::NpyFile::new(&id[..]).unwrap().into_vec().unwrap();
+    assert!(id == image.id().unwrap(), "id");
+}
+
+fn exr(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = include_str!("../../../examples/three-spheres.toml");
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let adapter = &headless.adapter_info().name;
+    let mut arguments = vec!["render", "scene.toml", "-o", "out.exr", "--adapter", adapter];
+    for layer in LayerSet::ALL.iter() {
+        arguments.extend(["--layer", layer.name()]);
+    }
+    run(folder.path(), &arguments);
+
+    let view = View::three_spheres();
+    let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
+    let mut expected = Cursor::new(Vec::new());
+    let encoding = Encoding::default();
+    io::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();
+    let found = std::fs::read(folder.path().join("out.exr")).unwrap();
+    assert!(found == expected.into_inner(), "the file is not the library's");
+}
+
+fn self_test(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let name = &headless.adapter_info().name;
+    let json = run(folder.path(), &["info", "--self-test", "--json", "--adapter", name]);
+    let info: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert!(!info["adapters"].as_array().unwrap().is_empty());
+    let tested = &info["self_test"];
+    assert_eq!(
+        (&tested["adapter"]["name"], &tested["passed"]),
+        (&name.as_str().into(), &true.into())
+    );
+    let properties = tested["properties"].as_array().unwrap();
+    assert_eq!(properties.len(), 9);
+    let text = String::from_utf8(run(folder.path(), &["info", "--self-test"])).unwrap();
+    assert!(text.contains(name), "{text}");
+    for property in properties {
+        assert_eq!(property["passed"], true);
+        assert!(property["figures"]["tested"].as_f64().unwrap() > 0.0, "{property}");
+        let [outcome, name, words] =
+            ["outcome", "name", "words"].map(|key| property[key].as_str().unwrap());
+        assert!(outcome == "ok" || outcome == "note", "{outcome}");
+        assert!(text.contains(&format!("  {outcome:<6}  {name}: {words}\n")), "{text}");
+    }
+}
+
+fn info(headless: &'static Headless) {
+    let folder = tempfile::tempdir().unwrap();
+    let json = run(folder.path(), &["info", "--json"]);
+    let info: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let adapters = info["adapters"].as_array().unwrap();
+    let chosen: Vec<_> = adapters.iter().filter(|a| a["chosen"] == true).collect();
+    assert_eq!(chosen.len(), 1);
+    let expected = headless.adapter_info();
+    assert_eq!(chosen[0]["name"], expected.name);
+    assert_eq!(chosen[0]["driver"], expected.driver);
+    assert_eq!(chosen[0]["driver_info"], expected.driver_info);
+    let limit = &chosen[0]["limits"]["max_storage_buffer_binding_size"];
+    let device_limit = headless.device().limits().max_storage_buffer_binding_size;
+    assert_eq!(limit.as_u64(), Some(device_limit));
+    let text = String::from_utf8(run(folder.path(), &["info"])).unwrap();
+    assert!(text.contains(&expected.name) && text.contains("used by `render`"), "{text}");
+}

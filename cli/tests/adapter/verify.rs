@@ -1,0 +1,141 @@
+//! `pinhole verify` on an adapter, as a user runs it; what it saved, checked again without one.
+
+use std::process::{Command, Output};
+
+use libtest_mimic::Trial;
+use pinhole::gpu::Headless;
+use pinhole::verify::run_file;
+use tempfile::TempDir;
+
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("verify::a_scene_is_proved_and_proved_again", proved),
+        trial("verify::no_sphere_and_one_pixel", small),
+        trial("verify::a_pixel_that_is_wrong_is_named", named),
+        trial("verify::paths_are_proved", paths),
+    ]
+}
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = include_str!("../../../examples/three-spheres.toml");
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    std::fs::write(folder.path().join("none.toml"), "").unwrap();
+    folder
+}
+
+fn command(folder: &TempDir, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+    command.current_dir(folder.path()).args(arguments.split(' '));
+    command
+}
+
+/// Standard output of a replay on a machine without drivers.
+#[track_caller]
+fn replayed(folder: &TempDir, arguments: &str, code: i32) -> Output {
+    let mut command = command(folder, arguments);
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        command.env(variable, folder.path().join("no-driver.json"));
+    }
+    let output = command.output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments}: {stderr}");
+    output
+}
+
+#[track_caller]
+fn table(folder: &TempDir, arguments: &str) -> String {
+    let output = command(folder, arguments).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!((output.status.code(), &*stderr), (Some(0), ""), "{arguments}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn proved(headless: &'static Headless) {
+    let folder = folder();
+    let found = table(&folder, "verify scene.toml --save run --json a.json --report page");
+    let adapter = &headless.adapter_info().name;
+    assert!(found.starts_with(&format!("adapter: {adapter} (")), "{found}");
+    assert!(found.contains("\nscene: 3 spheres, 48 bytes, sha256 "), "{found}");
+    assert!(found.contains("\npicture: 800x600, pinhole camera"), "{found}");
+    assert!(found.ends_with("\nlegal: every pixel is as a conforming device may have made it\n"));
+
+    assert!(found.contains("\nrendered               0  pixels differ from the recorded ones\n"));
+
+    let again = replayed(&folder, "verify --replay run --json b.json --report again", 0);
+    assert_eq!(String::from_utf8(again.stdout).unwrap(), found);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(read("a.json") == read("b.json"), "the documents differ");
+    assert!(read("page/report.html") == read("again/report.html"), "the pages differ");
+    let json: serde_json::Value = serde_json::from_slice(&read("a.json")).unwrap();
+    assert_eq!(json["rendered_otherwise"], 0);
+    let page = String::from_utf8(read("page/report.html")).unwrap();
+    assert!(page.contains("with kernels that keep no rays: every pixel has the same values."));
+    // The same on every structure; the run says which.
+    table(&folder, "verify scene.toml --save tree --accel tree");
+    let (first, second) = (read("run"), read("tree"));
+    let [first, second] = [&first, &second].map(|bytes| run_file::read(bytes).unwrap());
+    assert_eq!(second.provenance.structure, "8-wide tree");
+    assert!(first.recording == second.recording, "the recordings differ");
+}
+
+fn small(_: &'static Headless) {
+    let folder = folder();
+    for arguments in [
+        "verify none.toml --size 40x30 --save run --report page",
+        "verify scene.toml --size 1x1 --save run --report page",
+        "verify none.toml --size 1x1 --save run --report page",
+    ] {
+        let found = table(&folder, arguments);
+        let again = replayed(&folder, "verify --replay run", 0);
+        assert_eq!(String::from_utf8(again.stdout).unwrap(), found, "{arguments}");
+    }
+}
+
+fn named(_: &'static Headless) {
+    let folder = folder();
+    table(&folder, "verify scene.toml --size 80x60 --save run");
+    let path = folder.path().join("run");
+    let mut run = run_file::read(&std::fs::read(&path).unwrap()).unwrap();
+    let pixels = &mut run.recording.pixels;
+    // The first that hits something, and is no silhouette.
+    let hit = |i: usize, pixels: &[pinhole::verify::TracedPixel]| pixels[i].id != u32::MAX;
+    let wrong = (0..pixels.len() - 80).find(|i| hit(*i, pixels) && hit(*i + 80, pixels)).unwrap();
+    pixels[wrong].t *= 1.001;
+    let mut file = std::fs::File::create(&path).unwrap();
+    run_file::write(&run.scene, &run.recording, &run.provenance, &mut file).unwrap();
+
+    let output = replayed(&folder, "verify --replay run --report page", 3);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let pixel = format!("pixel ({}, {}), hit: sphere ", wrong % 80, wrong / 80);
+    let words = format!("error: the picture is not legal: 1 of 4800 pixels; the first is {pixel}");
+    assert!(stderr.starts_with(&words) && stderr.lines().count() == 1, "{stderr}");
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    assert!(stdout.contains(&format!("\nfirst violation: {pixel}")), "{stdout}");
+    assert!(stdout.ends_with("\nNOT legal: 1 violation\n"), "{stdout}");
+    let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
+    assert!(page.contains("All of them"), "{page}");
+}
+
+const PATHS: &str = "integrator = 'path'\n[film]\nwidth = 40\nheight = 30\n[camera.pinhole]\neye = [0, 1, 6]\n\
+                     look_at = [0, 0, 0]\n[ground]\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
+
+fn paths(_: &'static Headless) {
+    let folder = folder();
+    std::fs::write(folder.path().join("paths.toml"), PATHS).unwrap();
+    let found = table(&folder, "verify paths.toml --paths 3 --json a.json");
+    assert!(found.contains("\n3600 paths, ") && found.contains(", 0 violations\n"), "{found}");
+    let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["paths"]["paths"], 3600);
+    assert_eq!(json["paths"]["stages"]["start"]["checked"], 3600);
+    assert_eq!((&json["paths"]["legal"], &json["legal"]), (&true.into(), &true.into()));
+    // Without paths, nothing is said of them.
+    table(&folder, "verify scene.toml --size 8x6 --json b.json");
+    let json = std::fs::read_to_string(folder.path().join("b.json")).unwrap();
+    assert!(!json.contains("paths"), "{json}");
+    let refused = command(&folder, "verify scene.toml --paths 2").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+}

@@ -1,0 +1,47 @@
+//! What tests on an adapter share: one device, and trials that are ignored where there is to be none.
+
+use std::sync::LazyLock;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use pinhole::gpu::{Headless, HeadlessOptions};
+
+/// One device for all tests, so that it is opened, and printed, once.
+static HEADLESS: LazyLock<Result<Headless, String>> = LazyLock::new(|| {
+    Headless::open(&HeadlessOptions::default()).map_err(|error| error.to_string())
+});
+
+pub(crate) fn headless() -> Result<&'static Headless, Failed> {
+    HEADLESS.as_ref().map_err(|error| {
+        Failed::from(format!(
+            "{error}; without a GPU install mesa-vulkan-drivers, or set PINHOLE_NO_GPU_TESTS=1"
+        ))
+    })
+}
+
+/// A trial from a plain function.
+pub(crate) fn trial(name: &str, test: fn(&'static Headless)) -> Trial {
+    Trial::test(name, move || {
+        test(headless()?);
+        Ok(())
+    })
+}
+
+/// Runs trials and ends the program.
+pub(crate) fn run(trials: impl FnOnce() -> Vec<Trial>) -> ! {
+    let arguments = Arguments::from_args();
+    let without_gpu = std::env::var_os("PINHOLE_NO_GPU_TESTS").is_some_and(|value| value != "0");
+    if !without_gpu && !arguments.list {
+        match &*HEADLESS {
+            Ok(headless) => {
+                let info = headless.adapter_info();
+                println!(
+                    "\nadapter: {} ({:?}), driver: {} {}",
+                    info.name, info.backend, info.driver, info.driver_info
+                );
+            }
+            Err(error) => println!("\nadapter: none, {error}"),
+        }
+    }
+    let trials = trials().into_iter().map(|trial| trial.with_ignored_flag(without_gpu)).collect();
+    libtest_mimic::run(&arguments, trials).exit()
+}
