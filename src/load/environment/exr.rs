@@ -1,0 +1,74 @@
+//! OpenEXR.
+
+use std::cell::{Cell, RefCell};
+
+use exr::error::Error;
+use exr::image::read::layers::ReadChannels;
+use exr::meta::MetaData;
+use exr::meta::attribute::EnvironmentMap;
+use exr::prelude::{Compression, ReadLayers, Vec2, read as reader};
+
+use super::{EnvironmentFileError, Watched, black, refusal};
+use crate::environment::Environment;
+
+const FORMAT: &str = "OpenEXR";
+
+/// What is needed, as the file calls it.
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
+
+pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
+    let at_end = Cell::new(false);
+    let refused = |error: Error| refusal(FORMAT, bytes, &at_end, &error);
+    let unreadable = |message: &str| {
+        Err(EnvironmentFileError::Format { format: FORMAT, message: message.to_owned() })
+    };
+    // Before anything is allocated: the decoder cannot be told a limit.
+    let meta =
+        MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(refused)?;
+    let names = |channels: &[exr::meta::attribute::ChannelDescription]| -> Vec<String> {
+        channels.iter().map(|channel| channel.name.to_string()).collect()
+    };
+    let has_color = |names: &[String]| CHANNELS.iter().all(|c| names.iter().any(|name| name == c));
+    let with_color =
+        meta.headers.iter().find(|header| has_color(&names(&header.channels.list)) && !header.deep);
+    let Some(header) = with_color else {
+        let first = meta.headers.first().map(|header| names(&header.channels.list).join(", "));
+        let found = crate::text::one_line(&first.unwrap_or_default());
+        return Err(EnvironmentFileError::Channels { found });
+    };
+    // Their decoder overflows on damaged files (exr 1.74).
+    let is_lossy = |compression| matches!(compression, Compression::B44 | Compression::B44A);
+    if meta.headers.iter().any(|header| is_lossy(header.compression)) {
+        return unreadable("its compression is B44, which is not supported");
+    }
+    if header.own_attributes.environment_map == Some(EnvironmentMap::Cube) {
+        return unreadable("it is a cube, and not an equirectangular map");
+    }
+    let Vec2(width, height) = header.layer_size;
+    let room = RefCell::new(black([width, height].map(|count| count as u64), FORMAT, bytes.len())?);
+    let image = reader()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| (size.width(), room.take()),
+            |(width, texels), at, (red, green, blue): (f32, f32, f32)| {
+                let index = at.y() * *width + at.x();
+                if let Some(texel) = texels.get_mut(index) {
+                    *texel = [red, green, blue];
+                }
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        // Its threads would end the process if they met what the decoder does not expect.
+        .non_parallel()
+        .from_buffered(Watched::new(bytes, &at_end))
+        .map_err(refused)?;
+    let size = image.layer_data.size;
+    if size != header.layer_size {
+        return unreadable("its first part with colours cannot be read");
+    }
+    let (_, texels) = image.layer_data.channel_data.pixels;
+    let [width, height] = [size.width(), size.height()].map(|count| count as u32);
+    Ok(Environment::new(width, height, texels)?)
+}

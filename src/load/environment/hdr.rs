@@ -1,0 +1,40 @@
+//! Radiance HDR: G. Ward, "Real Pixels", Graphics Gems II, 1991.
+
+use std::cell::Cell;
+
+use image::ImageDecoder;
+use image::codecs::hdr::HdrDecoder;
+
+use super::{EnvironmentFileError, Watched, black, refusal};
+use crate::environment::Environment;
+
+const FORMAT: &str = "Radiance HDR";
+
+pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
+    let at_end = Cell::new(false);
+    let refused = |error| refusal(FORMAT, bytes, &at_end, &error);
+    if has_empty_runs(bytes) {
+        let message = "runs of no pixels follow each other".to_owned();
+        return Err(EnvironmentFileError::Format { format: FORMAT, message });
+    }
+    // Not strict: the signature may be `#?RGBE` as well, and headers have lines of all kinds.
+    let decoder =
+        HdrDecoder::with_strictness(Watched::new(bytes, &at_end), false).map_err(refused)?;
+    let (width, height) = decoder.dimensions();
+    let mut texels = black([width, height].map(u64::from), FORMAT, bytes.len())?;
+    decoder.read_image(bytemuck::cast_slice_mut(&mut texels)).map_err(refused)?;
+    Ok(Environment::new(width, height, texels)?)
+}
+
+/// Whether there are eight markers of runs of which the last four are empty, which no encoder writes: the
+/// decoder's multiplier of such a run overflows (image 0.25.10).
+fn has_empty_runs(bytes: &[u8]) -> bool {
+    const MARKER: usize = 4;
+    let is_marker = |marker: &[u8]| marker[..3] == [1, 1, 1];
+    bytes.windows(8 * MARKER).any(|run| {
+        // What is rarest is looked at first.
+        run.ends_with(&[1, 1, 1, 0])
+            && run.chunks(MARKER).all(is_marker)
+            && run[4 * MARKER..].chunks(MARKER).all(|marker| marker[3] == 0)
+    })
+}

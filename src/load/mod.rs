@@ -1,0 +1,40 @@
+//! One door for files of spheres: a path or bytes in, [`Loaded`] out.
+//!
+//! [`FORMATS`] has a row for every format, and nothing else in the library or the program knows their names.
+//! [`open`] and [`from_bytes`] choose a row and read.
+//!
+//! ```
+//! # #[cfg(feature = "xyz")] {
+//! use pinhole::load::{self, Options};
+//!
+//! let water = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
+//! let loaded = load::from_bytes(water.as_bytes(), "water.xyz", &Options::default())?;
+//! assert_eq!(loaded.points.len(), 3);
+//! assert_eq!(loaded.labels("species").unwrap().names, ["O", "H"]);
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#[cfg(any(feature = "pdb", feature = "xyz"))]
+mod elements;
+#[cfg(any(feature = "exr", feature = "hdr"))]
+pub mod environment;
+mod error;
+mod format;
+mod loaded;
+#[cfg(feature = "npy")]
+pub mod npy;
+#[cfg(feature = "npy")]
+pub mod npz;
+mod numbers;
+mod open;
+#[cfg(feature = "pdb")]
+pub mod pdb;
+pub mod raw;
+#[cfg(feature = "xyz")]
+pub mod xyz;
+
+pub use error::{LoadError, OptionError};
+pub use format::{FORMATS, Format, Options};
+pub use loaded::{Column, ColumnValues, Labels, Loaded};
+pub use open::{from_bytes, open};

@@ -1,0 +1,181 @@
+//! Reads PDB files, as version 3.3 of the format of the wwPDB describes them.
+//!
+//! A PDB file is text in fixed columns. The records ATOM and HETATM become spheres with the van der Waals
+//! radii and the colours of their elements; CRYST1 becomes the periodic cell; MODEL and ENDMDL enclose a
+//! frame; every other record is skipped. Lengths are taken as they are, in Å.
+//!
+//! The columns are `species`, `name`, `residue`, `chain`, `residue_number`, `b_factor`, `occupancy` and
+//! `record`. Of an atom with alternate locations one is kept.
+//!
+//! Programs bend the format, so that more is read than it allows: residue names of four characters,
+//! residue numbers in hybrid-36, and lines that end behind the coordinates.
+
+mod altloc;
+mod atoms;
+mod cell;
+mod element;
+mod error;
+mod hybrid36;
+mod labels;
+mod record;
+#[cfg(test)]
+mod tests;
+
+use atoms::Atoms;
+pub use error::PdbError;
+use record::{Kind, Lines, Record};
+
+use super::Loaded;
+
+/// Reads one frame, which is a model, counted from 0 in the order of the file.
+///
+/// A file without MODEL records has one frame. The file is read to its end, so that
+/// [`Loaded::frames`] is known, but atoms of other models are not checked.
+///
+/// # Errors
+/// If the text is not a PDB file, or has no such frame.
+pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
+    // Some editors put a byte order mark before UTF-8.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut reader = Reader { frame, ..Reader::default() };
+    for (line, text) in Lines::new(bytes) {
+        reader.take(line, text)?;
+    }
+    reader.finish()
+}
+
+/// Whether the first line is one of those that PDB files start with.
+pub(super) fn starts(bytes: &[u8]) -> bool {
+    const FIRST: [&[u8]; 10] = [
+        b"HEADER", b"TITLE ", b"REMARK", b"COMPND", b"CRYST1", b"MODEL ", b"ATOM  ", b"HETATM",
+        b"OBSLTE", b"CAVEAT",
+    ];
+    FIRST.iter().any(|name| bytes.starts_with(name))
+}
+
+/// What the lines so far have said. Lines count from 1.
+#[derive(Default)]
+struct Reader {
+    /// The frame that is wanted.
+    frame: usize,
+    /// Whether a line was seen that shows which format the file has.
+    begun: bool,
+    /// How many MODEL records there were.
+    models: usize,
+    /// Where the first MODEL record is.
+    first_model: usize,
+    /// Where the model that has not ended began.
+    open: Option<usize>,
+    /// Where the wanted model began.
+    wanted: usize,
+    /// Where the first atom is.
+    first_atom: Option<usize>,
+    /// Whether a file without models has ended, whatever follows.
+    ended: bool,
+    /// Where the first atom behind this end is.
+    behind_end: Option<usize>,
+    cell: Option<[[f64; 3]; 3]>,
+    atoms: Atoms,
+}
+
+impl Reader {
+    fn take(&mut self, line: usize, text: &[u8]) -> Result<(), PdbError> {
+        if !self.begun {
+            self.begin(text)?;
+        }
+        match Kind::of(text) {
+            Kind::Atom => self.atom(line, text, "ATOM"),
+            Kind::Hetatm => self.atom(line, text, "HETATM"),
+            Kind::Cryst1 if self.before_end_of_frame() => {
+                self.cell = cell::edges(&Record::new(line, text, "CRYST1")?)?;
+                Ok(())
+            }
+            Kind::Model => self.model(line),
+            Kind::Endmdl | Kind::End => {
+                if self.models == 0 {
+                    self.ended = self.first_atom.is_some();
+                } else if Kind::of(text) == Kind::Endmdl {
+                    self.open = None;
+                }
+                Ok(())
+            }
+            Kind::AtomSite if self.first_atom.is_none() => Err(PdbError::MmCif),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses mmCIF by the first line that is neither blank nor a comment of that format.
+    fn begin(&mut self, text: &[u8]) -> Result<(), PdbError> {
+        let text = text.trim_ascii_start();
+        self.begun = !(text.is_empty() || text.starts_with(b"#"));
+        match text.first_chunk::<5>() {
+            Some(start) if start.eq_ignore_ascii_case(b"data_") => Err(PdbError::MmCif),
+            _ => Ok(()),
+        }
+    }
+
+    /// Programs that write trajectories put a CRYST1 record before or into each model.
+    fn before_end_of_frame(&self) -> bool {
+        match self.models {
+            0 => !self.ended,
+            models => models <= self.frame || (models == self.frame + 1 && self.open.is_some()),
+        }
+    }
+
+    fn atom(&mut self, line: usize, text: &[u8], record: &'static str) -> Result<(), PdbError> {
+        self.first_atom.get_or_insert(line);
+        if self.models > 0 && self.open.is_none() {
+            return Err(PdbError::AtomOutsideModel { line, model_line: self.first_model });
+        }
+        if self.ended {
+            self.behind_end.get_or_insert(line);
+            return Ok(());
+        }
+        if self.models.saturating_sub(1) != self.frame {
+            return Ok(());
+        }
+        self.atoms.push(&Record::new(line, text, record)?)
+    }
+
+    fn model(&mut self, line: usize) -> Result<(), PdbError> {
+        if let Some(outer_line) = self.open {
+            return Err(PdbError::ModelInsideModel { line, outer_line });
+        }
+        if self.models == 0 {
+            self.first_model = line;
+            if let Some(atom_line) = self.first_atom {
+                return Err(PdbError::AtomOutsideModel { line: atom_line, model_line: line });
+            }
+        }
+        if self.models == self.frame {
+            self.wanted = line;
+        }
+        self.open = Some(line);
+        self.models += 1;
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Loaded, PdbError> {
+        let Self { frame, wanted, .. } = self;
+        if self.first_atom.is_none() {
+            return Err(PdbError::NoAtoms);
+        }
+        let frames = self.models.max(1);
+        if frame >= frames {
+            return Err(PdbError::NoSuchFrame { wanted: frame, frames });
+        }
+        if self.atoms.is_empty() {
+            return Err(PdbError::EmptyFrame { frame, line: wanted });
+        }
+        let mut loaded = self.atoms.into_loaded();
+        loaded.cell = self.cell;
+        loaded.frames = Some(frames);
+        if let Some(line) = self.behind_end {
+            loaded.notes.push(format!(
+                "the atoms from line {line} on are left out, because they follow the end of the structure; \
+                 MODEL and ENDMDL must enclose each of several frames"
+            ));
+        }
+        Ok(loaded)
+    }
+}

@@ -1,0 +1,164 @@
+//! Which chemical element an atom is of.
+
+use crate::load::elements::appearance;
+
+/// Residues whose atoms are known to be of few elements, whatever their names look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Residue {
+    AminoAcid,
+    NucleotideOrWater,
+    Other,
+}
+
+impl Residue {
+    /// Also the names that programs for molecular dynamics use.
+    pub(super) fn of(name: &str) -> Self {
+        match name {
+            "ALA" | "ARG" | "ASN" | "ASP" | "CYS" | "GLN" | "GLU" | "GLY" | "HIS" | "ILE"
+            | "LEU" | "LYS" | "MET" | "PHE" | "PRO" | "SER" | "THR" | "TRP" | "TYR" | "VAL"
+            | "ASX" | "GLX" | "MSE" | "SEC" | "PYL" | "UNK" | "HID" | "HIE" | "HIP" | "HSD"
+            | "HSE" | "HSP" | "CYX" | "CYM" | "ASH" | "GLH" | "LYN" => Self::AminoAcid,
+            "A" | "C" | "G" | "U" | "I" | "DA" | "DC" | "DG" | "DT" | "DU" | "DI" | "HOH"
+            | "DOD" | "WAT" | "H2O" | "SOL" | "TIP" | "TIP3" | "TIP4" | "SPC" => {
+                Self::NucleotideOrWater
+            }
+            _ => Self::Other,
+        }
+    }
+}
+
+/// The symbol of an atom's element, such as `Fe`, or the best name for what is not an element.
+///
+/// `name` is columns 13-16 and `symbol` is columns 77-78, which may be blank.
+pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (String, bool) {
+    if residue == Residue::AminoAcid && name.trim_ascii() == b"CA" {
+        return ("C".to_owned(), true);
+    }
+    if let Some(element) = element(symbol.trim_ascii()).or_else(|| by_name(name, residue)) {
+        return (element, true);
+    }
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes.trim_ascii()).into_owned();
+    let is_word = |word: &[u8]| !word.is_empty() && word.iter().all(u8::is_ascii_alphabetic);
+    if is_word(symbol.trim_ascii()) {
+        (text(&symbol), false)
+    } else if name.iter().any(u8::is_ascii_alphabetic) {
+        (text(&name), false)
+    } else {
+        // The symbol that the wwPDB gives to atoms of unknown elements.
+        ("X".to_owned(), false)
+    }
+}
+
+/// Old files have no symbols; their atom names have the symbol right-justified in the first two characters.
+fn by_name(name: [u8; 4], residue: Residue) -> Option<String> {
+    let [first, second, third, fourth] = name;
+    if residue != Residue::Other
+        && let Some(element) = in_known_residue(name)
+    {
+        return Some(element);
+    }
+    if !first.is_ascii_alphabetic() {
+        // A symbol of two letters in the wrong place (` MG `), only if there is no other way to see it.
+        return element(&[second]).or_else(|| element(&[second, third]));
+    }
+    // Names of four characters leave no room for the blank before a symbol of one letter. Hydrogens
+    // often have such names, but mercury, holmium and dysprosium hardly ever.
+    if fourth != b' ' && matches!(first, b'H' | b'D') {
+        return element(&[first]);
+    }
+    element(&[first, second]).or_else(|| element(&[first]))
+}
+
+/// The first letter tells the element, wherever in the field it is.
+fn in_known_residue(name: [u8; 4]) -> Option<String> {
+    let mut letters = name.into_iter().skip_while(|byte| !byte.is_ascii_alphabetic());
+    let (first, second) = (letters.next()?, letters.next());
+    match (first, second) {
+        // Selenomethionine and selenocysteine.
+        (b'S', Some(b'E')) => element(b"SE"),
+        (b'H' | b'D' | b'C' | b'N' | b'O' | b'P' | b'S', _) => element(&[first]),
+        _ => None,
+    }
+}
+
+/// The symbol with a capital and a small letter, if it is one.
+fn element(symbol: &[u8]) -> Option<String> {
+    let mut text = String::new();
+    for (i, byte) in symbol.iter().enumerate() {
+        if !byte.is_ascii_alphabetic() {
+            return None;
+        }
+        let letter = if i == 0 { byte.to_ascii_uppercase() } else { byte.to_ascii_lowercase() };
+        text.push(char::from(letter));
+    }
+    (!text.is_empty() && appearance(&text).is_element).then_some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(name: &[u8; 4], residue: &str) -> String {
+        symbol(*name, *b"  ", Residue::of(residue)).0
+    }
+
+    #[test]
+    fn by_the_columns_of_the_symbol() {
+        for (field, wanted) in
+            [(b" C", "C"), (b"FE", "Fe"), (b"Cl", "Cl"), (b"N ", "N"), (b" D", "D")]
+        {
+            assert_eq!(symbol(*b" X1 ", *field, Residue::Other), (wanted.to_owned(), true));
+        }
+    }
+
+    #[test]
+    fn by_the_name_of_the_atom() {
+        for (name, residue, wanted) in [
+            (b" CA ", "ALA", "C"),
+            (b"CA  ", "ALA", "C"),
+            (b"CA  ", "CA", "Ca"),
+            (b" CA ", "LIG", "C"),
+            (b"FE  ", "HEM", "Fe"),
+            (b" FE ", "LIG", "F"),
+            (b" MG ", "MG", "Mg"),
+            (b"HH11", "ARG", "H"),
+            (b"HG11", "LIG", "H"),
+            (b"HG  ", "HG", "Hg"),
+            (b"HG  ", "SER", "H"),
+            (b"1HB ", "LIG", "H"),
+            (b"1HB ", "ALA", "H"),
+            (b"HO5'", "DA", "H"),
+            (b"SE  ", "MSE", "Se"),
+            (b"NE2 ", "HIS", "N"),
+            (b"CL1 ", "LIG", "Cl"),
+            (b"C10A", "LIG", "C"),
+            (b"OXT ", "LIG", "O"),
+            (b"O   ", "HOH", "O"),
+            (b"ZN  ", " ZN", "Zn"),
+            (b" P  ", "LIG", "P"),
+        ] {
+            let text = String::from_utf8_lossy(name);
+            assert_eq!(named(name, residue), wanted, "{text} of {residue}");
+        }
+    }
+
+    #[test]
+    fn alpha_carbons_are_carbon_whatever_the_symbol_says() {
+        assert_eq!(symbol(*b"CA  ", *b"CA", Residue::of("GLY")).0, "C");
+        assert_eq!(symbol(*b"CA  ", *b"CA", Residue::of("CA")).0, "Ca");
+    }
+
+    #[test]
+    fn what_is_not_an_element_keeps_its_name() {
+        for (name, field, wanted) in [
+            (b" X  ", b" X", "X"),
+            (b" QQ ", b"  ", "QQ"),
+            (b"J1  ", b"17", "J1"),
+            (b"J1  ", b"ZZ", "ZZ"),
+            (b"1234", b"12", "X"),
+            (b"    ", b"  ", "X"),
+        ] {
+            assert_eq!(symbol(*name, *field, Residue::Other), (wanted.to_owned(), false));
+        }
+    }
+}

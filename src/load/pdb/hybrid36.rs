@@ -1,0 +1,61 @@
+//! Residue numbers of four characters, also beyond 9999.
+//!
+//! Hybrid-36 (R. W. Grosse-Kunstleve, `cci.lbl.gov/hybrid_36`): after 9999 come A000 to ZZZZ, where every
+//! character is a digit of base 36, and then a000 to zzzz.
+
+/// How many numbers of four digits begin with one given digit in base 36.
+const BLOCK: i32 = 36 * 36 * 36;
+
+/// The number that a field without blanks around it holds.
+pub(super) fn decode(text: &str) -> Option<i32> {
+    match *text.as_bytes() {
+        [first @ b'A'..=b'Z', b, c, d] => {
+            base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000)
+        }
+        [first @ b'a'..=b'z', b, c, d] => {
+            base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000)
+        }
+        _ => text.parse().ok(),
+    }
+}
+
+/// The number with the letters from `ten` on as the digits from 10 on.
+fn base36(digits: [u8; 4], ten: u8) -> Option<i32> {
+    digits.into_iter().try_fold(0, |number, digit| {
+        let value = match digit {
+            b'0'..=b'9' => digit - b'0',
+            _ => digit.checked_sub(ten).filter(|letter| *letter < 26)? + 10,
+        };
+        Some(number * 36 + i32::from(value))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decode;
+
+    #[test]
+    fn decimal_then_capitals_then_small_letters() {
+        for (text, number) in [
+            ("0", 0),
+            ("-999", -999),
+            ("9999", 9999),
+            ("A000", 10_000),
+            ("A001", 10_001),
+            ("A00Z", 10_035),
+            ("A010", 10_036),
+            ("ZZZZ", 1_223_055),
+            ("a000", 1_223_056),
+            ("zzzz", 2_436_111),
+        ] {
+            assert_eq!(decode(text), Some(number), "{text}");
+        }
+    }
+
+    #[test]
+    fn neither() {
+        for text in ["", "A00", "A0a0", "a0A0", "A 00", "1A00", "A00-", "*", "****", "1.5", "--1"] {
+            assert_eq!(decode(text), None, "{text}");
+        }
+    }
+}

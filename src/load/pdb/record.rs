@@ -1,0 +1,147 @@
+//! Lines, and what stands in which columns of them.
+
+use super::error::PdbError;
+
+/// The records that matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Atom,
+    Hetatm,
+    Cryst1,
+    Model,
+    Endmdl,
+    End,
+    /// Not a record: a name that stands before the atoms of an mmCIF file.
+    AtomSite,
+    Other,
+}
+
+impl Kind {
+    /// The kind of a line, by its name in columns 1 to 6.
+    ///
+    /// A serial number of six digits may begin in column 6.
+    pub(super) fn of(line: &[u8]) -> Self {
+        let is = |name: &[u8]| {
+            line.strip_prefix(name).is_some_and(|rest| matches!(rest.first(), None | Some(b' ')))
+        };
+        // Most lines of most files are atoms, and most others are known by their first letter.
+        match line.first() {
+            Some(b'A') if is(b"ATOM") => Self::Atom,
+            Some(b'H') if line.starts_with(b"HETATM") => Self::Hetatm,
+            Some(b'C') if line.starts_with(b"CRYST1") => Self::Cryst1,
+            Some(b'M') if is(b"MODEL") => Self::Model,
+            Some(b'E') if is(b"ENDMDL") => Self::Endmdl,
+            Some(b'E') if is(b"END") => Self::End,
+            Some(b'_') if line.starts_with(b"_atom_site.") => Self::AtomSite,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// The lines of a file without their ends, with their numbers from 1.
+pub(super) struct Lines<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes, line: 0 }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        self.line += 1;
+        let end = self.rest.iter().position(|byte| *byte == b'\n').unwrap_or(self.rest.len());
+        let (text, rest) = self.rest.split_at_checked(end)?;
+        self.rest = rest.strip_prefix(b"\n").unwrap_or(rest);
+        Some((self.line, text.strip_suffix(b"\r").unwrap_or(text)))
+    }
+}
+
+/// One line that is read. Columns count from 1, and the last one of a field belongs to it.
+pub(super) struct Record<'a> {
+    pub(super) line: usize,
+    pub(super) name: &'static str,
+    text: &'a str,
+}
+
+impl<'a> Record<'a> {
+    pub(super) fn new(line: usize, bytes: &'a [u8], name: &'static str) -> Result<Self, PdbError> {
+        // What stands behind these columns does not belong to the format.
+        let bytes = bytes.get(..80).unwrap_or(bytes);
+        match std::str::from_utf8(bytes) {
+            Ok(text) if text.is_ascii() => Ok(Self { line, name, text }),
+            _ => {
+                let place = bytes.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
+                let byte = bytes.get(place).copied().unwrap_or_default();
+                Err(PdbError::NotAscii { line, column: place + 1, byte })
+            }
+        }
+    }
+
+    /// Refuses a line that ends before one of the fields: what it is, its first and its last column.
+    pub(super) fn must_have(
+        &self,
+        fields: &[(&'static str, usize, usize)],
+    ) -> Result<(), PdbError> {
+        let columns = self.text.len();
+        match fields.iter().find(|(_, _, last)| *last > columns) {
+            None => Ok(()),
+            Some(&(what, first, last)) => Err(PdbError::Short {
+                line: self.line,
+                columns,
+                record: self.name,
+                what,
+                first,
+                last,
+            }),
+        }
+    }
+
+    /// The text of a field without the blanks around it; empty where the line has ended.
+    pub(super) fn text(&self, first: usize, last: usize) -> &'a str {
+        let last = last.min(self.text.len());
+        self.text.get(first - 1..last).unwrap_or_default().trim_ascii()
+    }
+
+    /// The bytes of a field with the blanks around it; blanks where the line has ended.
+    pub(super) fn bytes<const WIDTH: usize>(&self, first: usize) -> [u8; WIDTH] {
+        let rest = self.text.as_bytes().get(first - 1..).unwrap_or_default();
+        rest.first_chunk().copied().unwrap_or_else(|| {
+            let mut field = [b' '; WIDTH];
+            field.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
+            field
+        })
+    }
+
+    pub(super) fn number(
+        &self,
+        what: &'static str,
+        first: usize,
+        last: usize,
+    ) -> Result<f64, PdbError> {
+        let text = self.text(first, last);
+        text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+            let found = text.escape_debug().to_string();
+            PdbError::Number { line: self.line, first, last, what, found }
+        })
+    }
+
+    /// The number of a field that may be blank.
+    pub(super) fn number_or(
+        &self,
+        absent: f64,
+        what: &'static str,
+        first: usize,
+        last: usize,
+    ) -> Result<f64, PdbError> {
+        if self.text(first, last).is_empty() { Ok(absent) } else { self.number(what, first, last) }
+    }
+}

@@ -1,0 +1,399 @@
+//! Files made up here.
+
+use super::*;
+use crate::load::elements::appearance;
+use crate::load::{ColumnValues, Labels};
+use crate::points::Points;
+
+/// An atom with what matters to a test; the rest is in its columns, too.
+struct Row {
+    record: &'static str,
+    name: &'static str,
+    letter: char,
+    residue: &'static str,
+    number: &'static str,
+    x: f64,
+    occupancy: f64,
+    symbol: &'static str,
+}
+
+const ROW: Row = Row {
+    record: "ATOM",
+    name: " CA ",
+    letter: ' ',
+    residue: "ALA",
+    number: "1",
+    x: 1.5,
+    occupancy: 1.0,
+    symbol: "C",
+};
+
+impl Row {
+    fn line(&self) -> String {
+        let Self { record, name, letter, residue, number, x, occupancy, symbol } = self;
+        let (y, z, b) = (-2.25, 103.125, 12.5);
+        format!(
+            "{record:<6}   ** {name:4}{letter}{residue:>3} A{number:>4}    \
+             {x:8.3}{y:8.3}{z:8.3}{occupancy:6.2}{b:6.2}          {symbol:>2}  \n"
+        )
+    }
+}
+
+fn file(rows: &[Row]) -> String {
+    rows.iter().map(Row::line).collect()
+}
+
+fn loaded(text: &str) -> Loaded {
+    read(text.as_bytes(), 0).unwrap()
+}
+
+fn error(text: &str) -> String {
+    read(text.as_bytes(), 0).unwrap_err().to_string()
+}
+
+fn labels(loaded: &Loaded, column: &str) -> Vec<String> {
+    match loaded.column(column) {
+        Some(ColumnValues::Labels(Labels { names, indices })) => {
+            indices.iter().map(|index| names[*index as usize].clone()).collect()
+        }
+        other => panic!("{column}: {other:?}"),
+    }
+}
+
+fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
+    match loaded.column(column) {
+        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
+        other => panic!("{column}: {other:?}"),
+    }
+}
+
+fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
+    match &loaded.points {
+        Points::F64(spheres) => spheres,
+        Points::F32(_) => panic!("f32"),
+    }
+}
+
+fn xs(loaded: &Loaded) -> Vec<f64> {
+    spheres(loaded).iter().map(|sphere| sphere[0]).collect()
+}
+
+#[test]
+fn every_column() {
+    let rows = [
+        ROW,
+        Row { record: "HETATM", name: "FE  ", residue: "HEM", number: "A000", symbol: "FE", ..ROW },
+    ];
+    let text = format!("HEADER    X\nREMARK ATOM\n{}TER\nEND\n", file(&rows));
+    let loaded = loaded(&text);
+    let (carbon, iron) = (appearance("C"), appearance("Fe"));
+    assert_eq!(
+        spheres(&loaded),
+        [[1.5, -2.25, 103.125, carbon.radius], [1.5, -2.25, 103.125, iron.radius]]
+    );
+    assert_eq!(loaded.colors, Some(vec![carbon.color, iron.color]));
+    assert_eq!(labels(&loaded, "species"), ["C", "Fe"]);
+    assert_eq!(labels(&loaded, "name"), ["CA", "FE"]);
+    assert_eq!(labels(&loaded, "residue"), ["ALA", "HEM"]);
+    assert_eq!(labels(&loaded, "chain"), ["A", "A"]);
+    assert_eq!(labels(&loaded, "record"), ["ATOM", "HETATM"]);
+    assert_eq!(numbers(&loaded, "residue_number"), [1.0, 10_000.0]);
+    assert_eq!(numbers(&loaded, "b_factor"), [12.5, 12.5]);
+    assert_eq!(numbers(&loaded, "occupancy"), [1.0, 1.0]);
+    assert_eq!((loaded.cell, loaded.frames), (None, Some(1)));
+    assert_eq!(loaded.notes, [""; 0]);
+}
+
+#[test]
+fn one_name_in_two_places_of_its_field() {
+    let loaded = loaded(&file(&[ROW, Row { name: "CA  ", ..ROW }]));
+    let Some(ColumnValues::Labels(Labels { names, .. })) = loaded.column("name") else { panic!() };
+    assert_eq!(names, &["CA"]);
+}
+
+#[test]
+fn line_ends_blanks_marks_and_short_lines() {
+    let text = file(&[ROW, ROW]);
+    let wanted = loaded(&text);
+    for same in [
+        text.replace('\n', "\r\n"),
+        format!("\u{feff}{text}"),
+        text.trim_end().to_owned(),
+        text.replace('\n', "          \n"),
+        format!("\n\n{text}\n\n"),
+        text.replace("   **", "A0000"),
+        text.replace("ATOM     **", "ATOM 100000"),
+    ] {
+        assert_eq!(loaded(&same), wanted, "{same:?}");
+    }
+    let cut: String = text.lines().map(|line| format!("{}\n", &line[..54])).collect();
+    let cut = loaded(&cut);
+    assert_eq!(cut.points, wanted.points);
+    assert_eq!(numbers(&cut, "occupancy"), [1.0, 1.0]);
+    assert_eq!(numbers(&cut, "b_factor"), [0.0, 0.0]);
+}
+
+#[test]
+fn unknown_elements_are_noted() {
+    let named = |symbol| Row { name: " J  ", residue: "LIG", symbol, ..ROW };
+    let one = loaded(&file(&[named("X"), ROW, named("X")]));
+    assert_eq!(one.notes, ["not chemical elements: X; drawn in pink, with radius 2"]);
+    assert!((spheres(&one)[0][3] - 2.0).abs() < 1e-12);
+    let many = ["X", "QA", "QB", "QC", "QD", "QE", "QF", "QG"].map(named);
+    assert_eq!(
+        loaded(&file(&many)).notes,
+        ["not chemical elements: X, QA, QB, QC, QD and 3 more; drawn in pink, with radius 2"]
+    );
+}
+
+#[test]
+fn alternate_locations() {
+    let at = |name, letter, occupancy, x| Row { name, letter, occupancy, x, ..ROW };
+    let rows = [
+        at(" N  ", ' ', 1.0, 0.0),
+        at(" CA ", 'A', 0.4, 1.0),
+        at(" CA ", 'B', 0.6, 2.0),
+        at(" CB ", 'A', 0.4, 3.0),
+        at(" CB ", 'B', 0.6, 4.0),
+        // Only at the lesser location.
+        at(" CG ", 'A', 0.4, 5.0),
+        // The blank precedes the others.
+        at(" N  ", 'B', 0.6, 6.0),
+        // A tie in another residue.
+        Row { number: "2", ..at(" CA ", 'B', 0.5, 7.0) },
+        Row { number: "2", ..at(" CA ", 'A', 0.5, 8.0) },
+        // One residue or another.
+        Row { number: "3", residue: "SER", ..at(" CA ", 'A', 0.3, 9.0) },
+        Row { number: "3", residue: "SER", ..at(" OG ", 'A', 0.3, 10.0) },
+        Row { number: "3", residue: "THR", ..at(" CA ", 'B', 0.7, 11.0) },
+    ];
+    let all = loaded(&file(&rows));
+    assert_eq!(xs(&all), [0.0, 2.0, 4.0, 5.0, 7.0, 11.0]);
+    assert_eq!(labels(&all, "residue"), ["ALA", "ALA", "ALA", "ALA", "ALA", "THR"]);
+    let Some(ColumnValues::Labels(Labels { names, .. })) = all.column("residue") else { panic!() };
+    assert_eq!(names, &["ALA", "THR"]);
+    let note = "left out, because they are alternate locations of others; those with the highest \
+                occupancy are kept";
+    assert_eq!(all.notes, [format!("6 atoms are {note}")]);
+    assert_eq!(loaded(&file(&rows[1..3])).notes, [format!("1 atom is {note}")]);
+    assert_eq!(loaded(&file(&rows[1..2])).notes, [""; 0]);
+}
+
+#[test]
+fn models() {
+    let second = file(&[Row { x: 2.0, ..ROW }, Row { x: 3.0, ..ROW }]);
+    let text = format!(
+        "{}MODEL        1\n{}ENDMDL\nCRYST1    2.000    3.000    4.000  90.00  90.00  90.00 P 1\n\
+         MODEL        2\n{second}ENDMDL\nMODEL 3\nENDMDL\nEND\n",
+        "CRYST1    1.000    1.000    1.000  90.00  90.00  90.00 P 1\n",
+        file(&[ROW])
+    );
+    let first = loaded(&text);
+    assert_eq!((xs(&first), first.cell, first.frames), (vec![1.5], None, Some(3)));
+    let second = read(text.as_bytes(), 1).unwrap();
+    assert_eq!((xs(&second), second.frames), (vec![2.0, 3.0], Some(3)));
+    assert_eq!(second.cell, Some([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]));
+    let wrong = |frame| read(text.as_bytes(), frame).unwrap_err().to_string();
+    assert_eq!(
+        wrong(2),
+        "line 10: frame 2 is the model that begins here, which has no ATOM or HETATM records; choose \
+         another frame"
+    );
+    assert_eq!(wrong(3), "there is no frame 3; the file has 3 models, counted from 0");
+    assert_eq!(
+        read(file(&[ROW]).as_bytes(), 1).unwrap_err().to_string(),
+        "there is no frame 1; the file has 1 model, counted from 0"
+    );
+}
+
+#[test]
+fn mixed_models() {
+    let atom = ROW.line();
+    let outside = |line, model| {
+        format!(
+            "line {line}: mixed models: this atom does not belong to a model, although the file has MODEL \
+             records (the first on line {model}); every atom must then stand between MODEL and ENDMDL"
+        )
+    };
+    assert_eq!(error(&format!("{atom}MODEL 1\n{atom}ENDMDL\n")), outside(1, 2));
+    assert_eq!(error(&format!("MODEL 1\n{atom}ENDMDL\n{atom}")), outside(4, 1));
+    assert_eq!(
+        error(&format!("MODEL 1\n{atom}MODEL 2\n{atom}ENDMDL\n")),
+        "line 3: mixed models: this MODEL record is inside the model that begins on line 1; ENDMDL must \
+         end a model before another begins"
+    );
+}
+
+#[test]
+fn atoms_behind_the_end_are_noted() {
+    let atom = ROW.line();
+    for end in ["END", "ENDMDL", "END   "] {
+        let loaded = loaded(&format!("{atom}{end}\n{atom}{atom}{end}\n"));
+        assert_eq!(xs(&loaded), [1.5]);
+        assert_eq!(
+            loaded.notes,
+            [
+                "the atoms from line 3 on are left out, because they follow the end of the structure; \
+              MODEL and ENDMDL must enclose each of several frames"
+            ]
+        );
+    }
+}
+
+fn cell(fields: &str) -> Result<Option<[[f64; 3]; 3]>, String> {
+    let text = format!("CRYST1{fields}\n{}", ROW.line());
+    read(text.as_bytes(), 0).map(|loaded| loaded.cell).map_err(|error| error.to_string())
+}
+
+#[test]
+fn cells() {
+    let edges = cell("   10.000   20.000   30.000  80.00 100.00 110.00 P 1").unwrap().unwrap();
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let [a, b, c] = edges;
+    for (found, wanted) in [
+        (dot(a, a).sqrt(), 10.0),
+        (dot(b, b).sqrt(), 20.0),
+        (dot(c, c).sqrt(), 30.0),
+        (dot(b, c) / 600.0, 80_f64.to_radians().cos()),
+        (dot(a, c) / 300.0, 100_f64.to_radians().cos()),
+        (dot(a, b) / 200.0, 110_f64.to_radians().cos()),
+    ] {
+        assert!((found - wanted).abs() < 1e-12, "{found} is not {wanted}");
+    }
+    assert!([a[1], a[2], b[2]].iter().all(|zero| zero.abs() < 1e-12));
+    assert_eq!(cell("    1.000    1.000    1.000  90.00  90.00  90.00"), Ok(None));
+    assert_eq!(cell("    0.000    0.000    0.000   0.00   0.00   0.00"), Ok(None));
+    assert_eq!(
+        cell("    1.000    2.000    3.000  10.00  10.00  90.00").unwrap_err(),
+        "line 1: there is no cell with the edges [1.0, 2.0, 3.0] and the angles [10.0, 10.0, 90.0]; edges \
+         must be longer than 0, and angles in degrees must be those between three edges that are not in \
+         one plane"
+    );
+    assert_eq!(
+        cell("    1.000    2.000    3.000  90.00    abc  90.00").unwrap_err(),
+        "line 1, columns 41-47: the cell's angle beta is `abc`, which is not a finite number; a number \
+         such as 11.104 belongs there"
+    );
+    assert_eq!(
+        cell("    1.000    2.000").unwrap_err(),
+        "line 1: the length of the cell's edge c (columns 25-33) is missing, because the line ends after \
+         24 columns; a CRYST1 record has at least 54 columns"
+    );
+}
+
+#[test]
+fn what_a_short_line_lacks() {
+    let line = ROW.line();
+    for (columns, what) in [
+        (4, "atom name (columns 13-16)"),
+        (19, "residue name (columns 18-20)"),
+        (22, "residue number (columns 23-26)"),
+        (30, "x coordinate (columns 31-38)"),
+        (45, "y coordinate (columns 39-46)"),
+        (53, "z coordinate (columns 47-54)"),
+    ] {
+        assert_eq!(
+            error(&format!("REMARK\n{}\r\n", &line[..columns])),
+            format!(
+                "line 2: the {what} is missing, because the line ends after {columns} columns; an ATOM \
+                 record has at least 54 columns"
+            )
+        );
+    }
+}
+
+#[test]
+fn wrong_numbers() {
+    let put = |first: usize, text: &str| {
+        let mut line = ROW.line();
+        line.replace_range(first - 1..first - 1 + text.len(), text);
+        error(&line)
+    };
+    for (first, text, what) in [
+        (31, "    1,50", "31-38: the x coordinate is `1,50`, which is not a finite number"),
+        (39, "     nan", "39-46: the y coordinate is `nan`, which is not a finite number"),
+        (47, "        ", "47-54: the z coordinate is blank"),
+        (55, "   inf", "55-60: the occupancy is `inf`, which is not a finite number"),
+        (61, "1\t2   ", "61-66: the B-factor is `1\\t2`, which is not a finite number"),
+    ] {
+        let wanted = format!("line 1, columns {what}; a number such as 11.104 belongs there");
+        assert_eq!(put(first, text), wanted);
+    }
+    for (text, what) in [("A0a0", "`A0a0`, which is not a valid residue number"), ("    ", "blank")]
+    {
+        assert_eq!(
+            put(23, text),
+            format!(
+                "line 1, columns 23-26: the residue number is {what}; a number such as 142, or a \
+                 hybrid-36 number such as A000, belongs there"
+            )
+        );
+    }
+}
+
+#[test]
+fn bytes_that_are_not_ascii() {
+    let mut bytes = format!("REMARK caf\u{e9}\n{}", ROW.line()).into_bytes();
+    assert!(read(&bytes, 0).is_ok());
+    let place = bytes.len() - 81 + 13;
+    bytes[place] = 0xe9;
+    assert_eq!(
+        read(&bytes, 0).unwrap_err().to_string(),
+        "line 2, column 14: the byte 0xe9 is not ASCII; ATOM, HETATM and CRYST1 records must be ASCII text"
+    );
+}
+
+#[test]
+fn files_without_atoms() {
+    let none = "there are no ATOM or HETATM records; a PDB file has one for each atom";
+    for text in ["", "\n\n", "HEADER\nEND\n", "MODEL 1\nENDMDL\n", "atom      1\n", "ATOMS\n"] {
+        assert_eq!(error(text), none, "{text:?}");
+    }
+    let atom = "ATOM 1 N N . VAL A 1\n";
+    for start in ["data_X\n#\n", "\n# x\n  DATA_x\n", "loop_\n_atom_site.group_PDB\n"] {
+        assert_eq!(
+            error(&format!("{start}{atom}")),
+            "this is an mmCIF file, not a PDB file; download the entry in PDB format"
+        );
+    }
+}
+
+#[test]
+fn no_input_panics() {
+    let text = format!(
+        "CRYST1   10.000   20.000   30.000  80.00 100.00 110.00 P 1\nMODEL 1\n{}ENDMDL\nMODEL 2\n{}ENDMDL\n",
+        file(&[ROW, Row { letter: 'A', ..ROW }]),
+        file(&[Row { letter: 'B', number: "zzzz", ..ROW }])
+    );
+    (0..text.len()).for_each(|end| drop(read(&text.as_bytes()[..end], 0)));
+    let mut random = fastrand::Rng::with_seed(1);
+    let telling = b" \n\r0Aa.-_\xff\0HE";
+    for _ in 0..5000 {
+        let mut bytes = text.clone().into_bytes();
+        for _ in 0..random.usize(1..6) {
+            let place = random.usize(..bytes.len());
+            match random.u8(..4) {
+                0 => bytes[place] = random.u8(..),
+                1 => bytes[place] = telling[random.usize(..telling.len())],
+                2 => drop(bytes.remove(place)),
+                _ => bytes.insert(place, telling[random.usize(..telling.len())]),
+            }
+        }
+        for frame in 0..3 {
+            if let Ok(loaded) = read(&bytes, frame) {
+                let atoms = loaded.points.len();
+                for column in &loaded.columns {
+                    let values = match &column.values {
+                        ColumnValues::Labels(Labels { names, indices }) => {
+                            assert!(indices.iter().all(|index| (*index as usize) < names.len()));
+                            indices.len()
+                        }
+                        ColumnValues::Numbers(numbers) => numbers.len(),
+                    };
+                    assert_eq!(values, atoms, "{}", column.name);
+                }
+                assert_eq!(loaded.colors.map(|colors| colors.len()), Some(atoms));
+            }
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! What the spheres of a file look like, as a scene file says.
+
+use super::data::{Data, Element};
+use crate::color::LinearRgb;
+use crate::load::{ColumnValues, Format, Labels, Loaded};
+use crate::points::Points;
+use crate::sphere::Sphere;
+
+/// The spheres of a scene's data.
+#[derive(Clone, Debug)]
+pub enum DataSpheres {
+    /// With a colour and a finish for each.
+    Spheres(Vec<Sphere>),
+    /// Centres and radii alone; the scene gives all of them one colour and one finish.
+    Points(Points),
+}
+
+/// Why a scene file cannot say how the spheres of its data look.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DataError {
+    /// The data has no columns of text.
+    #[error("`{key}` concerns atoms ({files}); drop it")]
+    NoAtoms {
+        /// The key.
+        key: &'static str,
+        /// The extensions of files that have such columns.
+        files: String,
+    },
+    /// The data has no such column of text.
+    #[error("`{key}`: there is no column `{column}` of text in {file}; it has {columns}")]
+    NoColumn {
+        /// The key.
+        key: &'static str,
+        /// The column that was named.
+        column: String,
+        /// The file of the data.
+        file: String,
+        /// The columns that there are.
+        columns: String,
+    },
+}
+
+impl Data {
+    /// Gives the spheres of a file the colours, radii and finishes that this scene file says, and leaves out those that
+    /// it names. Also gives notes for the user: of elements, and of values to be left out, that do not occur.
+    ///
+    /// # Errors
+    /// If a column does not exist, or the data has none although columns are named.
+    pub fn apply(&self, mut loaded: Loaded) -> Result<(DataSpheres, Vec<String>), DataError> {
+        let mut notes = std::mem::take(&mut loaded.notes);
+        if loaded.colors.is_none() {
+            self.check_plain()?;
+            loaded.points.scale_radii(self.radius_scale);
+            return Ok((DataSpheres::Points(loaded.points), notes));
+        }
+        let species = ["species".to_owned()];
+        let by = if self.elements_by.is_empty() { &species[..] } else { &self.elements_by };
+        let columns: Vec<&Labels> = by
+            .iter()
+            .map(|column| self.labels(&loaded, "elements_by", column))
+            .collect::<Result<_, _>>()?;
+        let element_of = |name: &String| self.elements.iter().find(|element| element.name == *name);
+        let elements: Vec<Vec<Option<&Element>>> =
+            columns.iter().map(|labels| labels.names.iter().map(element_of).collect()).collect();
+        let element_at = |index: usize| {
+            columns.iter().zip(&elements).find_map(|(labels, elements)| {
+                let value = *labels.indices.get(index)? as usize;
+                elements.get(value).copied().flatten()
+            })
+        };
+        let is_left_out = self.left_out(&loaded, &mut notes)?;
+        let mut spheres = Vec::new();
+        for (index, mut sphere) in loaded.spheres(LinearRgb::WHITE).enumerate() {
+            if is_left_out.get(index).copied().unwrap_or(false) {
+                continue;
+            }
+            let element = element_at(index);
+            sphere.finish = element.map_or(self.finish, |element| element.finish);
+            if let Some(Element { radius, color, .. }) = element {
+                sphere.radius = radius.unwrap_or(sphere.radius);
+                sphere.color = color.unwrap_or(sphere.color);
+            }
+            sphere.radius *= self.radius_scale;
+            spheres.push(sphere);
+        }
+        let occurs = |name: &String| columns.iter().any(|labels| labels.names.contains(name));
+        let absent = self.elements.iter().filter(|element| !occurs(&element.name));
+        notes.extend(absent.map(|element| {
+            format!("`[elements.{}]`: there is no such atom in {}", element.name, self.file)
+        }));
+        Ok((DataSpheres::Spheres(spheres), notes))
+    }
+
+    /// Refuses what has no use for data without columns of text.
+    fn check_plain(&self) -> Result<(), DataError> {
+        let keys = [
+            ("elements", !self.elements.is_empty()),
+            ("elements_by", !self.elements_by.is_empty()),
+            ("leave_out", !self.leave_out.is_empty()),
+        ];
+        match keys.into_iter().find(|(_, is_given)| *is_given) {
+            Some((key, _)) => {
+                let files = Format::extensions_of(|format| format.has_colors);
+                Err(DataError::NoAtoms { key, files })
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn labels<'a>(
+        &self,
+        loaded: &'a Loaded,
+        key: &'static str,
+        column: &str,
+    ) -> Result<&'a Labels, DataError> {
+        loaded.labels(column).ok_or_else(|| {
+            let texts = loaded
+                .columns
+                .iter()
+                .filter(|column| matches!(column.values, ColumnValues::Labels(_)));
+            let columns = texts.map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+            let (column, file) = (column.to_owned(), self.file.clone());
+            DataError::NoColumn { key, column, file, columns }
+        })
+    }
+
+    /// For each sphere, whether it is left out; empty if none is.
+    fn left_out(&self, loaded: &Loaded, notes: &mut Vec<String>) -> Result<Vec<bool>, DataError> {
+        let mut is_left_out = Vec::new();
+        for (column, values) in &self.leave_out {
+            let labels = self.labels(loaded, "leave_out", column)?;
+            is_left_out.resize(loaded.points.len(), false);
+            let is_named: Vec<bool> =
+                labels.names.iter().map(|name| values.contains(name)).collect();
+            for (is_out, index) in is_left_out.iter_mut().zip(&labels.indices) {
+                *is_out |= is_named.get(*index as usize).copied().unwrap_or(false);
+            }
+            let absent = values.iter().filter(|value| !labels.names.contains(value));
+            notes.extend(absent.map(|value| {
+                format!("`leave_out`: there is no {column} {value} in {}", self.file)
+            }));
+        }
+        Ok(is_left_out)
+    }
+}

@@ -1,0 +1,209 @@
+//! Writes pictures with their data layers as OpenEXR: one part, scan lines, ZIP without loss, and every number as
+//! it is in the picture.
+//!
+//! | channels | type | layer |
+//! | --- | --- | --- |
+//! | `R`, `G`, `B` | f32 | color: linear light with the Rec. 709 primaries, no exposure, no tone curve |
+//! | `A` | f32 | alpha if the picture is transparent, and `R`, `G`, `B` are premultiplied by it; else 1 |
+//! | `coverage` | f32 | alpha, also of a picture that is not transparent |
+//! | `Z` | f32 | depth, along the ray; +∞ for a miss |
+//! | `N.X`, `N.Y`, `N.Z` | f32 | normal |
+//! | `P.X`, `P.Y`, `P.Z` | f32 | position |
+//! | `albedo.R`, `albedo.G`, `albedo.B` | f32 | albedo |
+//! | `id` | u32 | id; 4294967295 for a miss |
+//! | `samples` | u32 | samples |
+//! | `variance` | f32 | variance |
+//!
+//! Attributes: `software`, and `adapter` if it is known what rendered.
+
+use std::io::{self, Seek, Write};
+
+use ::exr::block::lines::LineRefMut;
+use ::exr::error::Error;
+use ::exr::image::write::WritableImage;
+use ::exr::image::write::samples::{SamplesWriter, WritableSamples};
+use ::exr::image::{AnyChannel, AnyChannels, Encoding as Storage, Image as ExrImage};
+use ::exr::image::{Blocks, Layer as ExrLayer};
+use ::exr::math::{RoundingMode, Vec2};
+use ::exr::meta::attribute::{AttributeValue, LevelMode, LineOrder, SampleType, Text};
+use ::exr::meta::header::{Header, LayerAttributes};
+use ::exr::prelude::{Compression, SmallVec};
+
+use crate::encoding::Encoding;
+use crate::image::{Image, Layer, LayerSet};
+
+/// Writes a picture: colour and alpha, and those `layers` beside. Of the encoding, only whether it is transparent
+/// concerns this format. `adapter` is what rendered, if that is known.
+///
+/// Nothing is copied: pixels go from the picture to the sink, a few rows at a time.
+///
+/// # Errors
+/// If the picture was rendered without one of the layers, or without alpha and is to be transparent; if the sink
+/// fails.
+pub fn write(
+    picture: &Image,
+    layers: LayerSet,
+    encoding: &Encoding,
+    adapter: Option<&str>,
+    mut sink: impl Write + Seek,
+) -> Result<(), ExrError> {
+    let size = Vec2(picture.width() as usize, picture.height() as usize);
+    let mut attributes = LayerAttributes {
+        software_name: Text::new_or_none(concat!("pinhole ", env!("CARGO_PKG_VERSION"))),
+        ..LayerAttributes::default()
+    };
+    if let Some(adapter) = adapter {
+        let value = AttributeValue::Text(latin(adapter));
+        attributes.other.insert(latin("adapter"), value);
+    }
+    let storage = Storage {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let width = size.0;
+    let channels =
+        planes(picture, layers, encoding.transparent())?.into_iter().map(|(name, samples)| {
+            AnyChannel {
+                name: latin(name),
+                sample_data: Channel { samples, width },
+                quantize_linearly: false,
+                sampling: Vec2(1, 1),
+            }
+        });
+    let channels = AnyChannels::sort(channels.collect());
+    let image = ExrImage::from_layer(ExrLayer::new(size, attributes, storage, channels));
+    image.write().to_buffered(&mut sink)?;
+    Ok(sink.flush()?)
+}
+
+/// Why a picture cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExrError {
+    /// A layer is not part of the image.
+    #[error("the image has no layer {layer}; ask for it when rendering")]
+    MissingLayer {
+        /// Which layer.
+        layer: Layer,
+    },
+    /// The sink's reason.
+    #[error(transparent)]
+    Sink(#[from] io::Error),
+    /// The encoder's reason.
+    #[error("the picture cannot be written as EXR: {message}")]
+    Encoder {
+        /// The reason.
+        message: String,
+    },
+}
+
+impl From<Error> for ExrError {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Io(error) => Self::Sink(error),
+            other => Self::Encoder { message: other.to_string() },
+        }
+    }
+}
+
+/// The format has Latin-1 only.
+fn latin(text: &str) -> Text {
+    let bytes: SmallVec<[u8; 24]> = text.chars().map(|c| u8::try_from(c).unwrap_or(b'?')).collect();
+    Text::from_bytes_unchecked(bytes)
+}
+
+/// A channel's name and samples.
+type Plane<'a> = (&'static str, Samples<'a>);
+
+/// All channels.
+fn planes(
+    picture: &Image,
+    layers: LayerSet,
+    transparent: bool,
+) -> Result<Vec<Plane<'_>>, ExrError> {
+    let missing = |layer| ExrError::MissingLayer { layer };
+    let alpha = match transparent {
+        true => Samples::Numbers(picture.alpha().ok_or(missing(Layer::Alpha))?),
+        false => Samples::One,
+    };
+    let mut planes = vec![("A", alpha)];
+    for layer in layers.iter() {
+        planes.extend(planes_of(picture, layer).ok_or(missing(layer))?);
+    }
+    Ok(planes)
+}
+
+/// The channels of a layer, if the picture has it.
+fn planes_of(picture: &Image, layer: Layer) -> Option<Vec<Plane<'_>>> {
+    let planes = match layer {
+        Layer::Color => vectors(["R", "G", "B"], picture.color()),
+        Layer::Alpha => vec![("coverage", Samples::Numbers(picture.alpha()?))],
+        Layer::Depth => vec![("Z", Samples::Numbers(picture.depth()?))],
+        Layer::Normal => vectors(["N.X", "N.Y", "N.Z"], picture.normal()?),
+        Layer::Position => vectors(["P.X", "P.Y", "P.Z"], picture.position()?),
+        Layer::Albedo => vectors(["albedo.R", "albedo.G", "albedo.B"], picture.albedo()?),
+        Layer::Id => vec![("id", Samples::Counts(picture.id()?))],
+        Layer::Samples => vec![("samples", Samples::Counts(picture.samples()?))],
+        Layer::Variance => vec![("variance", Samples::Numbers(picture.variance()?))],
+    };
+    Some(planes)
+}
+
+fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a>> {
+    names
+        .into_iter()
+        .enumerate()
+        .map(|(place, name)| (name, Samples::Components(values, place)))
+        .collect()
+}
+
+/// Where a channel's samples are in a picture.
+#[derive(Clone, Copy)]
+enum Samples<'a> {
+    /// 1 everywhere.
+    One,
+    Numbers(&'a [f32]),
+    Components(&'a [[f32; 3]], usize),
+    Counts(&'a [u32]),
+}
+
+/// Samples, and how many a row has.
+#[derive(Clone, Copy)]
+struct Channel<'a> {
+    samples: Samples<'a>,
+    width: usize,
+}
+
+impl<'s, 'a: 's> WritableSamples<'s> for Channel<'a> {
+    type Writer = Self;
+
+    fn sample_type(&self) -> SampleType {
+        match self.samples {
+            Samples::Counts(_) => SampleType::U32,
+            _ => SampleType::F32,
+        }
+    }
+
+    fn infer_level_modes(&self) -> (LevelMode, RoundingMode) {
+        (LevelMode::Singular, RoundingMode::Down)
+    }
+
+    fn create_samples_writer(&'s self, _: &Header) -> Self {
+        *self
+    }
+}
+
+impl SamplesWriter for Channel<'_> {
+    fn extract_line(&self, line: LineRefMut<'_>) {
+        let Vec2(x, y) = line.location.position;
+        let start = y * self.width + x;
+        // The line's memory is as long as its samples, so nothing can fail.
+        let _ = match self.samples {
+            Samples::One => line.write_samples(|_| 1.0_f32),
+            Samples::Numbers(values) => line.write_samples(|i| values[start + i]),
+            Samples::Components(values, place) => line.write_samples(|i| values[start + i][place]),
+            Samples::Counts(values) => line.write_samples(|i| values[start + i]),
+        };
+    }
+}

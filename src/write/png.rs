@@ -1,0 +1,129 @@
+//! Writes sRGB PNG.
+
+use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
+
+use crate::color::{to_srgb8, to_srgb16};
+use crate::encoding::{Bits, Encoding};
+use crate::image::Image;
+use crate::parallel::for_each;
+
+/// How many pixels a thread converts at a time.
+const CHUNK: usize = 1 << 14;
+
+/// The picture as a PNG file in sRGB, with 8 or 16 bits: RGB, or RGBA if it is transparent. Colours are exposed,
+/// go through the tone curve and are encoded; what lies beyond [0, 1] then is clamped.
+///
+/// PNG wants colours that are not premultiplied, so those of a transparent picture are divided by alpha first, and
+/// are black where alpha is zero.
+///
+/// # Errors
+/// If the picture is to be transparent and was rendered without alpha; if it cannot be encoded, which for sizes
+/// that PNG allows does not happen.
+pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
+    let alpha = match encoding.transparent() {
+        true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
+        false => None,
+    };
+    let color = picture.color();
+    let (depth, samples) = match encoding.bits() {
+        Bits::Eight => {
+            let alpha_sample = |alpha| [(255.0 * unit(alpha)).round() as u8];
+            let rgb = |rgb| to_srgb8(encoding.display(rgb));
+            (BitDepth::Eight, samples(color, alpha, rgb, alpha_sample))
+        }
+        Bits::Sixteen => {
+            let big_endian = |sample: u16| sample.to_be_bytes();
+            let alpha_sample = |alpha| big_endian((65535.0 * unit(alpha)).round() as u16);
+            let rgb = |rgb| {
+                let [[a, b], [c, d], [e, f]] = to_srgb16(encoding.display(rgb)).map(big_endian);
+                [a, b, c, d, e, f]
+            };
+            (BitDepth::Sixteen, samples(color, alpha, rgb, alpha_sample))
+        }
+    };
+    let color_type = if alpha.is_some() { ColorType::Rgba } else { ColorType::Rgb };
+    write([picture.width(), picture.height()], color_type, depth, &samples)
+}
+
+/// A PNG file of an image of width and height `size`, whose pixels have three bytes each, row by row from the top.
+///
+/// # Errors
+/// If there are not as many bytes as that takes.
+pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
+    write(size, ColorType::Rgb, BitDepth::Eight, rgb)
+}
+
+fn write(
+    [width, height]: [u32; 2],
+    color: ColorType,
+    depth: BitDepth,
+    samples: &[u8],
+) -> Result<Vec<u8>, PngError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    let failed = |error: png::EncodingError| PngError::Encoder { message: error.to_string() };
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(samples).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
+/// Why a picture cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PngError {
+    /// What tells how transparent it is, is missing.
+    #[error("a transparent picture needs the layer alpha; ask for it when rendering")]
+    MissingAlpha,
+    /// The encoder's reason.
+    #[error("the picture cannot be written as PNG: {message}")]
+    Encoder {
+        /// The reason.
+        message: String,
+    },
+}
+
+/// The bytes of all pixels: `RGB` of a colour and, where there is alpha, `A` of that.
+fn samples<const RGB: usize, const A: usize>(
+    color: &[[f32; 3]],
+    alpha: Option<&[f32]>,
+    of_color: impl Fn([f32; 3]) -> [u8; RGB] + Sync + Send,
+    of_alpha: impl Fn(f32) -> [u8; A] + Sync + Send,
+) -> Vec<u8> {
+    let size = RGB + if alpha.is_some() { A } else { 0 };
+    let mut bytes = vec![0; size * color.len()];
+    let chunks = bytes.chunks_mut(size * CHUNK).zip(color.chunks(CHUNK)).enumerate();
+    for_each(chunks.collect(), |(place, (bytes, color))| {
+        let start = place * CHUNK;
+        let (mut before, mut encoded) = ([0; 3], of_color([0.0; 3]));
+        for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
+            let alpha = alpha.map(|alpha| alpha[start + index]);
+            let rgb = alpha.map_or(*rgb, |alpha| divided(*rgb, alpha));
+            // Most of many pictures is background.
+            let bits = rgb.map(f32::to_bits);
+            if bits != before {
+                (before, encoded) = (bits, of_color(rgb));
+            }
+            let (target, rest) = pixel.split_at_mut(RGB);
+            target.copy_from_slice(&encoded);
+            if let Some(alpha) = alpha {
+                rest.copy_from_slice(&of_alpha(alpha));
+            }
+        }
+    });
+    bytes
+}
+
+/// What was premultiplied, as it was before.
+fn divided(rgb: [f32; 3], alpha: f32) -> [f32; 3] {
+    if alpha > 0.0 { rgb.map(|x| x / alpha) } else { [0.0; 3] }
+}
+
+fn unit(alpha: f32) -> f32 {
+    alpha.clamp(0.0, 1.0)
+}
