@@ -1,18 +1,33 @@
 #!/usr/bin/env bash
-# Runs every test. Needs Rust. On Debian and Ubuntu it first installs what else is missing: a linker, and
-# Mesa's software Vulkan driver if there is no Vulkan driver at all. Elsewhere it says what to install.
+# Runs the tests. Needs Rust, a linker and, for the tests on an adapter, a Vulkan driver; on Debian and Ubuntu it installs
+# the last two if they are missing and it runs as root. It never calls sudo unless it is asked to.
 #
-#   scripts/test.sh             all tests
-#   scripts/test.sh --no-gpu    those that need no adapter; the others count as ignored
+#   scripts/test.sh              all tests
+#   scripts/test.sh --quick      units and the program without an adapter: after a small change, within a minute
+#   scripts/test.sh --no-gpu     all that need no adapter; the others count as ignored
+#   scripts/test.sh --install    may call sudo to install what is missing; also before another of these
 #
 # What follows is handed to `cargo test`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [ "${1:-}" = --no-gpu ]; then
+may_call_sudo=
+if [ "${1:-}" = --install ]; then
     shift
-    export PINHOLE_NO_GPU_TESTS=1
+    may_call_sudo=1
 fi
+scope=()
+case "${1:-}" in
+    --quick)
+        shift
+        export PINHOLE_NO_GPU_TESTS=1
+        scope=(--workspace --lib --bins --test program)
+        ;;
+    --no-gpu)
+        shift
+        export PINHOLE_NO_GPU_TESTS=1
+        ;;
+esac
 
 has_vulkan_driver() {
     # Where the loader looks for drivers (VK_DRIVER_FILES comes before all of them).
@@ -39,10 +54,11 @@ install() {
         exit 1
     fi
     if [ "$(id -u)" -ne 0 ]; then
-        command -v sudo >/dev/null || {
-            echo "$what is missing: as root, apt-get install $*" >&2
+        if [ -z "$may_call_sudo" ] || ! command -v sudo >/dev/null; then
+            echo "$what is missing. Install it with: sudo apt-get install $*" >&2
+            echo "or have this script do it: scripts/test.sh --install" >&2
             exit 1
-        }
+        fi
         as_root=(sudo)
     fi
     echo "$what is missing: installing $* with apt-get"
@@ -71,4 +87,4 @@ if [ -z "${PINHOLE_NO_GPU_TESTS:-}" ] && [ "$(uname -s)" = Linux ]; then
     fi
 fi
 
-exec cargo test "$@"
+exec cargo test "${scope[@]}" "$@"

@@ -29,7 +29,7 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `npy`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
+//! and the CPU reference on all cores; `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
 //! writers; `run-file` keeps what a device rendered; `all-formats` is all of these. An embedder wants
 //! `default-features = false, features = ["gpu"]`. The program is the package `pinhole-cli`.
 //!
@@ -62,8 +62,8 @@ pub mod generate;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
-pub mod io;
 pub mod lighting;
+pub mod load;
 pub mod material;
 pub mod math;
 mod outline;
@@ -81,6 +81,7 @@ pub mod sphere;
 pub mod text;
 pub mod tone;
 pub mod verify;
+pub mod write;
 
 pub use camera::View;
 pub use color::LinearRgb;

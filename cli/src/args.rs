@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::camera::CameraArgs;
-use super::data::DataFormat;
+use super::data::format_parser;
 use super::generate::kinds;
 use super::light::LightArgs;
 use super::patience::PatienceArgs;
 use pinhole::accel::AccelChoice;
+use pinhole::load::Format;
 use pinhole::tone::ToneCurve;
 
 /// Ray traces spheres with compute shaders, without a display.
@@ -124,7 +125,7 @@ impl From<Tone> for ToneCurve {
 /// What is shown, and from where. [`super::input::Source`] checks it.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.toml), or a data file (.xyz, .extxyz, .npy, .npz; .bin with --format), which is framed by
+    /// A scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .npy, .npz; .bin with --format), which is framed by
     /// itself
     #[arg(value_name = "SCENE_OR_DATA")]
     pub(super) path: PathBuf,
@@ -136,8 +137,8 @@ pub(super) struct InputArgs {
 #[derive(Debug, Args)]
 pub(super) struct ViewArgs {
     /// What a data file is, whatever its extension says
-    #[arg(long, value_enum)]
-    pub(super) format: Option<DataFormat>,
+    #[arg(long, value_parser = format_parser())]
+    pub(super) format: Option<&'static Format>,
     /// The radius of all spheres of an array of shape (n, 3)
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(super) radius: Option<f64>,
@@ -359,8 +360,8 @@ pub(super) struct BenchArgs {
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
     /// What the data files are, whatever their extensions say
-    #[arg(long)]
-    pub(super) format: Option<DataFormat>,
+    #[arg(long, value_parser = format_parser())]
+    pub(super) format: Option<&'static Format>,
     /// The radius of all spheres of arrays of shape (n, 3)
     #[arg(long, value_name = "R")]
     pub(super) radius: Option<f64>,

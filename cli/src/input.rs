@@ -8,7 +8,7 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
-use super::data::{Data, DataFormat, DataOptions, as_usage};
+use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
 use super::light::{self, LightFlags};
 use super::memory;
@@ -18,10 +18,10 @@ use pinhole::color::LinearRgb;
 use pinhole::encoding::Encoding;
 use pinhole::environment::Environment;
 use pinhole::film::Film;
-use pinhole::io::{environment, xyz};
+use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::{DEFAULT_COLOR, IntegratorKind, SceneFile};
+use pinhole::scene_file::{DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
 
 /// Everything that a render needs.
 pub(super) struct Input {
@@ -53,13 +53,15 @@ impl Input {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Scene,
-    Data(DataFormat),
+    Data(&'static load::Format),
 }
 
 impl Format {
     /// The format that an extension stands for.
     fn of(path: &Path) -> Result<Self> {
-        match (DataFormat::of(path), extension(path).as_deref()) {
+        let extension = extension(path);
+        let format = extension.as_deref().and_then(load::Format::of_extension);
+        match (format, extension.as_deref()) {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
             (None, Some("bin")) => bail!(
@@ -69,8 +71,9 @@ impl Format {
             ),
             _ => bail!(
                 "{}: the extension names no format that can be read; there are .toml (scene) and \
-                 .xyz, .extxyz, .npy, .npz (data), and .bin with --format raw-f32x4",
-                path.display()
+                 {} (data), and .bin with --format raw-f32x4",
+                path.display(),
+                load::Format::extensions_of(|_| true)
             ),
         }
     }
@@ -175,12 +178,12 @@ impl Source {
             return self.scene_from_text(&text);
         };
         let bytes = read(path)?;
-        let (data, mut notes) =
-            Data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        let mut loaded = data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        let mut notes = std::mem::take(&mut loaded.notes);
         drop(bytes);
         let place = || path.display().to_string();
         let (film, size_from) = self.film(Film::default())?;
-        let scene = data.scene(self.options.color.unwrap_or_else(default_color));
+        let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
         let scene = scene.with_context(place)?;
         if scene.is_empty() {
             notes.push(format!("{}: there are no spheres in it", path.display()));
@@ -206,10 +209,8 @@ impl Source {
         let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
-            Data::Spheres(spheres) | Data::Atoms(xyz::Frame { spheres, .. }) => {
-                file.scene(&spheres)
-            }
-            Data::Points(points) => file.scene_with_points(points, color),
+            DataSpheres::Spheres(spheres) => file.scene(&spheres),
+            DataSpheres::Points(points) => file.scene_with_points(points, color),
         };
         let scene = scene.with_context(place)?;
         let (camera, eyes) = match &self.camera {
@@ -240,7 +241,7 @@ impl Source {
     }
 
     /// The data of a scene file, its colour if it has none, and notes.
-    fn data_of(&self, file: &SceneFile) -> Result<(Data, LinearRgb, Vec<String>), Failure> {
+    fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
         let flags = self.options;
         let Some(data) = file.data() else {
             let given = [
@@ -253,19 +254,21 @@ impl Source {
                     "{}: {flag} needs a scene with `data`, and this scene has none",
                     self.path.display()
                 ))),
-                None => Ok((Data::Spheres(Vec::new()), default_color(), Vec::new())),
+                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
             };
         };
         let path = self.beside(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
-        let Some(format) = DataFormat::of(&path) else {
-            let problem = if extension(&path).as_deref() == Some("toml") {
+        let extension = extension(&path);
+        let Some(format) = extension.as_deref().and_then(load::Format::of_extension) else {
+            let problem = if extension.as_deref() == Some("toml") {
                 anyhow!("it names another scene file")
             } else {
                 anyhow!(
                     "{}: the extension names no format that a scene can use; \
-                     there are .xyz, .extxyz, .npy, .npz",
-                    path.display()
+                     there are {}",
+                    path.display(),
+                    load::Format::extensions_of(|_| true)
                 )
             };
             return Err(problem.context(in_scene()).into());
@@ -275,10 +278,9 @@ impl Source {
         keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
         let options = flags.or(keys);
         let bytes = read(&path).with_context(in_scene)?;
-        let (mut spheres, mut notes) =
-            Data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
-        notes.extend(spheres.dress(data).map_err(|message| anyhow!(message).context(in_scene()))?);
-        spheres.scale_radii(data.radius_scale);
+        let loaded =
+            data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
         Ok((spheres, options.color.unwrap_or_else(default_color), notes))
     }
 

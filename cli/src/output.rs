@@ -11,7 +11,7 @@ use tempfile::NamedTempFile;
 use super::failure::Failure;
 use super::input::extension;
 use super::interrupt;
-use pinhole::io::{npy, raw};
+use pinhole::write::{npy, raw};
 
 /// Refuses one file for two outputs.
 pub(super) fn check_distinct<'a>(

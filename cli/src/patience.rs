@@ -26,7 +26,7 @@ pub(super) struct PatienceArgs {
     /// Take samples until the noise is at most this part of the light, such as 0.01, up to --samples
     #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// Of a lit picture, on Ctrl-C write what the samples so far give, and with --time wait for one of every pixel; a
+    /// On Ctrl-C, write what the samples of a lit picture give so far; with --time, wait until every pixel has one. A
     /// second Ctrl-C writes nothing
     #[arg(long)]
     keep_partial: bool,

@@ -13,7 +13,7 @@ use super::progress;
 use super::speak::answer;
 use pinhole::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
-use pinhole::io::{exr, npy, png};
+use pinhole::write::{exr, npy, png};
 
 /// As what a picture is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

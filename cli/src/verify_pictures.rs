@@ -4,9 +4,9 @@ use anyhow::Result;
 
 use pinhole::color::to_srgb8;
 use pinhole::image::NO_ID;
-use pinhole::io::png;
 use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, Verdict};
+use pinhole::write::png;
 use rayon::prelude::*;
 
 /// Pictures that are shown have no longer side than this.

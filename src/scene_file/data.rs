@@ -11,7 +11,6 @@ use super::value::ColorValue;
 use crate::color::LinearRgb;
 use crate::exact::Table;
 use crate::material::Finish;
-use crate::sphere::Sphere;
 
 /// A reference to a file with spheres.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,14 +27,19 @@ pub struct Data {
     pub color: Option<LinearRgb>,
     /// What all surfaces do with light.
     pub finish: Finish,
-    /// What atoms of one species look like.
+    /// What atoms of one species, or with one value of another column, look like.
     pub elements: Vec<Element>,
+    /// The columns whose values name `elements`. A sphere looks as the first of them says for which there is an element;
+    /// empty for `species`.
+    pub elements_by: Vec<String>,
+    /// Columns, and of each the values of spheres that are left out.
+    pub leave_out: Vec<(String, Vec<String>)>,
 }
 
 /// What atoms of one species look like, whatever the data or the tables of elements say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
-    /// The species, as it is written in the data.
+    /// The species, or the value of another column, as it is written in the data.
     pub name: String,
     /// The radius, before `radius_scale`.
     pub radius: Option<f64>,
@@ -43,26 +47,6 @@ pub struct Element {
     pub color: Option<LinearRgb>,
     /// What the surface does with light.
     pub finish: Finish,
-}
-
-impl Data {
-    /// Gives spheres of this data the finish of all, or of their species: the names of species, and for each
-    /// sphere the place of its own among them. Answers which elements do not occur.
-    pub fn dress(&self, spheres: &mut [Sphere], names: &[String], species: &[u32]) -> Vec<&str> {
-        let element_of = |name: &String| self.elements.iter().find(|e| e.name == *name);
-        let elements: Vec<Option<&Element>> = names.iter().map(element_of).collect();
-        for (index, sphere) in spheres.iter_mut().enumerate() {
-            let place = species.get(index).map(|place| *place as usize);
-            let element = place.and_then(|place| elements.get(place).copied().flatten());
-            sphere.finish = element.map_or(self.finish, |element| element.finish);
-            if let Some(Element { radius, color, .. }) = element {
-                sphere.radius = radius.unwrap_or(sphere.radius);
-                sphere.color = color.unwrap_or(sphere.color);
-            }
-        }
-        let absent = self.elements.iter().filter(|element| !names.contains(&element.name));
-        absent.map(|element| element.name.as_str()).collect()
-    }
 }
 
 /// A table `[elements.NAME]`.
@@ -85,6 +69,8 @@ pub(super) struct DataKeys {
     pub(super) material: Option<Spanned<String>>,
     pub(super) opacity: Option<Number>,
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
+    pub(super) elements_by: Option<Spanned<Vec<String>>>,
+    pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
 }
 
 impl DataKeys {
@@ -102,6 +88,8 @@ impl DataKeys {
                 ("material", span(&self.material)),
                 ("opacity", span(&self.opacity)),
                 ("elements", self.elements.values().next().map(Spanned::span)),
+                ("elements_by", span(&self.elements_by)),
+                ("leave_out", span(&self.leave_out)),
             ];
             let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
@@ -131,6 +119,8 @@ impl DataKeys {
                 color: self.color.map(|color| color.into_inner().0),
                 finish,
                 elements: elements.collect::<Result<_, _>>()?,
+                elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
+                leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
             },
         }))
     }

@@ -54,6 +54,8 @@ pub(super) struct Document {
     pub(super) opacity: Option<Number>,
     #[serde(default)]
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
+    pub(super) elements_by: Option<Spanned<Vec<String>>>,
+    pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
 }
 
 fn default_film() -> Spanned<Table<FilmTable>> {

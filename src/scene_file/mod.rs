@@ -4,6 +4,7 @@
 
 mod data;
 mod document;
+mod dress;
 mod lighting;
 mod materials;
 mod output;
@@ -12,6 +13,7 @@ mod value;
 mod words;
 
 pub use data::{Data, Element};
+pub use dress::{DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use place::SceneFileError;
 pub use value::DEFAULT_COLOR;
@@ -71,6 +73,8 @@ impl SceneFile {
             material: document.material,
             opacity: document.opacity,
             elements: document.elements,
+            elements_by: document.elements_by,
+            leave_out: document.leave_out,
         }
         .read(&materials, &lines)?;
         let spheres = document.spheres.into_iter();

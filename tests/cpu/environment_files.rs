@@ -10,7 +10,7 @@ use exr::prelude::{
 };
 use pinhole::Environment;
 use pinhole::environment::EnvironmentError;
-use pinhole::io::environment::{EnvironmentFileError, MAX_TEXELS, read};
+use pinhole::load::environment::{EnvironmentFileError, MAX_TEXELS, read};
 
 /// A file whose pixels stand one after the other, as the format's inventor allows.
 fn flat_hdr(header: &str, pixels: &[[u8; 4]]) -> Vec<u8> {

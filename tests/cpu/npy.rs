@@ -1,8 +1,10 @@
 //! Arrays of spheres: .npy, .npz and raw; good files, bad files, and files that are noise.
 
 use pinhole::Points;
-use pinhole::io::npy::{SpheresError, read_spheres, write_spheres};
-use pinhole::io::{npz, raw};
+use pinhole::load::npy::{SpheresError, read_spheres};
+use pinhole::load::{npz, raw};
+use pinhole::write;
+use pinhole::write::npy::write_spheres;
 
 use crate::arrays::{npy, zip};
 
@@ -64,7 +66,7 @@ fn what_is_written_is_read() {
         assert_eq!(read_spheres(&file, None), Ok(Points::F32(spheres.to_vec())));
         assert_eq!(npyz::NpyFile::new(&file[..]).unwrap().shape(), [spheres.len() as u64, 4]);
         let mut file = Vec::new();
-        raw::write_spheres(spheres, &mut file).unwrap();
+        write::raw::write_spheres(spheres, &mut file).unwrap();
         assert_eq!(file.len(), spheres.len() * 16);
         assert_eq!(raw::read_spheres(&file), Ok(Points::F32(spheres.to_vec())));
     }

@@ -6,8 +6,8 @@ use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Text};
 use npyz::NpyFile;
 use pinhole::encoding::{Bits, Encoding};
 use pinhole::image::{Layer, NO_ID};
-use pinhole::io::exr::ExrError;
-use pinhole::io::{exr as exr_file, npy, png as png_file};
+use pinhole::write::exr::ExrError;
+use pinhole::write::{exr as exr_file, npy, png as png_file};
 use pinhole::{Image, LayerSet, LinearRgb, ToneCurve, color};
 
 use crate::support::View;

@@ -4,8 +4,9 @@ use pinhole::color::LinearRgb;
 use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
 use pinhole::lighting::{Light, LightFrame, LightKind, SkyLight};
+use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
-use pinhole::scene_file::{IntegratorKind, SceneFile};
+use pinhole::scene_file::{DataSpheres, IntegratorKind, SceneFile};
 use pinhole::{Finish, Material, PixelFilter, Points, Scene};
 
 const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
@@ -141,6 +142,58 @@ fn materials_by_name_and_opacity_over_them() {
     assert_eq!(sphere("kind = 'lambert'\nopacity = 0.25", "opacity = 0.75\n").opacity, 0.75);
 }
 
+/// Four atoms O, H, C1, O in two chains, one of which is water.
+fn molecule() -> Loaded {
+    let mut loaded = Loaded::new(Points::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
+    loaded.colors = Some(vec![LinearRgb::WHITE; 4]);
+    let column = |name: &str, names: &[&str], indices: [u32; 4]| {
+        let names = names.iter().map(|name| (*name).to_owned()).collect();
+        let values = ColumnValues::Labels(Labels { names, indices: indices.to_vec() });
+        Column { name: name.to_owned(), values }
+    };
+    loaded.columns = vec![
+        column("species", &["H", "O", "C1"], [1, 0, 2, 1]),
+        column("residue", &["HEM", "HOH"], [0, 0, 0, 1]),
+        column("chain", &["A", "B"], [0, 1, 1, 0]),
+    ];
+    loaded
+}
+
+#[test]
+fn elements_are_named_by_columns_and_some_are_left_out() {
+    let apply =
+        |text: &str| parse(&format!("data = 'a.pdb'\n{text}")).data().unwrap().apply(molecule());
+    let radii = |text: &str| {
+        let (atoms, notes) = apply(text).unwrap();
+        let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
+        (atoms.iter().map(|atom| atom.radius).collect::<Vec<_>>(), notes)
+    };
+    let looks = "[elements.A]\nradius = 2\n[elements.HOH]\nradius = 5\n";
+    let (found, notes) = radii(&format!("elements_by = ['residue', 'chain']\n{looks}"));
+    assert_eq!((found, notes), (vec![2.0, 1.0, 1.0, 5.0], Vec::new()));
+    let (found, notes) = radii("leave_out = { residue = ['HOH', 'SOL'], chain = ['B'] }\n");
+    assert_eq!(found, [1.0]);
+    assert_eq!(notes, ["`leave_out`: there is no residue SOL in a.pdb"]);
+    for (text, wanted) in [
+        (
+            "elements_by = ['colour']\n",
+            "`elements_by`: there is no column `colour` of text in a.pdb; it has species, residue, chain",
+        ),
+        (
+            "leave_out = { charge = ['1'] }\n",
+            "`leave_out`: there is no column `charge` of text in a.pdb; it has species, residue, chain",
+        ),
+    ] {
+        assert_eq!(apply(text).unwrap_err().to_string(), wanted);
+    }
+    let plain = parse("data = 'a.npy'\nleave_out = { chain = ['A'] }\n");
+    let refused = plain.data().unwrap().apply(Loaded::new(Points::F32(Vec::new()))).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "`leave_out` concerns atoms (.xyz, .extxyz, .pdb, .ent); drop it"
+    );
+}
+
 #[test]
 fn data_has_the_look_of_all_or_of_its_species() {
     let file = parse(
@@ -149,13 +202,12 @@ fn data_has_the_look_of_all_or_of_its_species() {
          [elements.O]\nradius = 3\ncolor = 'red'\n[elements.C1]\nmaterial = 'glass'\n[elements.X]\n",
     );
     let data = file.data().unwrap();
-    let atom = pinhole::Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE);
-    let mut atoms = [atom; 4];
-    let names = ["H", "O", "C1"].map(str::to_owned);
-    let absent = data.dress(&mut atoms, &names, &[1, 0, 2, 1]);
-    assert_eq!(absent, ["X"]);
+    let (atoms, notes) = data.apply(molecule()).unwrap();
+    assert_eq!(notes, ["`[elements.X]`: there is no such atom in a.xyz"]);
+    let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
     let metal = Finish { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
-    assert_eq!(atoms.map(|atom| atom.radius), [3.0, 1.0, 1.0, 3.0]);
+    let radii: Vec<f64> = atoms.iter().map(|atom| atom.radius).collect();
+    assert_eq!(radii, [3.0, 1.0, 1.0, 3.0]);
     assert_eq!(atoms[0].color, LinearRgb::from_srgb8([255, 0, 0]));
     assert_eq!((atoms[1].color, atoms[1].finish), (LinearRgb::WHITE, metal));
     assert_eq!(atoms[0].finish, metal);
@@ -574,7 +626,7 @@ fn every_example_is_right() {
         let camera = camera.unwrap_or_else(|error| panic!("{place}: {error}"));
         let image = file.sky_image().map(|name| {
             let bytes = std::fs::read(folder.join(name)).unwrap();
-            pinhole::io::environment::read(&bytes).unwrap()
+            pinhole::load::environment::read(&bytes).unwrap()
         });
         let Some(kind) = file.integrator() else { continue };
         let lighting = file.settings(kind, &scene, camera.as_ref(), image);

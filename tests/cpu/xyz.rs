@@ -1,7 +1,7 @@
 //! The XYZ reader: good files, bad files, and files that are noise.
 
 use pinhole::LinearRgb;
-use pinhole::io::xyz::{XyzError, read};
+use pinhole::load::xyz::{XyzError, read};
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 

@@ -6,7 +6,7 @@ use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::film::YAxis;
 use pinhole::gpu::Headless;
 use pinhole::image::{Layer, NO_ID};
-use pinhole::io::npy::encode;
+use pinhole::write::npy::encode;
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, glam};
 
 use crate::support::View;

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
-use pinhole::{Encoding, LayerSet, color, io};
+use pinhole::{Encoding, LayerSet, color, write};
 
 use crate::trial;
 use crate::view::View;
@@ -83,7 +83,7 @@ fn exr(headless: &'static Headless) {
     let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
     let mut expected = Cursor::new(Vec::new());
     let encoding = Encoding::default();
-    io::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();
+    write::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();
     let found = std::fs::read(folder.path().join("out.exr")).unwrap();
     assert!(found == expected.into_inner(), "the file is not the library's");
 }

@@ -174,7 +174,11 @@ fn flags_that_do_not_concern_the_data() {
     let folder = folder();
     std::fs::write(folder.path("data.toml"), "data = 'a.npy'\nframe = 2\n").unwrap();
     for (arguments, code, line) in [
-        ("a.npy --frame 0", 2, "--frame concerns trajectories (.xyz, .extxyz); drop it"),
+        (
+            "a.npy --frame 0",
+            2,
+            "--frame concerns trajectories (.xyz, .extxyz, .pdb, .ent); drop it",
+        ),
         (
             "water.xyz --radius 1",
             2,
@@ -195,7 +199,11 @@ fn flags_that_do_not_concern_the_data() {
             2,
             "scene.toml: --radius needs a scene with `data`, and this scene has none",
         ),
-        ("data.toml", 1, "data.toml: `data`: frame concerns trajectories (.xyz, .extxyz); drop it"),
+        (
+            "data.toml",
+            1,
+            "data.toml: `data`: frame concerns trajectories (.xyz, .extxyz, .pdb, .ent); drop it",
+        ),
     ] {
         refused(&folder, arguments, code, line);
     }

@@ -60,6 +60,26 @@ fn scene_files_with_errors() {
 }
 
 #[test]
+fn pdb_files_with_errors() {
+    let atom = "ATOM      1  N   VAL A   1       6.204  16.869   4.854  1.00 49.05           N\n";
+    let data = |text: &str, words: &[&str]| {
+        refused(&[("bad.pdb", text)], "render bad.pdb -o out.png --backend cpu", 1, words);
+    };
+    data("", &["bad.pdb", "no ATOM or HETATM records"]);
+    data(&atom[..40], &["bad.pdb", "line 1", "columns 39-46", "the line ends after 40 columns"]);
+    data(&atom.replace("16.869", "16,869"), &["bad.pdb", "line 1, columns 39-46", "`16,869`"]);
+    data("data_4HHB\n", &["bad.pdb", "mmCIF"]);
+    let mixed = format!("{atom}MODEL        1\n{atom}ENDMDL\n");
+    data(&mixed, &["bad.pdb", "line 1: mixed models", "line 2"]);
+    refused(
+        &[("one.pdb", atom)],
+        "render one.pdb -o out.png --frame 2 --backend cpu",
+        1,
+        &["one.pdb: there is no frame 2; the file has 1 model"],
+    );
+}
+
+#[test]
 fn xyz_files_with_errors() {
     let data = |text: &str, words: &[&str]| {
         refused(&[("bad.xyz", text)], "render bad.xyz -o out.png --backend cpu", 1, words);

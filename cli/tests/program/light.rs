@@ -106,7 +106,11 @@ fn data_that_would_create_light() {
     std::fs::write(folder.path("elements.toml"), text).unwrap();
     let run = folder.run("render elements.toml -o out.png --backend cpu");
     assert_eq!(run.code, 1);
-    assert!(run.stderr.contains("`elements` concerns atoms (.xyz, .extxyz)"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("`elements` concerns atoms (.xyz, .extxyz, .pdb, .ent)"),
+        "{}",
+        run.stderr
+    );
 }
 
 /// A map whose third texel is as given.
