@@ -12,7 +12,7 @@ use std::time::Instant;
 use pinhole::accel::AccelChoice;
 use pinhole::generate::Standard;
 use pinhole::gpu::{Decision, Headless, HeadlessOptions, Picture, Query, SceneBuffers};
-use pinhole::lighting::{Light, Sky, SkyLight};
+use pinhole::light::{Light, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
 

@@ -1,5 +1,5 @@
 // From the unit square to the unit disk, by the concentric map of Shirley and Chiu; (1/2, 1/2) is exactly the
-// centre. Twin: src/disk.rs.
+// centre. Twin: src/geometry/disk.rs.
 
 fn concentric_disk(square: vec2f) -> vec2f {
     let spot = vec2f(fence(2.0 * square.x - 1.0), fence(2.0 * square.y - 1.0));

@@ -1,4 +1,4 @@
-// Which of the spheres of the scene that send out light. Twin: src/lighting/emitters.rs.
+// Which of the spheres of the scene that send out light. Twin: src/light/emitters.rs.
 
 // The first emitter of which a word is at least so large; they ascend by both.
 fn find_emitter(word: u32, value: u32) -> u32 {

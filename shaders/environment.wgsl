@@ -1,4 +1,4 @@
-// Light from all directions. Twin: src/environment/mod.rs. A kernel gives `look.environment_size`, in texels, and
+// Light from all directions. Twin: src/light/environment/mod.rs. A kernel gives `look.environment_size`, in texels, and
 // `look.environment_rotation`, cosine and sine.
 
 // Row by row; the fourth component is not used.

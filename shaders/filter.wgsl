@@ -1,4 +1,4 @@
-// Where samples lie around their pixel's centre. Twin: `offset` in src/filter.rs. A kernel gives the table, of 257
+// Where samples lie around their pixel's centre. Twin: `offset` in src/camera/filter.rs. A kernel gives the table, of 257
 // numbers: `fn filter_table(index: u32) -> f32`.
 
 // In pixels, for two fractions of 2^32.

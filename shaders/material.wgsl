@@ -32,7 +32,7 @@ fn opacity_of(material: u32) -> f32 {
 // A table of an energy has so many numbers, and starts at the next multiple of four.
 const ENERGIES: u32 = 256u;
 
-// What a lobe keeps of the light that it gets at a cosine. Twin: `lookup` in src/lighting/energy.rs.
+// What a lobe keeps of the light that it gets at a cosine. Twin: `lookup` in src/light/energy.rs.
 fn energy(first: u32, cosine: f32) -> f32 {
     let along = sqrt(sqrt(clamp(cosine, 0.0, 1.0))) * f32(ENERGIES - 1u);
     let below = min(u32(along), ENERGIES - 2u);

@@ -1,4 +1,4 @@
-// Sample points that are found by their address: pixel, sample, pair of dimensions. Twin: src/sampling.rs, which
+// Sample points that are found by their address: pixel, sample, pair of dimensions. Twin: src/camera/sampling.rs, which
 // gives the same bits.
 
 fn pixel_seed(pixel: vec2u, seed: u32) -> u32 {

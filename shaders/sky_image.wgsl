@@ -1,4 +1,4 @@
-// A sky with an image. Twin: src/lighting/sky.rs.
+// A sky with an image. Twin: src/light/sky.rs.
 
 fn sky_radiance(direction: vec3f) -> vec3f {
     return look.environment_strength * environment_radiance(direction);

@@ -1,4 +1,4 @@
-// A sky without an image. Twin: src/lighting/sky.rs.
+// A sky without an image. Twin: src/light/sky.rs.
 
 fn sky_radiance(direction: vec3f) -> vec3f {
     let end = select(look.nadir, look.zenith, direction.y >= 0.0);

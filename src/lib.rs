@@ -45,57 +45,41 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
-pub mod basis;
-pub mod bounds;
 pub mod camera;
-pub mod color;
 pub mod cpu;
-pub mod denoise;
-mod disk;
-pub mod encoding;
-pub mod environment;
 #[cfg(feature = "scene-file")]
 mod exact;
-pub mod film;
-pub mod filter;
 pub mod generate;
+pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
-pub mod lighting;
+pub mod light;
 pub mod load;
-pub mod material;
-pub mod math;
-mod outline;
 mod parallel;
-pub mod points;
 pub mod range;
-pub mod ray;
 pub mod render;
-pub mod sampling;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
-pub mod sphere;
 #[doc(hidden)]
 pub mod text;
-pub mod tone;
 pub mod verify;
 pub mod write;
 
 pub use camera::View;
-pub use color::LinearRgb;
-pub use encoding::Encoding;
-pub use environment::Environment;
-pub use film::Film;
-pub use filter::PixelFilter;
+pub use camera::film::Film;
+pub use camera::filter::PixelFilter;
+pub use image::color::LinearRgb;
+pub use image::encoding::Encoding;
+pub use image::tone::ToneCurve;
 pub use image::{Image, LayerSet};
-pub use material::{Finish, Material};
-pub use points::{Points, Radii};
+pub use light::environment::Environment;
 pub use render::{Integrator, RenderSettings, Shading};
+pub use scene::material::{Finish, Material};
+pub use scene::points::{Points, Radii};
+pub use scene::sphere::Sphere;
 pub use scene::{Appearance, ColorMap, Colors, Scene};
-pub use sphere::Sphere;
-pub use tone::ToneCurve;
 
 /// Compiles the example in the README.
 #[cfg(doctest)]

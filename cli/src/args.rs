@@ -10,8 +10,8 @@ use super::generate::kinds;
 use super::light::LightArgs;
 use super::patience::PatienceArgs;
 use pinhole::accel::AccelChoice;
+use pinhole::image::tone::ToneCurve;
 use pinhole::load::Format;
-use pinhole::tone::ToneCurve;
 
 /// Ray traces spheres with compute shaders, without a display.
 #[derive(Debug, Parser)]

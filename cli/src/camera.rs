@@ -5,8 +5,8 @@ use clap::builder::PossibleValuesParser;
 use serde::Deserialize;
 
 use super::failure::Failure;
-use pinhole::bounds::Bounds;
 use pinhole::camera::{CameraError, CameraKind, CameraParameters};
+use pinhole::geometry::bounds::Bounds;
 
 /// Of each flag, because clap puts whatever follows below a heading that is set once.
 const HEADING: &str = "Camera (any of these takes the place of the scene's camera)";

@@ -3,8 +3,8 @@
 use super::args::{EncodingArgs, Tone};
 use super::failure::Failure;
 use super::picture::PictureFormat;
-use pinhole::encoding::{Bits, Encoding};
-use pinhole::tone::ToneCurve;
+use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::tone::ToneCurve;
 
 /// What was given, checked.
 #[derive(Clone, Copy, Debug)]

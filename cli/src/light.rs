@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
-use pinhole::filter::PixelFilter;
+use pinhole::camera::filter::PixelFilter;
 use pinhole::range::RangeError;
 use pinhole::render::{Integrator, Occlusion, Outline, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::IntegratorKind;

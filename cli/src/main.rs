@@ -2,7 +2,10 @@
 //!
 //! The only place that sees clap, prints, or touches the file system.
 
-#![allow(rustdoc::broken_intra_doc_links, reason = "the comments of arguments are their help, not Markdown")]
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "the comments of arguments are their help, not Markdown"
+)]
 
 use std::process::ExitCode;
 

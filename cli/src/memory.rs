@@ -3,7 +3,7 @@
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 use super::failure::Failure;
-use pinhole::film::Film;
+use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
 /// Bytes per pixel that encoding takes beside the image itself, at most: 8 of samples and as many of a PNG made of

@@ -11,7 +11,7 @@ use super::interrupt;
 use super::output::{check_distinct, check_place, name_all, spare, unnamed, unnamed_with};
 use super::progress;
 use super::speak::answer;
-use pinhole::encoding::Encoding;
+use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
 use pinhole::write::{exr, npy, png};
 

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 
-use pinhole::color::to_srgb8;
 use pinhole::image::NO_ID;
+use pinhole::image::color::to_srgb8;
 use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, Verdict};
 use pinhole::write::png;

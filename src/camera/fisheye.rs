@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 use super::framing;
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect};
 #[cfg(feature = "scene-file")]
-use crate::bounds::Bounds;
-#[cfg(feature = "scene-file")]
 use crate::exact;
-use crate::ray::Ray;
+#[cfg(feature = "scene-file")]
+use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::Ray;
 
 /// An equidistant fisheye camera.
 ///

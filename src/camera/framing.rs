@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::basis::OrthonormalBasis;
-use crate::bounds::Bounds;
+use crate::geometry::basis::OrthonormalBasis;
+use crate::geometry::bounds::Bounds;
 
 /// How much of the picture's half width and height the box may fill.
 const FILL: f64 = 0.95;

@@ -5,9 +5,11 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::math::{MAX_LENGTH, MIN_LENGTH};
-use crate::ray::Ray;
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::geometry::ray::Ray;
 
+pub mod film;
+pub mod filter;
 mod fisheye;
 mod framing;
 mod orthographic;
@@ -16,6 +18,7 @@ mod panorama;
 mod parameters;
 mod pinhole;
 mod pose;
+pub mod sampling;
 #[cfg(feature = "scene-file")]
 mod stereo;
 mod thin_lens;

@@ -6,10 +6,10 @@ use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
     framing,
 };
-use crate::bounds::Bounds;
 #[cfg(feature = "scene-file")]
 use crate::exact;
-use crate::ray::Ray;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::Ray;
 
 /// An orthographic camera.
 ///

@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 use super::StereoParameters;
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, stereo_lengths};
 #[cfg(feature = "scene-file")]
-use crate::bounds::Bounds;
-#[cfg(feature = "scene-file")]
 use crate::exact;
-use crate::ray::Ray;
+#[cfg(feature = "scene-file")]
+use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::Ray;
 
 /// An equirectangular camera: 360 degrees by 180. A film twice as wide as high has square pixels in the middle.
 ///

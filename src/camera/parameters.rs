@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use super::{Camera, CameraError, camera_table};
-use crate::bounds::Bounds;
 use crate::exact::Table;
+use crate::geometry::bounds::Bounds;
 
 /// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file.
 #[derive(Clone, Copy, Debug, Deserialize)]

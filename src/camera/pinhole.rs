@@ -8,11 +8,11 @@ use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
     checked_length, framing, stereo_lengths,
 };
-use crate::bounds::Bounds;
 #[cfg(feature = "scene-file")]
 use crate::exact;
-use crate::math::MAX_LENGTH;
-use crate::ray::Ray;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::math::MAX_LENGTH;
+use crate::geometry::ray::Ray;
 
 /// A pinhole camera.
 ///

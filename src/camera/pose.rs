@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::basis::{BasisError, OrthonormalBasis};
-use crate::bounds::Bounds;
-use crate::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::geometry::basis::{BasisError, OrthonormalBasis};
+use crate::geometry::bounds::Bounds;
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 
 /// Position and orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,12 +7,12 @@ use super::PinholeParameters;
 use super::pose::checked_point;
 use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length};
 #[cfg(feature = "scene-file")]
-use crate::bounds::Bounds;
-use crate::disk::concentric_disk;
-#[cfg(feature = "scene-file")]
 use crate::exact;
-use crate::math::MIN_LENGTH;
-use crate::ray::Ray;
+#[cfg(feature = "scene-file")]
+use crate::geometry::bounds::Bounds;
+use crate::geometry::disk::concentric_disk;
+use crate::geometry::math::MIN_LENGTH;
+use crate::geometry::ray::Ray;
 
 /// A camera with a thin lens.
 ///

@@ -1,8 +1,8 @@
 //! A camera with the film that it exposes.
 
 use super::Camera;
-use crate::film::Film;
-use crate::ray::Ray;
+use crate::camera::film::Film;
+use crate::geometry::ray::Ray;
 
 /// What is seen, and in how many pixels: a camera and a film.
 #[derive(Clone, Copy, Debug)]

@@ -1,13 +1,13 @@
 //! An edge-avoiding filter, in f64. Twin of `shaders/denoise.wgsl`, where its sources are.
 
-use crate::denoise::{Guided, MissingGuide, PASSES};
 use crate::image::Image;
+use crate::image::denoise::{Guided, MissingGuide, PASSES};
 use crate::parallel;
 
 /// A picture with less noise: light is averaged among pixels of like shape and colour.
 ///
 /// # Errors
-/// If the picture lacks one of the layers [`crate::denoise::GUIDES`].
+/// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`].
 pub fn denoise(image: &Image) -> Result<Image, MissingGuide> {
     let guided = Guided::of(image)?;
     let size = [image.width() as i64, image.height() as i64];

@@ -1,7 +1,7 @@
 //! From a hit to a pixel. Twin of `shaders/shade.wgsl`.
 
+use crate::geometry::ray::{Hit, Ray};
 use crate::image::Pixel;
-use crate::ray::{Hit, Ray};
 use crate::render::{PrimaryLook, Shading};
 use crate::scene::Scene;
 

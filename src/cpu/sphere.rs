@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::ray::Ray;
+use crate::geometry::ray::Ray;
 
 /// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
 /// there, which points away from the centre; `None` for a miss.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::sphere::intersect;
-use crate::ray::{Hit, Ray};
+use crate::geometry::ray::{Hit, Ray};
 use crate::scene::Scene;
 
 /// The nearest sphere in front of the ray's origin; of several at the same distance, the one with the

@@ -1,8 +1,8 @@
 //! The scenes that timings are reported of.
 
 use super::{GenerateError, Kind};
+use crate::camera::film::{Film, FilmError};
 use crate::camera::{CameraError, PinholeCamera, Pose};
-use crate::film::{Film, FilmError};
 
 /// A scene that is measured, with its view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! What spheres look like, as kernels read it. Twin of `shaders/appearance.wgsl`.
 
 use super::records::Color;
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 use crate::scene::{Appearance, Colors, SceneAppearance, alpha_of};
 
 /// The words of a brick's spheres, and where they stand.
@@ -108,8 +108,8 @@ pub(super) fn palette(appearance: &Appearance) -> Vec<Color> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{Finish, Material};
-    use crate::points::Points;
+    use crate::scene::material::{Finish, Material};
+    use crate::scene::points::Points;
     use crate::scene::{ColorMap, Scene};
 
     fn scene(appearance: Appearance) -> Scene {

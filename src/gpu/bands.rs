@@ -7,7 +7,7 @@ use super::records;
 use super::scene_buffers::binding_limit;
 use super::tiles;
 use crate::accel::PlannedBuffer;
-use crate::film::Film;
+use crate::camera::film::Film;
 
 const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
 const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;

@@ -43,7 +43,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LOOK_GROUND", lit::records::GROUND),
         ("LOOK_CATCHER", lit::records::CATCHER),
         ("LIST_OF_LIGHT", lit::records::LIST_OF_LIGHT),
-        ("ENERGIES", crate::lighting::energy::ENTRIES as u32),
+        ("ENERGIES", crate::light::energy::ENTRIES as u32),
     ];
     let floats = [
         // Each has a name of its own for it.

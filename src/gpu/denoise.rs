@@ -10,8 +10,8 @@ use super::pipeline::pipeline;
 use super::readback::ReadableBuffer;
 use super::scene_buffers::binding_limit;
 use super::shaders::{Kernel, part};
-use crate::denoise::{Guided, PASSES};
 use crate::image::Image;
+use crate::image::denoise::{Guided, PASSES};
 
 /// What one pass does.
 #[repr(C)]
@@ -36,7 +36,7 @@ impl Headless {
     /// A picture with less noise: light is averaged among pixels of like shape and colour, in five passes.
     ///
     /// # Errors
-    /// If the picture lacks one of the layers [`crate::denoise::GUIDES`], or if the device fails.
+    /// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`], or if the device fails.
     pub fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
         let guided = Guided::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::records::NO_HIT;
 use crate::camera::View;
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 use crate::image::{NO_ID, RowMut};
 use crate::scene::SceneAppearance;
 

@@ -5,8 +5,8 @@ use std::time::Duration;
 use super::edit::ShaderEdit;
 use crate::accel::BrickKind;
 use crate::camera::CameraKind;
-use crate::denoise::MissingGuide;
 use crate::image::ImageTooLarge;
+use crate::image::denoise::MissingGuide;
 use crate::render::SettingsError;
 use crate::scene::SceneError;
 

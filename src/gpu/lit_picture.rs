@@ -12,8 +12,8 @@ use super::progress::{Decision, Picture, Progress, Watch};
 use super::scene_buffers::SceneBuffers;
 use super::tiles::tiles;
 use crate::camera::View;
+use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
-use crate::outline;
 use crate::render::{PrimaryLook, RenderSettings};
 
 /// How many samples are taken after so many. After each batch there is a picture that could be kept.

@@ -16,8 +16,8 @@ use super::records::SceneSpace;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Tile;
 use crate::camera::View;
-use crate::film::Film;
-use crate::lighting::SkyLight;
+use crate::camera::film::Film;
+use crate::light::SkyLight;
 use crate::render::{Integrator, RenderSettings};
 use crate::verify::{
     PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLook, UploadedSky,

@@ -9,7 +9,7 @@ use super::records;
 use super::tile_textures;
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::camera::View;
-use crate::film::Film;
+use crate::camera::film::Film;
 use crate::image::LayerSet;
 use crate::render::RenderSettings;
 use crate::scene::Scene;
@@ -282,10 +282,10 @@ mod tests {
     use super::*;
     use crate::accel::AccelChoice;
     use crate::camera::PinholeCamera;
-    use crate::color::LinearRgb;
     use crate::image::Layer;
-    use crate::material::Finish;
-    use crate::points::Points;
+    use crate::image::color::LinearRgb;
+    use crate::scene::material::Finish;
+    use crate::scene::points::Points;
     use crate::scene::{Appearance, Colors};
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {

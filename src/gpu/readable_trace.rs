@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::readback::ReadableBuffer;
 use super::records;
 use super::tiles::Tile;
-use crate::film::Film;
+use crate::camera::film::Film;
 use crate::verify::{TracedPixel, TracedRay};
 
 /// The rays and hits of a tile.

@@ -11,7 +11,7 @@ use super::pipeline::pipeline;
 use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::scene_summary::SceneSummary;
 use super::shaders::{Kernel, part};
-use crate::material::{Finish, Material};
+use crate::scene::material::{Finish, Material};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
 /// The spheres that a dispatch is of.

@@ -4,9 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::tiles::{Groups, Tile};
-use crate::bounds::Bounds;
 use crate::camera::View;
-use crate::film::{Film, YAxis};
+use crate::camera::film::{Film, YAxis};
+use crate::geometry::bounds::Bounds;
 use crate::render::{PrimaryLook, Shading};
 use crate::verify::RequestedCamera;
 

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::color::LinearRgb;
-use crate::lighting::emitters::Emitters;
-use crate::material::Finish;
+use crate::image::color::LinearRgb;
+use crate::light::emitters::Emitters;
+use crate::scene::material::Finish;
 use crate::scene::{Scene, SceneAppearance};
 
 /// Palette, finishes and emissive spheres of a scene.

@@ -4,7 +4,7 @@ use super::records::SceneSpace;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::camera::View;
-use crate::film::YAxis;
+use crate::camera::film::YAxis;
 
 /// A rectangle of the film, in pixels, outside of which no ray meets the scene's box; perhaps empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +85,8 @@ mod tests {
     use glam::{DVec3, Vec3};
 
     use super::*;
+    use crate::camera::film::Film;
     use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
-    use crate::film::Film;
 
     fn space() -> SceneSpace {
         let origin = DVec3::new(10.0, 0.0, 0.0);

@@ -82,11 +82,11 @@ pub fn with_retries<T, E>(
 mod tests {
     use super::*;
     use crate::accel::AccelPlan;
+    use crate::camera::film::Film;
     use crate::camera::{PinholeCamera, Pose, View};
-    use crate::color::LinearRgb;
-    use crate::film::Film;
     use crate::gpu::plan::{DeviceLimits, PictureRequest, StructurePlans};
     use crate::image::LayerSet;
+    use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;
 
     fn plan(choices: [AccelChoice; 2]) -> RenderPlan {

@@ -1,6 +1,6 @@
 //! Cutting a film into tiles.
 
-use crate::film::Film;
+use crate::camera::film::Film;
 
 /// The most pixels of a tile of a headless render: its buffers and textures then take 48 MiB, little beside a large
 /// scene, and a picture of 1024² is one.

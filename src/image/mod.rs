@@ -1,8 +1,13 @@
 //! Linear f32 pixels and data layers.
 
+pub mod color;
+pub mod denoise;
+pub mod encoding;
 mod join;
 mod layer;
+pub(crate) mod outline;
 mod rows;
+pub mod tone;
 
 pub use layer::{Layer, LayerSet, UnknownLayer};
 pub(crate) use rows::{Averages, RowMut};

@@ -2,7 +2,7 @@
 
 use mendeleev::Element;
 
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 
 /// Van der Waals radii in Å, by atomic number from 1; 0 where there is no value.
 ///

@@ -1,9 +1,9 @@
 //! What a file of spheres holds.
 
-use crate::color::LinearRgb;
-use crate::points::Points;
+use crate::image::color::LinearRgb;
+use crate::scene::points::Points;
+use crate::scene::sphere::Sphere;
 use crate::scene::{Scene, SceneError};
-use crate::sphere::Sphere;
 
 /// The spheres of one frame of a file, and what else the file says of each.
 #[derive(Clone, Debug, PartialEq)]

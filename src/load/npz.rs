@@ -7,7 +7,7 @@ use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
 use super::npy::{self, SpheresError};
-use crate::points::Points;
+use crate::scene::points::Points;
 use crate::text::{one_line, shortened};
 
 /// What an array with spheres may be called beside others; the first that is there is taken.

@@ -1,7 +1,7 @@
 //! Reads spheres from nothing but numbers: little-endian f32, x, y, z, radius, sphere after sphere.
 
 use super::numbers::{Layout, rows};
-use crate::points::Points;
+use crate::scene::points::Points;
 
 /// Bytes of a sphere.
 const SPHERE: usize = 16;

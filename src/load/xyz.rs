@@ -11,9 +11,9 @@ use super::elements::{Appearance, appearance, unknown_note};
 use super::error::LoadError;
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
-use crate::color::LinearRgb;
-use crate::points::Points;
-use crate::sphere::{Sphere, SphereError};
+use crate::image::color::LinearRgb;
+use crate::scene::points::Points;
+use crate::scene::sphere::{Sphere, SphereError};
 use crate::text::shortened;
 
 /// The atoms of one frame.

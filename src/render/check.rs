@@ -3,11 +3,11 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Integrator, PathTracing, RenderSettings, Sampling, Studio};
-use crate::color::LinearRgb;
-use crate::lighting::{LightKind, Sky, SkyLight};
-use crate::material::Material;
-use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::image::color::LinearRgb;
+use crate::light::{LightKind, Sky, SkyLight};
 use crate::range::RangeError;
+use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 
 /// What is wrong with settings, or with a scene's materials.

@@ -1,7 +1,7 @@
 //! The ways in which rays become colours.
 
 use super::studio::Studio;
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 
 /// How rays become colours.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,12 +11,12 @@
 //! A surface of colour c that faces a directional light of `strength` 1 has radiance c. Radiances are in the same
 //! unit: a sky of radiance 1 all around makes a white Lambert surface white.
 
-use crate::color::LinearRgb;
-use crate::denoise;
-use crate::filter::PixelFilter;
+use crate::camera::filter::PixelFilter;
 use crate::image::LayerSet;
-use crate::lighting::{Ground, Light, Sky};
-use crate::outline;
+use crate::image::color::LinearRgb;
+use crate::image::denoise;
+use crate::image::outline;
+use crate::light::{Ground, Light, Sky};
 
 mod check;
 mod integrator;
@@ -48,7 +48,7 @@ pub struct RenderSettings {
     pub background: LinearRgb,
     /// Whether a pixel is transparent where there is nothing; its colour is then multiplied by alpha.
     pub is_transparent: bool,
-    /// Whether noise is filtered, guided by shapes and colours; see [`crate::denoise`]. Only for lit pictures.
+    /// Whether noise is filtered, guided by shapes and colours; see [`crate::image::denoise`]. Only for lit pictures.
     pub is_denoised: bool,
 }
 

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use super::{Integrator, RenderSettings};
-use crate::color::LinearRgb;
-use crate::lighting::{LightKind, SkyLight};
-use crate::material::{Finish, Material};
+use crate::image::color::LinearRgb;
+use crate::light::{LightKind, SkyLight};
 use crate::scene::Scene;
+use crate::scene::material::{Finish, Material};
 
 /// Something about settings and a scene that may not be what was meant, and what to do about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Direct light.
 
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 
 /// Lights, shadows, ambient light, and what helps to see shape. Surfaces that are not emissive are Lambert's, with the
 /// lobe of their material where it has one.

@@ -2,8 +2,8 @@
 
 use super::SceneError;
 use super::color_map::ColorMap;
-use crate::color::LinearRgb;
-use crate::material::Finish;
+use crate::image::color::LinearRgb;
+use crate::scene::material::Finish;
 
 /// The colours of a scene's spheres, in input order.
 #[derive(Clone, Debug, PartialEq)]

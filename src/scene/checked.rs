@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 use super::appearance::{Appearance, Colors};
 use super::surfaces::{Surface, Surfaces};
 use super::update::NewColors;
-use crate::color::LinearRgb;
-use crate::material::Finish;
+use crate::image::color::LinearRgb;
+use crate::scene::material::Finish;
 
 /// The appearance of so many spheres, which has been checked. What follows from it is found out when it is first asked
 /// for.

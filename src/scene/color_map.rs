@@ -1,6 +1,6 @@
 //! Colours for numbers.
 
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 
 /// A table of colours for numbers of a range: the first is the colour of the range's low end, the last that of its
 /// high end, and the others lie evenly between.

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::SceneError;
-use crate::bounds::Bounds;
+use crate::geometry::bounds::Bounds;
 use crate::parallel;
-use crate::sphere::{self, Sphere};
+use crate::scene::sphere::{self, Sphere};
 
 /// Offsets are shorter than this times them by no more than rounding.
 const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::bounds::Bounds;
-use crate::color::LinearRgb;
-use crate::material::Finish;
+use crate::geometry::bounds::Bounds;
 #[cfg(feature = "run-file")]
-use crate::math::MAX_LENGTH;
+use crate::geometry::math::MAX_LENGTH;
+use crate::image::color::LinearRgb;
 use crate::parallel;
-use crate::points::Points;
-use crate::sphere::{Sphere, SphereError};
+use crate::scene::material::Finish;
+use crate::scene::points::Points;
+use crate::scene::sphere::{Sphere, SphereError};
 use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 
 mod appearance;
@@ -20,6 +20,9 @@ mod checked;
 mod color_map;
 mod duplicates;
 mod frame;
+pub mod material;
+pub mod points;
+pub mod sphere;
 mod surfaces;
 mod update;
 

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::checked::SceneAppearance;
-use crate::color::LinearRgb;
-use crate::material::{Finish, Material};
+use crate::image::color::LinearRgb;
+use crate::scene::material::{Finish, Material};
 
 /// What one row of a table of materials is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::appearance::Colors;
 use super::{Scene, SceneError, frame};
-use crate::sphere::{self, SphereError};
+use crate::scene::sphere::{self, SphereError};
 
 /// New centres, radii or colours for consecutive spheres of a scene. What is `None` stays as it is.
 ///

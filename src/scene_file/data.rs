@@ -8,9 +8,9 @@ use toml::Spanned;
 use super::materials::Materials;
 use super::place::{Keys, Lines, Number, Placed, SceneFileError, span};
 use super::value::ColorValue;
-use crate::color::LinearRgb;
 use crate::exact::Table;
-use crate::material::Finish;
+use crate::image::color::LinearRgb;
+use crate::scene::material::Finish;
 
 /// A reference to a file with spheres.
 #[derive(Clone, Debug, PartialEq)]

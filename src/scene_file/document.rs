@@ -15,11 +15,11 @@ use super::output::OutputTable;
 use super::place::{Lines, Number, Placed, SceneFileError};
 use super::value::ColorValue;
 use crate::camera::CameraParameters;
+use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
-use crate::film::{Film, YAxis};
-use crate::material::Finish;
 use crate::render::Shading;
-use crate::sphere::Sphere;
+use crate::scene::material::Finish;
+use crate::scene::sphere::Sphere;
 
 /// All tables and keys at the top.
 #[derive(Deserialize)]

@@ -1,10 +1,10 @@
 //! What the spheres of a file look like, as a scene file says.
 
 use super::data::{Data, Element};
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Format, Labels, Loaded};
-use crate::points::Points;
-use crate::sphere::Sphere;
+use crate::scene::points::Points;
+use crate::scene::sphere::Sphere;
 
 /// The spheres of a scene's data.
 #[derive(Clone, Debug)]

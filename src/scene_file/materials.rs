@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::place::{Keys, Lines, Number, SceneFileError, refuse_foreign, span};
 use super::words::unknown;
 use crate::exact::Table;
-use crate::material::{Finish, Material};
+use crate::scene::material::{Finish, Material};
 use crate::text::{one_line, shortened};
 
 /// What a material does with light, by name.

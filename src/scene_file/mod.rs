@@ -26,14 +26,14 @@ use place::{Lines, Place, Placed};
 use toml::Spanned;
 use words::explain;
 
+use crate::camera::film::Film;
 use crate::camera::{Camera, CameraParameters};
-use crate::color::LinearRgb;
-use crate::encoding::Encoding;
-use crate::film::Film;
-use crate::points::Points;
+use crate::image::color::LinearRgb;
+use crate::image::encoding::Encoding;
 use crate::render::Shading;
+use crate::scene::points::Points;
+use crate::scene::sphere::Sphere;
 use crate::scene::{Scene, SceneError};
-use crate::sphere::Sphere;
 
 /// What a scene file says.
 #[derive(Debug)]
@@ -185,7 +185,7 @@ impl SceneFile {
 
 /// Whether any sphere is to be more than matt and opaque.
 fn has_finish(spheres: &[Placed<Sphere>], data: Option<&Placed<Data>>) -> bool {
-    let matt = crate::material::Finish::default();
+    let matt = crate::scene::material::Finish::default();
     let of_data = data.iter().flat_map(|data| {
         let elements = data.value.elements.iter().map(|element| element.finish);
         elements.chain([data.value.finish])

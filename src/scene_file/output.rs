@@ -4,8 +4,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Lines, SceneFileError};
-use crate::encoding::{Bits, Encoding, EncodingError};
-use crate::tone::ToneCurve;
+use crate::image::encoding::{Bits, Encoding, EncodingError};
+use crate::image::tone::ToneCurve;
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]

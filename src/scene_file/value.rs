@@ -5,8 +5,8 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{self, SeqAccess, Visitor};
 
-use crate::color::LinearRgb;
 use crate::exact;
+use crate::image::color::LinearRgb;
 use crate::render::{BRIGHTEST, SettingsError};
 
 /// A CSS colour, or a linear triple.

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::line::Line;
 use super::rounding::U;
-use crate::math::wide;
+use crate::geometry::math::wide;
 use crate::parallel::{both, try_map};
 use crate::scene::SceneError;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::math::wide;
+use crate::geometry::math::wide;
 
 /// Components below this count as this: the distance to a plane is then finite.
 const SMALLEST_COMPONENT: f64 = 1e-60;

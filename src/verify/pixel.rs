@@ -10,8 +10,8 @@ use super::rounding::{Interval, unit_error};
 use super::shading::{LegalNormals, exactly, legal_color, legal_depth};
 use super::sphere::Slack;
 use super::violation::ViolationKind;
+use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
-use crate::math::wide;
 
 /// What pixels are judged by.
 pub(super) struct PixelCheck<'a> {

@@ -1,7 +1,7 @@
 //! What a device was given, and what it made of it.
 
+use crate::camera::film::Film;
 use crate::camera::{Camera, CameraKind, CameraVectors};
-use crate::film::Film;
 use crate::image::Image;
 use crate::render::PrimaryLook;
 

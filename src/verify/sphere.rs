@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::line::Line;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
-use crate::math::wide;
+use crate::geometry::math::wide;
 
 /// How far a ray may be from the one that is followed, because another kernel made it anew.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 use super::candidates::Candidates;
 use super::recording::{Recording, Rendered, RequestedCamera, UploadedView};
 use super::rounding::{Interval, U};
-use crate::bounds::Bounds;
-use crate::math::wide;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::math::wide;
 use crate::scene::Scene;
 
 /// Spheres must lie inside the box that rays are moved to by at least this, of the box's diagonal: twice what

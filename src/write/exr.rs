@@ -29,7 +29,7 @@ use ::exr::meta::attribute::{AttributeValue, LevelMode, LineOrder, SampleType, T
 use ::exr::meta::header::{Header, LayerAttributes};
 use ::exr::prelude::{Compression, SmallVec};
 
-use crate::encoding::Encoding;
+use crate::image::encoding::Encoding;
 use crate::image::{Image, Layer, LayerSet};
 
 /// Writes a picture: colour and alpha, and those `layers` beside. Of the encoding, only whether it is transparent

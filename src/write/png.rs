@@ -2,9 +2,9 @@
 
 use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
 
-use crate::color::{to_srgb8, to_srgb16};
-use crate::encoding::{Bits, Encoding};
 use crate::image::Image;
+use crate::image::color::{to_srgb8, to_srgb16};
+use crate::image::encoding::{Bits, Encoding};
 use crate::parallel::for_each;
 
 /// How many pixels a thread converts at a time.

@@ -1,7 +1,7 @@
 //! What spheres look like: every kind of colours shows what spheres one by one show, and what is refused is named.
 
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::lighting::emitters::Emitters;
+use pinhole::light::emitters::Emitters;
 use pinhole::render::SettingsError;
 use pinhole::scene::SceneError;
 use pinhole::verify::run_file;

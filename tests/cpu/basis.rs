@@ -1,7 +1,7 @@
 //! Orthonormal bases over random and degenerate input.
 
 use glam::DVec3;
-use pinhole::basis::{BasisError, OrthonormalBasis};
+use pinhole::geometry::basis::{BasisError, OrthonormalBasis};
 use pinhole::glam;
 
 /// A vector of random direction, and of a length between 10⁻¹⁰⁰ and 10¹⁰⁰.

@@ -1,9 +1,9 @@
 //! Cameras: their rays, their constructors, and what they refuse.
 
 use glam::{DVec2, DVec3};
-use pinhole::bounds::Bounds;
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, CameraError, CameraKind, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::film::YAxis;
+use pinhole::geometry::bounds::Bounds;
 use pinhole::{Film, glam};
 
 const UP: DVec3 = DVec3::Y;

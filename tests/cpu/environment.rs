@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use pinhole::environment::{Environment, EnvironmentError, MAX_RADIANCE, MAX_SIZE};
 use pinhole::glam::DVec3;
+use pinhole::light::environment::{Environment, EnvironmentError, MAX_RADIANCE, MAX_SIZE};
 
 use crate::support::maps::{AS_IT_IS, direction, random_map};
 

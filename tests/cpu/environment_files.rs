@@ -9,7 +9,7 @@ use exr::prelude::{
     SpecificChannels, WritableImage, f16,
 };
 use pinhole::Environment;
-use pinhole::environment::EnvironmentError;
+use pinhole::light::environment::EnvironmentError;
 use pinhole::load::environment::{EnvironmentFileError, MAX_TEXELS, read};
 
 /// A file whose pixels stand one after the other, as the format's inventor allows.

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use pinhole::camera::CameraKind;
-use pinhole::film::YAxis;
+use pinhole::camera::film::YAxis;
 use pinhole::image::{NO_ID, Pixel};
 use pinhole::verify::{NO_HIT, Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};

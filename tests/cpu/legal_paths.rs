@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
+use pinhole::camera::sampling::{pair, pixel_seed, unit};
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::image::NO_ID;
-use pinhole::lighting::{Sky, SkyLight};
+use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::sampling::{pair, pixel_seed, unit};
 use pinhole::verify::{
     Checker, NO_HIT, PathRecording, PathState, RecordedSample, RecordedSurface, TracedRay,
     UploadedLook,

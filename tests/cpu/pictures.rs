@@ -4,11 +4,12 @@ use std::io::Cursor;
 
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Text};
 use npyz::NpyFile;
-use pinhole::encoding::{Bits, Encoding};
+use pinhole::image::color;
+use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::{Layer, NO_ID};
 use pinhole::write::exr::ExrError;
 use pinhole::write::{exr as exr_file, npy, png as png_file};
-use pinhole::{Image, LayerSet, LinearRgb, ToneCurve, color};
+use pinhole::{Image, LayerSet, LinearRgb, ToneCurve};
 
 use crate::support::View;
 

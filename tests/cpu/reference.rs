@@ -104,7 +104,7 @@ fn three_spheres_have_exactly_their_colors_and_places() {
             2 => [0, 0, 0xff],
             _ => [0xb0, 0xe0, 0xe6],
         };
-        assert_eq!(pinhole::color::to_srgb8(*color), expected);
+        assert_eq!(pinhole::image::color::to_srgb8(*color), expected);
         let sphere = (*id).min(3) as usize;
         pixels[sphere] += 1;
         columns[sphere] += index as u64 % 800;

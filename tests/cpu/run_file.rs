@@ -3,8 +3,8 @@
 use crate::support::shaded;
 use std::collections::BTreeMap;
 
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
-use pinhole::film::YAxis;
 use pinhole::image::NO_ID;
 use pinhole::verify::run_file::{self, Provenance, RunFileError};
 use pinhole::verify::{

@@ -2,7 +2,7 @@
 //!
 //! What is expected of chance is derived for Owen's scrambling with ideal random bits; seeds are fixed.
 
-use pinhole::sampling::{pair, pixel_seed, unit};
+use pinhole::camera::sampling::{pair, pixel_seed, unit};
 
 const SEED: u32 = 11;
 

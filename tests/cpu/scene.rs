@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use pinhole::scene::SceneError;
-use pinhole::sphere::SphereError;
+use pinhole::scene::sphere::SphereError;
 use pinhole::{Colors, LinearRgb, Scene, Sphere, glam};
 
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use pinhole::camera::CameraKind;
-use pinhole::encoding::{Bits, Encoding};
-use pinhole::film::YAxis;
+use pinhole::camera::film::YAxis;
+use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::scene_file::{IntegratorKind, SceneFile};
 use pinhole::{LinearRgb, RenderSettings, Shading, ToneCurve, glam};
 

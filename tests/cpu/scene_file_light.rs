@@ -1,9 +1,9 @@
 //! What scene files say of light and materials.
 
-use pinhole::color::LinearRgb;
-use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Light, LightFrame, LightKind, SkyLight};
+use pinhole::image::color::LinearRgb;
+use pinhole::light::environment::Environment;
+use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
 use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::{DataSpheres, IntegratorKind, SceneFile};

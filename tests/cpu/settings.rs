@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::image::NO_ID;
-use pinhole::lighting::{Ground, Light, Sky, SkyLight};
+use pinhole::light::{Ground, Light, Sky, SkyLight};
 use pinhole::render::{PathTracing, Sampling, SettingsError, SettingsNote, Studio};
 use pinhole::{
     Film, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Shading, Sphere, View,

@@ -4,11 +4,11 @@
 use pinhole::render::PrimaryLook;
 use std::f64::consts::TAU;
 
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{
     Camera, CameraKind, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose,
     ThinLensCamera,
 };
-use pinhole::film::YAxis;
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::verify::{

@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex};
 
 use libtest_mimic::Trial;
 use pinhole::accel::{AccelChoice, AccelPlan, BrickKind, Primitive, Structure};
+use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, PinholeCamera};
-use pinhole::film::Film;
 use pinhole::gpu::{
     ColorTarget, DataTargets, Frame, GpuError, Headless, Renderer, RendererOptions, SceneBuffers,
     Targets, adapter, wgpu,

@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 
 use libtest_mimic::Trial;
-use pinhole::environment::Environment;
+use pinhole::PixelFilter;
+use pinhole::camera::{filter, sampling};
 use pinhole::glam::DVec3;
 use pinhole::gpu::Headless;
-use pinhole::{PixelFilter, filter, sampling};
+use pinhole::light::environment::Environment;
 
 use crate::support::maps::{AS_IT_IS, direction, random_map};
 use crate::{compute, trial};

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use libtest_mimic::Trial;
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::film::YAxis;
 use pinhole::gpu::Headless;
 use pinhole::image::{Layer, NO_ID};
 use pinhole::write::npy::encode;
@@ -39,7 +39,7 @@ fn exact_colors(headless: &'static Headless) {
                 2 => [0, 0, 0xff],
                 _ => [0xb0, 0xe0, 0xe6],
             };
-            assert_eq!(pinhole::color::to_srgb8(*color), expected, "sphere {id}");
+            assert_eq!(pinhole::image::color::to_srgb8(*color), expected, "sphere {id}");
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Scenes on which every back end must agree.
 
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::film::YAxis;
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, Shading, Sphere, glam};
 
 use crate::support::{View, shaded};

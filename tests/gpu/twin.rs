@@ -4,7 +4,7 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, Nearest, RayF32};
 use pinhole::camera::CameraKind;
-use pinhole::film::YAxis;
+use pinhole::camera::film::YAxis;
 use pinhole::glam::{UVec2, Vec2, Vec3};
 use pinhole::gpu::Decision;
 use pinhole::image::NO_ID;

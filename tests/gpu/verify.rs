@@ -4,8 +4,8 @@ use std::path::Path;
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelPlan};
+use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::film::YAxis;
 use pinhole::gpu::{Decision, Headless, HeadlessOptions, ShaderEdit};
 use pinhole::image::NO_ID;
 use pinhole::verify::{Certificate, Checker, Recording};

@@ -1,7 +1,7 @@
 //! Scenes whose spheres look like something in every way that there is, and the same spheres one by one.
 
-use pinhole::material::Material;
 use pinhole::render::Sampling;
+use pinhole::scene::material::Material;
 use pinhole::{
     Appearance, ColorMap, Colors, Finish, LinearRgb, Points, RenderSettings, Scene, Sphere,
 };

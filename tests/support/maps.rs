@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
+use pinhole::light::environment::Environment;
 
 /// Not turned.
 pub(crate) const AS_IT_IS: [f32; 2] = [1.0, 0.0];

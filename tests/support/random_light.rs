@@ -8,9 +8,9 @@ use fastrand::Rng;
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::light::environment::Environment;
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
 use pinhole::{
     Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, Points, RenderSettings,

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
-use pinhole::{Encoding, LayerSet, color, write};
+use pinhole::image::color;
+use pinhole::{Encoding, LayerSet, write};
 
 use crate::trial;
 use crate::view::View;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::stage::Stage;
 use crate::cpu::sphere::intersect;
-use crate::ray::Ray;
+use crate::geometry::ray::Ray;
 
 /// A ray in the scene's frame, and the surface that it leaves.
 #[derive(Clone, Copy, Debug)]
@@ -183,10 +183,10 @@ fn ground(stage: &Stage<'_>, flight: &Flight) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::camera::{PinholeCamera, Pose};
-    use crate::color::LinearRgb;
+    use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;
     use crate::scene::Scene;
-    use crate::sphere::Sphere;
+    use crate::scene::sphere::Sphere;
 
     fn with_spheres(spheres: &[Sphere], test: impl FnOnce(&Stage<'_>)) {
         let scene = Scene::new(spheres).unwrap();

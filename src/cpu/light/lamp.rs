@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::maps::{Frame, cone, cone_of_sphere, versine};
 use super::stage::rgb;
-use crate::lighting::LightKind;
+use crate::light::LightKind;
 
 /// Light that arrives at a point.
 #[derive(Clone, Copy, Debug)]

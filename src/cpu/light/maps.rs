@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::disk::concentric_disk;
-use crate::sampling::unit;
+use crate::camera::sampling::unit;
+use crate::geometry::disk::concentric_disk;
 
 /// A point of the unit disk, evenly.
 pub(super) fn disk(u: [u32; 2]) -> DVec2 {

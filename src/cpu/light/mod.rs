@@ -11,9 +11,9 @@ use self::stage::{Stage, luminance};
 use self::studio::follow as follow_in_studio;
 use super::{denoise, for_each_pixel, primary_pixel, render_primary};
 use crate::camera::View;
+use crate::geometry::math::wide;
+use crate::image::outline;
 use crate::image::{Averages, Image, ImageTooLarge, LayerSet, NO_ID, Pixel};
-use crate::math::wide;
-use crate::outline;
 use crate::render::{Integrator, PrimaryLook, RenderSettings, SettingsError};
 use crate::scene::Scene;
 

@@ -10,11 +10,11 @@ use super::maps::Frame;
 use super::sample::{Address, Found};
 use super::source::{Sought, SoughtLight};
 use super::stage::{Stage, rgb};
-use crate::lighting::LightKind;
-use crate::material::Material;
-use crate::ray::Ray;
+use crate::camera::sampling::unit;
+use crate::geometry::ray::Ray;
+use crate::light::LightKind;
 use crate::render::{LightSampling, PathTracing};
-use crate::sampling::unit;
+use crate::scene::material::Material;
 
 /// Which pair of a surface's random numbers is for what.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::flight::{Flight, Start};
 use crate::camera::View;
-use crate::filter;
-use crate::ray::Ray;
-use crate::sampling::{self, pixel_seed};
+use crate::camera::filter;
+use crate::camera::sampling::{self, pixel_seed};
+use crate::geometry::ray::Ray;
 
 /// What one sample of a pixel finds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

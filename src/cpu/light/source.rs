@@ -6,9 +6,9 @@ use super::flight::Surface;
 use super::lamp::{self, Arrival};
 use super::maps::{Frame, cone, cone_density, cone_of_sphere, versine};
 use super::stage::{Stage, rgb};
-use crate::lighting::LightKind;
+use crate::camera::sampling::unit;
+use crate::light::LightKind;
 use crate::render::LightSampling;
-use crate::sampling::unit;
 
 /// One of the things that light is sought at, each with the same probability.
 #[derive(Clone, Copy, Debug)]

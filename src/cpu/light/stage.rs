@@ -5,15 +5,15 @@ use glam::DVec3;
 use super::flight::Surface;
 use super::source::Sources;
 use crate::camera::Camera;
-use crate::color::LinearRgb;
-use crate::environment::Environment;
-use crate::lighting::emitters::Emitters;
-use crate::lighting::energy::EnergyTables;
-use crate::lighting::{LightKind, SkyLight};
-use crate::material::Material;
-use crate::math::{unit, wide};
+use crate::geometry::math::{unit, wide};
+use crate::image::color::LinearRgb;
+use crate::light::emitters::Emitters;
+use crate::light::energy::EnergyTables;
+use crate::light::environment::Environment;
+use crate::light::{LightKind, SkyLight};
 use crate::render::{Integrator, RenderSettings};
 use crate::scene::Scene;
+use crate::scene::material::Material;
 
 #[derive(Debug)]
 pub(super) struct Stage<'a> {

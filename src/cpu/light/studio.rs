@@ -10,8 +10,8 @@ use super::lamp;
 use super::maps::{self, Frame};
 use super::sample::{Address, Found};
 use super::stage::{Plane, Stage, luminance, rgb};
-use crate::lighting::LightKind;
-use crate::ray::Ray;
+use crate::geometry::ray::Ray;
+use crate::light::LightKind;
 use crate::render::Studio;
 
 /// What a ray from the camera brings.

@@ -6,12 +6,12 @@ use super::look::Lit;
 use super::passes::LitPasses;
 use super::records::{Look, QUEUE_HEAD, Stage};
 use super::sizes::LitSizes;
-use crate::environment::Environment;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::readback::ReadableBuffer;
 use crate::gpu::records::Frame;
 use crate::gpu::scene_buffers::part;
 use crate::gpu::tiles::Tile;
+use crate::light::environment::Environment;
 
 /// How many dispatches one submission has at most.
 pub(in crate::gpu) const MOST_STAGES: usize = 1024;

@@ -8,16 +8,16 @@ use glam::DVec3;
 use super::kernels::{Mode, SkyKind, Sources, Surfaces};
 use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
 use crate::camera::Camera;
-use crate::color::LinearRgb;
-use crate::environment::Environment;
+use crate::geometry::math::unit;
 use crate::gpu::records::NO_HIT;
 use crate::gpu::scene_summary::{EmissiveSphere, SceneSummary};
-use crate::lighting::emitters::Emitters;
-use crate::lighting::energy::EnergyTables;
-use crate::lighting::{LightKind, Sky, SkyLight};
-use crate::material::{Finish, Material};
-use crate::math::unit;
+use crate::image::color::LinearRgb;
+use crate::light::emitters::Emitters;
+use crate::light::energy::EnergyTables;
+use crate::light::environment::Environment;
+use crate::light::{LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings};
+use crate::scene::material::{Finish, Material};
 
 /// What a picture's kernels get to know of its lighting.
 #[derive(Debug)]
@@ -223,7 +223,7 @@ fn sky(sky: &Sky, look: &mut Look) {
         }
         SkyLight::Image { environment, strength, rotation } => {
             look.environment_size = [environment.width(), environment.height()];
-            look.environment_rotation = crate::environment::Environment::rotation(*rotation);
+            look.environment_rotation = crate::light::environment::Environment::rotation(*rotation);
             look.environment_strength = *strength;
         }
     }

@@ -103,15 +103,15 @@ mod tests {
     use super::super::kernels::Mode;
     use super::*;
     use crate::accel::AccelChoice;
+    use crate::camera::film::Film;
     use crate::camera::{PinholeCamera, Pose, View};
-    use crate::color::LinearRgb;
-    use crate::environment::Environment;
-    use crate::film::Film;
+    use crate::image::color::LinearRgb;
+    use crate::image::outline;
     use crate::image::{Layer, LayerSet};
-    use crate::lighting::{Sky, SkyLight};
-    use crate::outline;
+    use crate::light::environment::Environment;
+    use crate::light::{Sky, SkyLight};
     use crate::render::{Integrator, Outline, RenderSettings, Studio};
-    use crate::sphere::Sphere;
+    use crate::scene::sphere::Sphere;
 
     fn planned(
         opacity: f32,

@@ -7,7 +7,7 @@ use super::records::{
     COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
     PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
 };
-use crate::film::Film;
+use crate::camera::film::Film;
 use crate::gpu::tiles::WORKGROUP_SIDE;
 
 /// The most paths that are followed at a time. Their state then takes 56 to 80 MiB.

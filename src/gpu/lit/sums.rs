@@ -1,8 +1,8 @@
 //! From the sums of a tile's pixels to a picture.
 
 use super::records::FILM_SLOTS;
-use crate::color::luminance;
 use crate::gpu::tiles::Tile;
+use crate::image::color::luminance;
 use crate::image::{Averages, Image};
 
 /// Sums of one pixel: the three vectors of `shaders/film_sums.wgsl`.

@@ -9,7 +9,7 @@ use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{Compression, ReadLayers, Vec2, read as reader};
 
 use super::{EnvironmentFileError, Watched, black, refusal};
-use crate::environment::Environment;
+use crate::light::environment::Environment;
 
 const FORMAT: &str = "OpenEXR";
 

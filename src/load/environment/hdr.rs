@@ -6,7 +6,7 @@ use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 
 use super::{EnvironmentFileError, Watched, black, refusal};
-use crate::environment::Environment;
+use crate::light::environment::Environment;
 
 const FORMAT: &str = "Radiance HDR";
 

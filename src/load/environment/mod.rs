@@ -6,7 +6,7 @@
 use std::cell::Cell;
 use std::io::{Cursor, Read, Seek, SeekFrom};
 
-use crate::environment::{Environment, EnvironmentError};
+use crate::light::environment::{Environment, EnvironmentError};
 
 #[cfg(feature = "exr")]
 mod exr;

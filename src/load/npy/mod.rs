@@ -3,7 +3,7 @@
 mod header;
 
 use super::numbers::{Layout, rows};
-use crate::points::Points;
+use crate::scene::points::Points;
 use crate::text::{one_line, shortened};
 
 /// Why an array is no list of spheres.

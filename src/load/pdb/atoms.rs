@@ -6,10 +6,10 @@ use super::error::PdbError;
 use super::hybrid36;
 use super::labels::{Labels, Memo, retain};
 use super::record::Record;
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 use crate::load::elements::{Appearance, appearance, unknown_note};
 use crate::load::{Column, ColumnValues, Loaded};
-use crate::points::Points;
+use crate::scene::points::Points;
 
 /// What an atom must have, each with its first and last column.
 const NEEDED: [(&str, usize, usize); 6] = [

@@ -3,7 +3,7 @@
 use super::*;
 use crate::load::elements::appearance;
 use crate::load::{ColumnValues, Labels};
-use crate::points::Points;
+use crate::scene::points::Points;
 
 /// An atom with what matters to a test; the rest is in its columns, too.
 struct Row {

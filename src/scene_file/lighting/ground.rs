@@ -4,10 +4,10 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::color::LinearRgb;
 use crate::exact::Table;
-use crate::lighting::Ground;
-use crate::math::{MAX_LENGTH, unit};
+use crate::geometry::math::{MAX_LENGTH, unit};
+use crate::image::color::LinearRgb;
+use crate::light::Ground;
 use crate::scene::Scene;
 use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError};
 use crate::scene_file::value::{ColorValue, Vector};

@@ -4,10 +4,10 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::color::LinearRgb;
 use crate::exact::Table;
-use crate::lighting::{Light, LightFrame, LightKind};
-use crate::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
+use crate::image::color::LinearRgb;
+use crate::light::{Light, LightFrame, LightKind};
 use crate::scene_file::place::{Keys, Lines, Number, Place, SceneFileError, refuse_foreign, span};
 use crate::scene_file::value::{ColorValue, Vector, scaled};
 

@@ -25,13 +25,13 @@ use super::SceneFile;
 use super::place::{Lines, Place, Placed, SceneFileError, span};
 use super::value::scaled;
 use crate::camera::Camera;
-use crate::color::LinearRgb;
-use crate::environment::Environment;
 use crate::exact::Table;
-use crate::lighting::{Light, Sky, SkyLight};
-use crate::material::Material;
+use crate::image::color::LinearRgb;
+use crate::light::environment::Environment;
+use crate::light::{Light, Sky, SkyLight};
 use crate::render::{Integrator, PathTracing, RenderSettings, Sampling, SettingsError};
 use crate::scene::Scene;
+use crate::scene::material::Material;
 
 /// How a picture is made, by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]

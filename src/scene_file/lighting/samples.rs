@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::camera::filter::PixelFilter;
 use crate::exact::Table;
-use crate::filter::PixelFilter;
 use crate::render::{LightSampling, PathTracing, Sampling};
 use crate::scene_file::place::{Keys, Lines, SceneFileError, whole};
 

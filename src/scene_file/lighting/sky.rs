@@ -5,10 +5,10 @@ use std::sync::Arc;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::color::LinearRgb;
-use crate::environment::Environment;
 use crate::exact::Table;
-use crate::lighting::{Sky, SkyLight};
+use crate::image::color::LinearRgb;
+use crate::light::environment::Environment;
+use crate::light::{Sky, SkyLight};
 use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError, refuse_foreign, span};
 use crate::scene_file::value::{ColorValue, scaled};
 

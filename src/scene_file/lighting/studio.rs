@@ -4,9 +4,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::camera::Camera;
-use crate::color::LinearRgb;
 use crate::exact::Table;
-use crate::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::image::color::LinearRgb;
 use crate::range::RangeError;
 use crate::render::{DepthCue, Occlusion, Outline, Studio};
 use crate::scene::Scene;

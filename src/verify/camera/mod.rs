@@ -13,8 +13,8 @@ use super::line::Line;
 use super::recording::UploadedView;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, error_of_length};
 use crate::camera::CameraKind;
-use crate::film::Film;
-use crate::math::wide;
+use crate::camera::film::Film;
+use crate::geometry::math::wide;
 
 pub(super) use any::AnyRay;
 pub(super) use entered::EnteredRay;

@@ -6,8 +6,8 @@ use super::expected::{Expected, Mismatch};
 use super::recording::{PathRecording, PathState, UploadedLook, flag, slot};
 use super::vertex::Vertex;
 use super::warp::Axes;
+use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
-use crate::sampling::{pair, pixel_seed};
 use crate::scene::Scene;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector};
@@ -277,7 +277,7 @@ impl<'a> Kernel<'a> {
 
 /// The number in [0, 1) that the upper 24 bits stand for, exactly.
 pub(super) fn unit(bits: u32) -> Number {
-    Number::known(crate::sampling::unit(bits))
+    Number::known(crate::camera::sampling::unit(bits))
 }
 
 /// The radiance of a path, and the light that it looked for last if nothing is in between.

@@ -1,6 +1,6 @@
 //! What a device did with paths, dispatch by dispatch, and the numbers that it was given.
 
-use crate::film::Film;
+use crate::camera::film::Film;
 use crate::render::RenderSettings;
 use crate::verify::recording::{RequestedCamera, UploadedView};
 

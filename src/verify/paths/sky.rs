@@ -5,7 +5,7 @@ use super::kernel::Kernel;
 use super::light::DIRECTIONAL;
 use super::recording::{UploadedSky, flag, slot};
 use super::warp::pi;
-use crate::sampling::unit;
+use crate::camera::sampling::unit;
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 
 impl Kernel<'_> {

@@ -7,11 +7,11 @@ use glam::Vec4;
 use super::material::ENERGIES;
 use super::recording::{PathRecording, UploadedLook};
 use super::upload::{PathUploadError, are_near, is_near};
-use crate::lighting::energy::EnergyTables;
-use crate::lighting::{LightKind, SkyLight};
-use crate::material::{Finish, Material};
+use crate::light::energy::EnergyTables;
+use crate::light::{LightKind, SkyLight};
 use crate::render::{Integrator, LightSampling};
 use crate::scene::Scene;
+use crate::scene::material::{Finish, Material};
 
 /// Tables, and how they are read.
 struct Tables<'a> {
@@ -76,8 +76,9 @@ fn check_lights(
         let [place, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
         let size = tables.numbers(3 * index + 1)[3];
         let kind = tables.words(3 * index)[3];
-        let near =
-            |color: crate::color::LinearRgb| are_near(power, color.to_array().map(f64::from));
+        let near = |color: crate::image::color::LinearRgb| {
+            are_near(power, color.to_array().map(f64::from))
+        };
         // What f64 itself may round where large numbers cancel.
         let is_at = |point: glam::DVec3| {
             let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());

@@ -2,9 +2,9 @@
 
 use super::recording::{PathRecording, UploadedLook, flag};
 use super::tables;
-use crate::environment::Environment;
-use crate::lighting::SkyLight;
-use crate::math::unit;
+use crate::geometry::math::unit;
+use crate::light::SkyLight;
+use crate::light::environment::Environment;
 use crate::render::{Integrator, LightSampling, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::candidates::Candidates;

@@ -6,8 +6,8 @@ use super::certificate::PathStage;
 use super::expected::Mismatch;
 use super::kernel::Kernel;
 use super::recording::{flag, slot};
+use crate::geometry::math::wide;
 use crate::image::NO_ID;
-use crate::math::wide;
 use crate::verify::line::Line;
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
@@ -111,7 +111,7 @@ impl Kernel<'_> {
 
     /// `opacities` are those of the material and of the colour, which the kernel multiplies.
     fn paint(&mut self, color: [f32; 3], place: u32, opacities: [f32; 2]) -> Paint {
-        let [_, pass] = self.pair(3).map(crate::sampling::unit);
+        let [_, pass] = self.pair(3).map(crate::camera::sampling::unit);
         let [material, alpha] = opacities.map(f64::from);
         // Without an error of its own: both have 24 bits.
         let opacity = material * alpha;

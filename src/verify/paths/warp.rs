@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::kernel::Kernel;
-use crate::sampling::unit;
+use crate::camera::sampling::unit;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector, sin_cos_eighth};
 

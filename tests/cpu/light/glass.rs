@@ -1,7 +1,7 @@
 //! What is seen through spheres: absorption, and opacity.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::light::{Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{DepthCue, Integrator, LightSampling, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 

@@ -1,7 +1,7 @@
 //! Lights over a plane and a sphere, against irradiance on paper.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere, cpu};
 

@@ -1,7 +1,7 @@
 //! No light gets where it should not, and none is lost, at any scale: rays start on surfaces, not near them.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
+use pinhole::light::{Ground, Light, LightFrame, LightKind};
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, Material, RenderSettings, Sphere};
 

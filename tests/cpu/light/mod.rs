@@ -8,11 +8,11 @@ mod occlusion;
 mod pixels;
 mod unbiased;
 
+use pinhole::camera::filter::PixelFilter;
 use pinhole::camera::{Camera, PinholeCamera, Pose};
 use pinhole::cpu::SampledPicture;
-use pinhole::filter::PixelFilter;
-use pinhole::lighting::{Sky, SkyLight};
-use pinhole::ray::Ray;
+use pinhole::geometry::ray::Ray;
+use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 

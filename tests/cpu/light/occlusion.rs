@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind};
+use pinhole::light::{Ground, Light, LightFrame, LightKind};
 use pinhole::render::{Integrator, LightSampling, Occlusion, Studio};
 use pinhole::{LinearRgb, RenderSettings, Sphere};
 

@@ -1,9 +1,9 @@
 //! How samples become pixels: means, variances, filters, lenses, and what is seen where there is nothing.
 
+use pinhole::camera::filter::PixelFilter;
 use pinhole::camera::{FisheyeCamera, PinholeCamera, Pose, ThinLensCamera};
-use pinhole::filter::PixelFilter;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Sky, SkyLight};
+use pinhole::light::{Ground, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, SettingsError, Studio};
 use pinhole::{Film, LayerSet, Material, RenderSettings, Scene, Sphere, View, cpu, image::NO_ID};
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing};
 use pinhole::{Environment, Film, Image, Material, RenderSettings, Scene, Sphere};
 

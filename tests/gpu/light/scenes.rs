@@ -2,7 +2,7 @@
 
 use pinhole::camera::{Camera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{
     DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio,
 };

@@ -1,8 +1,8 @@
 //! What a device is given, spoilt; or what is said that it was given.
 
 use pinhole::glam::DVec3;
-use pinhole::lighting::LightKind;
-use pinhole::material::Material;
+use pinhole::light::LightKind;
+use pinhole::scene::material::Material;
 use pinhole::verify::PathRecording;
 use pinhole::{LinearRgb, Scene, Sphere};
 

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
-use pinhole::environment::Environment;
 use pinhole::glam::DVec3;
-use pinhole::lighting::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
-use pinhole::material::Material;
+use pinhole::light::environment::Environment;
+use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
+use pinhole::scene::material::Material;
 use pinhole::{Appearance, Film, Finish, LinearRgb, Points, Scene, Sphere, View};
 
 /// A scene, and how it is lit and seen.

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::flight::{Meeting, Surface};
 use super::stage::Stage;
-use crate::lighting::energy::{self, ENTRIES};
-use crate::material::Material;
+use crate::light::energy::{self, ENTRIES};
+use crate::scene::material::Material;
 use conductor::Conductor;
 use dielectric::Dielectric;
 use ggx::Ggx;

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use super::*;
-use crate::lighting::energy::{Lobe, albedo_table, lookup};
-use crate::sampling::{pair, unit};
+use crate::camera::sampling::{pair, unit};
+use crate::light::energy::{Lobe, albedo_table, lookup};
 
 const ROUGHNESSES: [f32; 4] = [0.1, 0.3, 0.6, 1.0];
 

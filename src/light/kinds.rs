@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::camera::{Camera, CameraVectors};
-use crate::color::LinearRgb;
-use crate::math::unit;
+use crate::geometry::math::unit;
+use crate::image::color::LinearRgb;
 
 /// A light, in the world or at the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::math::unit;
+use crate::geometry::math::unit;
 
 /// Below this sine of the angle between the two vectors, the direction of `u` is mostly rounding.
 const MIN_SINE: f64 = 1e-9;

@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::material::{Finish, Material};
 use crate::parallel;
+use crate::scene::material::{Finish, Material};
 
 /// How many entries a table has. Entry k is of the cosine μ = (k/255)⁴: the finer, the flatter the view, since
 /// lobes of roughness 0.02 change where μ is about 0.0004.

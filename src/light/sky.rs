@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::color::LinearRgb;
-use crate::environment::Environment;
+use crate::image::color::LinearRgb;
+use crate::light::environment::Environment;
 
 /// The light from infinitely far away, and whether it is seen. Up is +y.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The tables by which texels are sampled.
 
 use super::solid_angle;
-use crate::color;
+use crate::image::color;
 use crate::parallel::for_each;
 
 /// How many shares a table has: f32 holds every multiple of 2⁻²⁴ up to 1, and their differences.

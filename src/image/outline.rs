@@ -80,7 +80,7 @@ fn is_edge(a: Spot, b: Spot, outline: &Outline) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::LinearRgb;
+    use crate::image::color::LinearRgb;
 
     /// A white picture of one row: a sphere on the left, another behind it on the right.
     fn row(depths: [f32; 8]) -> Image {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::color::LinearRgb;
+use crate::image::color::LinearRgb;
 
 /// An infinite plane, matt, seen and felt from above only.
 #[derive(Clone, Copy, Debug, PartialEq)]

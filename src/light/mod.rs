@@ -3,11 +3,12 @@
 
 pub mod emitters;
 pub mod energy;
+pub mod environment;
 mod ground;
-mod light;
+mod kinds;
 mod sky;
 
 pub use emitters::Emitters;
 pub use ground::Ground;
-pub use light::{Light, LightFrame, LightKind};
+pub use kinds::{Light, LightFrame, LightKind};
 pub use sky::{Sky, SkyLight};

@@ -1,7 +1,7 @@
 //! Which emissive sphere is sampled, by chance in proportion to its power.
 
-use crate::color::luminance;
-use crate::material::{Finish, Material};
+use crate::image::color::luminance;
+use crate::scene::material::{Finish, Material};
 use crate::scene::{Duplicates, Scene};
 
 /// The emissive spheres of a scene, each with the probability by which light is sought at it.
@@ -101,8 +101,8 @@ fn brightness(color: [f64; 3], finish: &Finish) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::LinearRgb;
-    use crate::sphere::Sphere;
+    use crate::image::color::LinearRgb;
+    use crate::scene::sphere::Sphere;
 
     fn lamp(radius: f64, strength: f32) -> Sphere {
         Sphere::new([0.0; 3], radius, LinearRgb::WHITE)

@@ -92,7 +92,7 @@ fn product(rows: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::to_srgb8;
+    use crate::image::color::to_srgb8;
 
     fn grey(curve: ToneCurve, x: f32) -> f32 {
         curve.apply([x; 3])[1]

@@ -1,7 +1,7 @@
 //! Spheres as arrays hold them, without colours.
 
-use crate::color::LinearRgb;
-use crate::sphere::Sphere;
+use crate::image::color::LinearRgb;
+use crate::scene::sphere::Sphere;
 
 /// Spheres (x, y, z, radius), not checked, in the precision of their source.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.

@@ -1,8 +1,8 @@
 //! The one primitive.
 
-use crate::color::LinearRgb;
-use crate::material::{Finish, Material};
-use crate::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
+use crate::image::color::LinearRgb;
+use crate::scene::material::{Finish, Material};
 
 /// A sphere in world space, as a caller gives it. [`crate::Scene`] checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]

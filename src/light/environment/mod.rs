@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use crate::sampling::unit;
+use crate::camera::sampling::unit;
 
 mod reduce;
 mod shares;

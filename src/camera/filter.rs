@@ -203,7 +203,10 @@ mod tests {
         let table = PixelFilter::Box.offset_table();
         for u in [0, 1 << 8, 0x1234_5678, 1 << 31, u32::MAX] {
             let found = offset(&table, u);
-            assert!(found.to_bits() == (crate::sampling::unit(u) - 0.5).to_bits(), "{u}: {found}");
+            assert!(
+                found.to_bits() == (crate::camera::sampling::unit(u) - 0.5).to_bits(),
+                "{u}: {found}"
+            );
         }
     }
 
@@ -221,7 +224,7 @@ mod tests {
                 let [a, b] = [table[piece], table[piece + 1]].map(f64::from);
                 let bound = 0.25 * (b - a) * (density(filter, a) - density(filter, b)).abs();
                 let x = offset(&table, u);
-                let error = (cumulative(filter, x) - crate::sampling::unit(u)).abs();
+                let error = (cumulative(filter, x) - crate::camera::sampling::unit(u)).abs();
                 assert!(error < bound + 1e-7, "{filter:?}, {u:x}: {error}");
                 largest = largest.max(error);
             }

@@ -1,6 +1,6 @@
 //! How a picture is written: what is asked of writers beside the picture itself.
 
-use crate::tone::ToneCurve;
+use crate::image::tone::ToneCurve;
 
 /// How many bits a sample of a PNG has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
