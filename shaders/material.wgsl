@@ -1,4 +1,4 @@
-// What a surface does with light. Twin: src/material.rs.
+// What a surface does with light. Twin: src/scene/material.rs.
 
 const LAMBERT: u32 = 0u;
 const CONDUCTOR: u32 = 1u;

@@ -1,19 +1,45 @@
-//! Ray traces spheres with WGSL compute shaders, without a display, and checks its pictures against a
+//! Ray traces spheres with WGSL compute shaders, on any device and without a display, and checks its pictures against a
 //! CPU reference.
 //!
-//! A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which answers which ray
-//! belongs to a place in the picture, with a [`Film`], which has the picture's size.
-//! [`RenderSettings`] say how rays become colours: by what they meet first, by the lights of a studio, or
-//! along paths. From these three, [`cpu::render`] makes
-//! an [`Image`] in f64, slowly and simply, and the module `gpu` makes the same image with
-//! compute shaders: [`gpu::Headless`] on a device of its own, [`gpu::Renderer`] inside the frame of a
-//! program that already uses wgpu.
+//! | I want to … | start here |
+//! |---|---|
+//! | render a file of atoms or points | [`load::open`], [below](#render-a-file) |
+//! | render arrays that I have in memory | [`Scene::from_f32`], [below](#render-from-arrays) |
+//! | have light, shadows and soft edges | [`RenderSettings::studio`], [`RenderSettings::path`], [below](#light-it) |
+//! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
+//! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
+//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly |
 //!
+//! Three things make a picture. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which answers
+//! which ray belongs to a place in the picture, with a [`Film`], which has the picture's size. [`RenderSettings`] say how
+//! rays become colours: by what they meet first, by the lights of a studio, or along paths.
+//!
+//! # Render a file
+//! ```no_run
+//! # #[cfg(all(feature = "gpu", feature = "png"))] {
+//! use pinhole::camera::PinholeCamera;
+//! use pinhole::gpu::{Headless, HeadlessOptions};
+//! use pinhole::{Encoding, Film, LayerSet, LinearRgb, RenderSettings, View, load, write};
+//!
+//! let loaded = load::open("4hhb.pdb", &load::Options::default())?;
+//! let scene = loaded.scene(LinearRgb::WHITE)?; // white where the file gives no colours
+//! let film = Film::new(800, 600)?;
+//! let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! let headless = Headless::open(&HeadlessOptions::default())?;
+//! let view = View::new(&camera, film);
+//! let image = headless.render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
+//! std::fs::write("4hhb.png", write::png::encode(&image, &Encoding::default())?)?;
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Render from arrays
 //! ```
 //! use pinhole::camera::{PinholeCamera, Pose};
-//! use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
+//! use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 //!
-//! let scene = Scene::new(&[Sphere::new([0.0, 0.0, 0.0], 1.0, LinearRgb::from_srgb8([255, 0, 0]))])?;
+//! let spheres = vec![[0.0, 0.0, 0.0, 1.0], [1.5, 0.0, 0.0, 0.5]]; // x, y, z, radius
+//! let scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([255, 0, 0]))?;
 //! let film = Film::new(64, 48)?;
 //! let pose = Pose::looking_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
 //! let camera = PinholeCamera::with_vertical_fov(pose, 0.5, film.aspect())?;
@@ -21,10 +47,63 @@
 //! let image = cpu::render(&scene, &view, &RenderSettings::default(), LayerSet::DATA)?;
 //! assert_eq!(image.id().unwrap()[24 * 64 + 32], 0);
 //! assert!((image.depth().unwrap()[24 * 64 + 32] - 4.0).abs() < 1e-3);
-//! // The same with lights, shadows and soft ambient light; `RenderSettings::path()` follows light along paths.
-//! let lit = cpu::render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
-//! assert_eq!(lit.color().len(), 64 * 48);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//! [`Appearance`] gives each sphere a colour, or a number that a [`ColorMap`] turns into one.
+//!
+//! # Light it
+//! ```
+//! # use pinhole::camera::PinholeCamera;
+//! # use pinhole::{Film, LayerSet, LinearRgb, Scene, View, cpu};
+//! use pinhole::RenderSettings;
+//! use pinhole::render::Sampling;
+//!
+//! # let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]], LinearRgb::WHITE)?;
+//! # let film = Film::new(16, 12)?;
+//! # let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! # let view = View::new(&camera, film);
+//! let sampling = Sampling { samples: 4, ..Sampling::default() }; // rays for each pixel
+//! let studio = RenderSettings { sampling: sampling.clone(), ..RenderSettings::studio() };
+//! let path = RenderSettings { sampling, ..RenderSettings::path() };
+//! for settings in [studio, path] {
+//!     let image = cpu::render(&scene, &view, &settings, LayerSet::COLOR)?;
+//!     assert_eq!(image.color().len(), 16 * 12);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Embed it
+//! The host keeps its device, queue, encoder and textures; pinhole records and never submits. `examples/embed.rs` is a
+//! whole program.
+//! ```no_run
+//! # #[cfg(feature = "gpu")]
+//! # fn frame(device: &pinhole::gpu::wgpu::Device, queue: &pinhole::gpu::wgpu::Queue, target: &pinhole::gpu::wgpu::TextureView,
+//! #     encoder: &mut pinhole::gpu::wgpu::CommandEncoder, scene: &pinhole::Scene, view: &pinhole::View<'_>,
+//! # ) -> Result<(), Box<dyn std::error::Error>> {
+//! use pinhole::RenderSettings;
+//! use pinhole::gpu::{Frame, Renderer, RendererOptions, SceneBuffers, Targets};
+//!
+//! let renderer = Renderer::new(device, &RendererOptions::default())?; // once for each device
+//! let buffers = SceneBuffers::new(&renderer, device, queue, scene)?; // once for each scene
+//! let mut frame = Frame::new(&renderer, device, &Targets { color: target, data: None })?;
+//! frame.set_view(queue, &buffers, view, &RenderSettings::default())?; // when the camera moves
+//! renderer.record(encoder, &buffers, &frame)?; // in every frame
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Verify it
+//! ```no_run
+//! # #[cfg(feature = "gpu")]
+//! # fn verify(scene: &pinhole::Scene, view: &pinhole::View<'_>) -> Result<(), Box<dyn std::error::Error>> {
+//! use pinhole::RenderSettings;
+//! use pinhole::gpu::{Headless, HeadlessOptions};
+//!
+//! let headless = Headless::open(&HeadlessOptions::default())?;
+//! let certificate = headless.verify(scene, view, &RenderSettings::default())?;
+//! assert!(certificate.is_legal(), "{certificate}");
+//! # Ok(())
+//! # }
 //! ```
 //!
 //! # Features
