@@ -84,6 +84,9 @@ impl Data {
             sphere.radius *= self.radius_scale;
             spheres.push(sphere);
         }
+        if spheres.is_empty() && !is_left_out.is_empty() {
+            notes.push(format!("`leave_out` leaves none of the atoms of {}", self.file));
+        }
         let occurs = |name: &String| columns.iter().any(|labels| labels.names.contains(name));
         let absent = self.elements.iter().filter(|element| !occurs(&element.name));
         notes.extend(absent.map(|element| {

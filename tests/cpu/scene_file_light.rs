@@ -174,6 +174,9 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     let (found, notes) = radii("leave_out = { residue = ['HOH', 'SOL'], chain = ['B'] }\n");
     assert_eq!(found, [1.0]);
     assert_eq!(notes, ["`leave_out`: there is no residue SOL in a.pdb"]);
+    let (found, notes) = radii("leave_out = { chain = ['A', 'B'] }\n");
+    assert!(found.is_empty());
+    assert_eq!(notes, ["`leave_out` leaves none of the atoms of a.pdb"]);
     for (text, wanted) in [
         (
             "elements_by = ['colour']\n",
