@@ -1,5 +1,6 @@
 //! Divides spheres among bricks, on all cores.
 
+use crate::geometry::math::equal_bits;
 use crate::parallel::{both, map_chunks};
 
 /// Parts of a scene.
@@ -37,7 +38,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
 fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
     let center = |id: &u32| {
         let [x, y, z, _] = spheres[*id as usize];
-        [x, y, z].map(|x| (x + 0.0).to_bits())
+        [x, y, z].map(equal_bits)
     };
     let mut centers: Vec<[u32; 3]> = ids.iter().map(center).collect();
     centers.sort_unstable();
@@ -115,7 +116,7 @@ fn select(
 
 /// A number that ascends as `x` does; the same for zeros of both signs.
 fn ascending(x: f32) -> u32 {
-    let bits = (x + 0.0).to_bits();
+    let bits = equal_bits(x);
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 

@@ -26,6 +26,11 @@ pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
     (v / largest).try_normalize()
 }
 
+/// The same for numbers that are equal: zeros lose their signs.
+pub(crate) fn equal_bits(x: f32) -> u32 {
+    (x + 0.0).to_bits()
+}
+
 /// The same numbers in f64.
 pub(crate) fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))

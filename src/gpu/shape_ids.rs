@@ -33,16 +33,10 @@ impl ShapeIds {
     /// For a structure of all spheres.
     pub(super) fn of_all(scene: &Scene, accel: &Accel) -> Self {
         // Where equal spheres are in one brick, their places will do.
-        let duplicates = if accel.may_part_equals() {
-            Duplicates::of(scene.spheres())
-        } else {
-            Duplicates::default()
-        };
-        if duplicates.is_empty() {
-            return Self { ids: None, left_by: LeftBy::Place };
-        }
-        let ids = (0..scene.len() as u32).map(|id| duplicates.first_of(id)).collect();
-        Self { ids: Some(ids), left_by: LeftBy::Id }
+        let duplicates = accel.may_part_equals().then(|| Duplicates::of(scene.spheres()));
+        let ids = duplicates.and_then(Duplicates::into_firsts);
+        let left_by = if ids.is_some() { LeftBy::Id } else { LeftBy::Place };
+        Self { ids, left_by }
     }
 
     /// For a structure of the opaque spheres alone, by their indices among all.

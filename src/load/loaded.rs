@@ -3,7 +3,7 @@
 use crate::image::color::LinearRgb;
 use crate::scene::points::Points;
 use crate::scene::sphere::Sphere;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Appearance, Colors, Scene, SceneError};
 
 /// The spheres of one frame of a file, and what else the file says of each.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,9 +96,7 @@ impl Loaded {
     /// # Errors
     /// The first sphere that is out of range.
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
-        if self.colors.is_none() {
-            return self.points.scene(color);
-        }
-        Scene::new(&self.spheres(color).collect::<Vec<_>>())
+        let colors = self.colors.map_or(Colors::One(color), |colors| Colors::distinct(&colors));
+        Scene::from_parts(self.points, Appearance::new(colors))
     }
 }

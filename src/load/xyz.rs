@@ -19,12 +19,12 @@ use crate::text::shortened;
 /// The atoms of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// One sphere per atom, in the order of the file.
-    pub spheres: Vec<Sphere>,
-    /// The species, each once, in order of appearance.
-    pub species: Vec<String>,
-    /// Of each sphere, the place of its species among them.
-    pub species_indices: Vec<u32>,
+    /// The centre and radius of each atom, in the order of the file.
+    pub spheres: Vec<[f64; 4]>,
+    /// The colour of each atom.
+    pub colors: Vec<LinearRgb>,
+    /// The species of each atom.
+    pub species: Labels,
     /// Species that are no chemical element, each once, in order of appearance.
     pub unknown_species: Vec<String>,
 }
@@ -172,18 +172,13 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 
 /// Reads one frame, with the colours of its elements.
 pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    let Frame { spheres, species, species_indices, unknown_species } =
+    let Frame { spheres, colors, species, unknown_species } =
         read(bytes, options.frame.unwrap_or_default())?;
-    let point = |sphere: &Sphere| {
-        let [x, y, z] = sphere.center;
-        [x, y, z, sphere.radius]
-    };
-    let mut loaded = Loaded::new(Points::F64(spheres.iter().map(point).collect()));
-    loaded.colors = Some(spheres.iter().map(|sphere| sphere.color).collect());
-    let labels = Labels { names: species, indices: species_indices };
+    let mut loaded = Loaded::new(Points::F64(spheres));
+    loaded.colors = Some(colors);
     loaded
         .columns
-        .push(Column { name: "species".to_owned(), values: ColumnValues::Labels(labels) });
+        .push(Column { name: "species".to_owned(), values: ColumnValues::Labels(species) });
     loaded.notes.extend(unknown_note(&unknown_species, " if the file gives none"));
     Ok(loaded)
 }
@@ -250,7 +245,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
     let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
     let columns = Columns::from_comment(&comment)
         .map_err(|message| XyzError::Properties { line: lines.line, message })?;
-    let mut spheres = Vec::new();
+    let (mut spheres, mut colors) = (Vec::new(), Vec::new());
     let (mut names, mut species_indices) = (Vec::new(), Vec::new());
     let mut unknown_species = Vec::new();
     let mut known: HashMap<&str, (u32, Appearance)> = HashMap::new();
@@ -290,10 +285,13 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         let sphere = Sphere::new(center, radius, color);
         let out_of_range = |error| XyzError::Sphere { line: atom.line, atom: found, error };
         sphere.check().map_err(out_of_range)?;
-        spheres.push(sphere);
+        let [x, y, z] = center;
+        spheres.push([x, y, z, radius]);
+        colors.push(color);
         species_indices.push(index);
     }
-    Ok(Frame { spheres, species: names, species_indices, unknown_species })
+    let species = Labels { names, indices: species_indices };
+    Ok(Frame { spheres, colors, species, unknown_species })
 }
 
 /// Where an atom's line has what, counted in columns from 0.

@@ -2,11 +2,12 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::geometry::math::equal_bits;
 use crate::parallel::map_chunks;
 
 /// Spheres whose centre and radius are those of one before them. Of several at the same distance the first is met, so
 /// they are never seen.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) struct Duplicates {
     /// Of every sphere, the first that is equal to it; empty if each is the first.
     firsts: Vec<u32>,
@@ -32,10 +33,10 @@ impl Duplicates {
         Self { firsts }
     }
 
-    /// Whether no sphere is in the place of another.
+    /// For every sphere the first that is equal to it; `None` if each is the first.
     #[cfg(any(feature = "gpu", test))]
-    pub(crate) fn is_empty(&self) -> bool {
-        self.firsts.is_empty()
+    pub(crate) fn into_firsts(self) -> Option<Vec<u32>> {
+        (!self.firsts.is_empty()).then_some(self.firsts)
     }
 
     /// The first sphere that is equal to one; mostly itself.
@@ -87,9 +88,9 @@ fn hash(sphere: &[f32; 4]) -> u64 {
     fold(fold(x | y << 32, ODD[0]) ^ (z | radius << 32), ODD[1])
 }
 
-/// Alike for spheres whose numbers are equal: zeros lose their signs.
+/// The same for equal spheres.
 fn bits(sphere: &[f32; 4]) -> [u32; 4] {
-    sphere.map(|x| (x + 0.0).to_bits())
+    sphere.map(equal_bits)
 }
 
 #[cfg(test)]
@@ -106,7 +107,9 @@ mod tests {
         let [a, b] = [[0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 3.5]];
         let minus = [-0.0, 1.0, 2.0, 3.0];
         assert_eq!(firsts(&[b, a, minus, b, a]), [0, 1, 1, 0, 1]);
-        assert!(Duplicates::of(&[a, b]).is_empty() && Duplicates::of(&[]).is_empty());
+        for none in [&[a, b][..], &[]] {
+            assert_eq!(Duplicates::of(none).into_firsts(), None);
+        }
     }
 
     /// As a search among all spheres before each.

@@ -311,23 +311,36 @@ impl Points {
 
 /// Every colour and every finish once, in the order of first use, and the places of each sphere's.
 fn appearance_of(spheres: &[Sphere]) -> Appearance {
-    let (palette, indices) =
-        distinct(spheres, |sphere| (sphere.color, sphere.color.to_array().map(f32::to_bits)));
+    let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
     let (finishes, finish_indices) =
         distinct(spheres, |sphere| (sphere.finish, sphere.finish.bits()));
-    let colors = match (&palette[..], indices) {
-        (_, Some(indices)) => Colors::Palette { palette, indices },
-        ([color], None) => Colors::One(*color),
-        (_, None) => Colors::One(LinearRgb::WHITE),
-    };
     let finishes = if finishes.is_empty() { vec![Finish::default()] } else { finishes };
     Appearance::new(colors).with(finishes, finish_indices)
 }
 
+impl Colors {
+    /// Every colour once, in the order of first use, and the place of each sphere's.
+    pub(crate) fn distinct(colors: &[LinearRgb]) -> Self {
+        Self::of_palette(distinct(colors, |color| keyed(*color)))
+    }
+
+    fn of_palette((palette, indices): (Vec<LinearRgb>, Option<Vec<u32>>)) -> Self {
+        match (&palette[..], indices) {
+            (_, Some(indices)) => Self::Palette { palette, indices },
+            ([color], None) => Self::One(*color),
+            (_, None) => Self::One(LinearRgb::WHITE),
+        }
+    }
+}
+
+fn keyed(color: LinearRgb) -> (LinearRgb, [u32; 3]) {
+    (color, color.to_array().map(f32::to_bits))
+}
+
 /// Everything that spheres have, once, and of each sphere the place of its own; `None` if there is but one.
-fn distinct<T, K: Eq + std::hash::Hash>(
-    spheres: &[Sphere],
-    of: impl Fn(&Sphere) -> (T, K),
+fn distinct<S, T, K: Eq + std::hash::Hash>(
+    spheres: &[S],
+    of: impl Fn(&S) -> (T, K),
 ) -> (Vec<T>, Option<Vec<u32>>) {
     let mut all = Vec::new();
     let mut places = HashMap::new();

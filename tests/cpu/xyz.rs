@@ -1,9 +1,32 @@
 //! The XYZ reader: good files, bad files, and files that are noise.
 
-use pinhole::LinearRgb;
-use pinhole::load::xyz::{XyzError, read};
+use pinhole::load::xyz::{self, XyzError};
+use pinhole::{LinearRgb, Sphere};
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
+
+/// A frame, sphere by sphere.
+#[derive(Debug, PartialEq)]
+struct Atoms {
+    spheres: Vec<Sphere>,
+    species: Vec<String>,
+    species_indices: Vec<u32>,
+    unknown_species: Vec<String>,
+}
+
+fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
+    let xyz::Frame { spheres, colors, species, unknown_species } = xyz::read(bytes, frame)?;
+    assert_eq!((spheres.len(), spheres.len()), (colors.len(), species.indices.len()));
+    let sphere = |(&[x, y, z, radius], color): (&[f64; 4], &LinearRgb)| {
+        Sphere::new([x, y, z], radius, *color)
+    };
+    Ok(Atoms {
+        spheres: spheres.iter().zip(&colors).map(sphere).collect(),
+        species: species.names,
+        species_indices: species.indices,
+        unknown_species,
+    })
+}
 
 fn message(text: &str) -> String {
     read(text.as_bytes(), 0).unwrap_err().to_string()
