@@ -10,7 +10,7 @@ use pinhole::accel::AccelChoice;
 use pinhole::generate::Standard;
 use pinhole::gpu::{Headless, HeadlessOptions};
 use pinhole::scene::{Centers, NewColors, SceneUpdate};
-use pinhole::{Appearance, Points, Scene};
+use pinhole::{Appearance, Scene, SphereArray};
 
 fn update(criterion: &mut Criterion) {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
@@ -19,7 +19,7 @@ fn update(criterion: &mut Criterion) {
     let count = spheres.len();
     let colors: Vec<[u8; 4]> = (0..count as u32).map(|i| (i | 0xff00_0000).to_le_bytes()).collect();
     let appearance = Appearance::from(colors.clone());
-    let mut scene = Scene::from_parts(Points::F32(spheres), appearance).unwrap();
+    let mut scene = Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap();
     let plan = headless.plan_accel(&scene, AccelChoice::Auto);
     let mut buffers = headless.upload(&scene, &plan.build(scene.spheres()).into()).unwrap();
 

@@ -305,5 +305,5 @@ fn lit_campaign(headless: &Headless, count: u64) {
     }
     let seconds = started.elapsed().as_secs_f64();
     println!("{count} scenes, {undecided} with undecided stages, {seconds:.0} s: {all}");
-    println!("{:#?}\n", [all.start, all.extend, all.scatter, all.occlude, all.settle]);
+    println!("{:#?}\n", [all.start, all.extend, all.scatter, all.occlude, all.accumulate]);
 }

@@ -10,10 +10,10 @@ fn advance(@builtin(local_invocation_index) lane: u32) {
     if (lane != 0u) {
         return;
     }
-    let groups = (atomicLoad(&queue.counts[stage.list]) + 63u) / 64u;
-    let slice = min(groups - min(groups, stage.first.x), stage.count);
+    let groups = (atomicLoad(&queue.counts[dispatch.list]) + 63u) / 64u;
+    let slice = min(groups - min(groups, dispatch.first.x), dispatch.count);
     groups_needed = array<u32, 6>(groups, 1u, 1u, slice, 1u, 1u);
-    if (stage.is_new != 0u) {
+    if (dispatch.is_new != 0u) {
         atomicStore(&queue.counts[next_list()], 0u);
         atomicStore(&queue.counts[LIST_OF_LIGHT], 0u);
     }

@@ -9,21 +9,21 @@ fn ambient(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         return;
     }
     let start = load_start(index);
-    let leaves = load_left(index);
+    let leaves = load_departure(index);
     leave(leaves);
     let address = address_of(index);
-    let seed = pixel_seed(address.pixel, look.seed);
+    let seed = pixel_seed(address.pixel, lighting.seed);
     let normal = load(index, NORMAL).xyz;
     let axes = axes_around(normal);
     var hidden = 0u;
     // Not a uniform by itself: Mesa's lavapipe would build the kernel anew for every dispatch.
-    let count = stage.count + (index >> 31u);
+    let count = dispatch.count + (index >> 31u);
     for (var turn = 0u; turn < count; turn++) {
-        let light = stage.light + turn;
-        let sample = address.sample * look.occlusion_samples + light;
-        let u = sample_pair(seed, sample, 2u + 4096u * stage.surface + 4095u);
+        let light = dispatch.light + turn;
+        let sample = address.sample * lighting.occlusion_samples + light;
+        let u = sample_pair(seed, sample, 2u + 4096u * dispatch.surface + 4095u);
         let direction = to_world(axes, cosine_direction(u));
-        let is_near = is_hidden(start, bitcast<f32>(leaves.word) * normal, direction, look.occlusion_radius);
+        let is_near = is_hidden(start, bitcast<f32>(leaves.word) * normal, direction, lighting.occlusion_radius);
         hidden |= select(0u, 1u << (light & 31u), is_near);
     }
     hide(index, hidden);

@@ -8,13 +8,13 @@ fn side_of(at: Surface, is_behind: bool) -> u32 {
 }
 
 fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, sample: u32, medium: vec3f) -> Onward {
-    let u = sample_pair(seed, sample, 2u + 8u * stage.surface);
+    let u = sample_pair(seed, sample, 2u + 8u * dispatch.surface);
     let next = scatter_light(at, to_local(at.axes, out), lobe, u);
     let carried = through * next.weight;
     let most = max(carried.x, max(carried.y, carried.z));
     // Russian roulette.
-    let survival = select(1.0, min(most, 0.95), stage.surface >= look.roulette_from);
-    let draw = unit2(sample_pair(seed, sample, 6u + 8u * stage.surface)).x;
+    let survival = select(1.0, min(most, 0.95), dispatch.surface >= lighting.roulette_from);
+    let draw = unit2(sample_pair(seed, sample, 6u + 8u * dispatch.surface)).x;
     let is_alive = most > 0.0 && draw < survival;
     let is_behind = next.direction.z < 0.0;
     let is_glass = at.material.kind == DIELECTRIC;
@@ -28,7 +28,7 @@ fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, sample:
 fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
     var sum = vec3f(0.0);
     let toward = to_local(at.axes, out);
-    let count = select(look.light_count, 0u, scattered != 0u || at.material.kind == DIELECTRIC);
+    let count = select(lighting.light_count, 0u, scattered != 0u || at.material.kind == DIELECTRIC);
     for (var light = 0u; light < count; light++) {
         let is_head = lamp_kind(light) == LAMP_HEAD;
         sum += select(vec3f(0.0), table(3u * light + 1u).rgb, is_head);
@@ -38,7 +38,7 @@ fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
 
 // The density with which an emitter that was met would have been looked for.
 fn known_density(id: u32, position: vec3f) -> f32 {
-    let sources = f32(max(look.source_count, 1u));
+    let sources = f32(max(lighting.source_count, 1u));
     let density = emitter_density(emitter(emitter_with_id(id)), position) / sources;
-    return select(density, 0.0, look.emitter_count == 0u);
+    return select(density, 0.0, lighting.emitter_count == 0u);
 }

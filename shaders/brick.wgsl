@@ -5,7 +5,7 @@ struct Nearest {
     // Index in input order.
     id: u32,
     // Index into `shapes`.
-    place: u32,
+    shape_index: u32,
 }
 
 @group(1) @binding(0) var<uniform> brick: Brick;
@@ -15,18 +15,18 @@ struct Nearest {
 @group(1) @binding(2) var<storage, read> ids: array<u32>;
 
 // The distance to a shape, or NO_HIT.
-fn distance_to(ray: Ray, place: u32) -> f32 {
-    let shape = shapes[place];
-    return select(intersect(ray, shape).t, NO_HIT, is_left(place, shape));
+fn distance_to(ray: Ray, shape_index: u32) -> f32 {
+    let shape = shapes[shape_index];
+    return select(intersect(ray, shape).t, NO_HIT, is_left(shape_index, shape));
 }
 
 // Takes a shape if it is nearer, or as near and of a smaller id: the answer does not depend on the order
 // in which shapes are tried. Ids are read only here, because a read is dear on a software device.
-fn offer(nearest: ptr<function, Nearest>, t: f32, place: u32) {
+fn offer(nearest: ptr<function, Nearest>, t: f32, shape_index: u32) {
     if (t < NO_HIT && t <= (*nearest).t) {
-        let id = ids[place];
+        let id = ids[shape_index];
         if (t < (*nearest).t || id < (*nearest).id) {
-            *nearest = Nearest(t, id, place);
+            *nearest = Nearest(t, id, shape_index);
         }
     }
 }
@@ -39,7 +39,7 @@ fn nearest_hit(entry: Entry, before: Hit) -> Hit {
     }
     var hit = before;
     if (nearest.id != before.id) {
-        hit = Hit(nearest.t, nearest.id, brick.first_place + nearest.place, entry.distance);
+        hit = Hit(nearest.t, nearest.id, brick.first_shape + nearest.shape_index, entry.distance);
     }
     return hit;
 }

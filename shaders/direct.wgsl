@@ -14,7 +14,7 @@ struct Found {
 fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
     let light = tables[3u * source + 2u].x;
     let lamp = sample_lamp(light, position, u);
-    let sources = f32(look.source_count);
+    let sources = f32(lighting.source_count);
     let density = select(0.0, 1.0 / (2.0 * PI * lamp.sun * sources), lamp.sun > 0.0);
     return Found(lamp.direction, lamp.distance, density, PI * sources * lamp.strength, NO_EMITTER);
 }
@@ -22,7 +22,7 @@ fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
 fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
     let which = chosen_emitter(choice);
     let found = emitter(which);
-    let density = emitter_density(found, position) / f32(look.source_count);
+    let density = emitter_density(found, position) / f32(lighting.source_count);
     let toward = found.sphere.xyz - position;
     let length = sqrt(max(dot(toward, toward), 1e-30));
     let k = cone_of_sphere(found.sphere.w, max(length, found.sphere.w));
@@ -36,31 +36,31 @@ fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
 
 fn find_sky(u: vec2u) -> Found {
     let found = sample_sky(u);
-    let density = found.w / f32(look.source_count);
+    let density = found.w / f32(lighting.source_count);
     let radiance = sky_radiance(found.xyz) / max(density, 1e-30);
     return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), NO_EMITTER);
 }
 
 fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
-    let u = sample_pair(seed, sample, 4u + 8u * stage.surface);
-    let choice = sample_pair(seed, sample, 5u + 8u * stage.surface);
-    let source = min(u32(unit2(choice).x * f32(look.source_count)), look.source_count - 1u);
+    let u = sample_pair(seed, sample, 4u + 8u * dispatch.surface);
+    let choice = sample_pair(seed, sample, 5u + 8u * dispatch.surface);
+    let source = min(u32(unit2(choice).x * f32(lighting.source_count)), lighting.source_count - 1u);
     let position = at.vertex.position;
-    var found = find_lamp(min(source, max(look.lamp_sources, 1u) - 1u), position, u);
-    let is_emitter = source == look.lamp_sources && look.emitter_count > 0u;
+    var found = find_lamp(min(source, max(lighting.lamp_sources, 1u) - 1u), position, u);
+    let is_emitter = source == lighting.lamp_sources && lighting.emitter_count > 0u;
     if (is_emitter) {
         found = find_sphere(position, u, choice.y);
     }
-    if (source >= look.lamp_sources && !is_emitter) {
+    if (source >= lighting.lamp_sources && !is_emitter) {
         found = find_sky(u);
     }
     let toward = to_local(at.axes, found.direction);
     let r = reflect_toward(at.material, at.vertex.color, to_local(at.axes, out), toward);
     let balanced = found.density / max(found.density + r.density, 1e-30);
-    let is_balanced = found.density > 0.0 && look.light_sampling == LIGHT_MULTIPLE;
+    let is_balanced = found.density > 0.0 && lighting.light_sampling == LIGHT_MULTIPLE;
     let light = through * r.value * found.radiance * select(1.0, balanced, is_balanced);
     let ray = Ray(position, found.direction);
-    let is_in_own = at.vertex.is_back && far_wall_of(at.vertex, found.direction) < found.distance;
+    let is_in_own = at.vertex.is_back && exit_distance_of(at.vertex, found.direction) < found.distance;
     let is_below = at.vertex.sphere.w > 0.0 && ground_distance(ray, 0.0) < found.distance;
     let is_open = any(light > vec3f(0.0)) && !is_in_own && !is_below && !is_end;
     return DirectLight(vec4f(found.direction, select(0.0, found.distance, is_open)),

@@ -9,6 +9,6 @@ struct Emitter {
 }
 
 fn emitter(index: u32) -> Emitter {
-    let at = look.emitter_first + 3u * index;
+    let at = lighting.emitter_first + 3u * index;
     return Emitter(table(at), tables[at + 1u].x, table(at + 1u).z, table(at + 2u).rgb);
 }

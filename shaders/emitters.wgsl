@@ -3,15 +3,15 @@
 // The first emitter of which a word is at least so large; they ascend by both.
 fn find_emitter(word: u32, value: u32) -> u32 {
     var low = 0u;
-    var count = look.emitter_count;
+    var count = lighting.emitter_count;
     for (var step = 0u; step < 32u && count > 0u; step++) {
         let half = count >> 1u;
-        let found = tables[look.emitter_first + 3u * (low + half) + 1u][word];
+        let found = tables[lighting.emitter_first + 3u * (low + half) + 1u][word];
         let is_before = found < value;
         low = select(low, low + half + 1u, is_before);
         count = select(half, count - half - 1u, is_before);
     }
-    return min(low, max(look.emitter_count, 1u) - 1u);
+    return min(low, max(lighting.emitter_count, 1u) - 1u);
 }
 
 fn emitter_with_id(id: u32) -> u32 {

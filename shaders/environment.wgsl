@@ -13,16 +13,16 @@ struct EnvironmentSample {
 }
 
 fn environment_radiance(direction: vec3f) -> vec3f {
-    let place = environment_place(direction);
-    return environment_texels[place.y * look.environment_size.x + place.x].xyz;
+    let texel = environment_texel(direction);
+    return environment_texels[texel.y * lighting.environment_size.x + texel.x].xyz;
 }
 
 fn environment_density(direction: vec3f) -> f32 {
-    return environment_density_of(environment_place(direction));
+    return environment_density_of(environment_texel(direction));
 }
 
 fn sample_environment(u: vec2u) -> EnvironmentSample {
-    let size = look.environment_size;
+    let size = lighting.environment_size;
     let chance = vec2f(u >> vec2u(8u)) * 0x1p-24;
     let row = environment_row(chance.y);
     let columns = environment_columns(row);
@@ -50,30 +50,30 @@ fn sample_environment(u: vec2u) -> EnvironmentSample {
 
 // x and z, turned about +y.
 fn environment_turned(flat: vec2f, sign: f32) -> vec2f {
-    let rotation = vec2f(look.environment_rotation.x, sign * look.environment_rotation.y);
+    let rotation = vec2f(lighting.environment_rotation.x, sign * lighting.environment_rotation.y);
     return rotation.x * flat + rotation.y * vec2f(flat.y, -flat.x);
 }
 
 // Where the shares of a row's columns start.
 fn environment_columns(row: u32) -> u32 {
-    return look.environment_size.y + 1u + row * (look.environment_size.x + 1u);
+    return lighting.environment_size.y + 1u + row * (lighting.environment_size.x + 1u);
 }
 
 // Column and row.
-fn environment_place(direction: vec3f) -> vec2u {
+fn environment_texel(direction: vec3f) -> vec2u {
     let flat = environment_turned(direction.xz, -1.0);
     let across = atan2_turns(flat.x, 0.0 - flat.y) + 0.5;
     let down = 2.0 * atan2_turns(sqrt(dot(flat, flat)), direction.y);
-    let size = look.environment_size;
+    let size = lighting.environment_size;
     return min(vec2u(vec2f(across, down) * vec2f(size)), size - vec2u(1u));
 }
 
-fn environment_density_of(place: vec2u) -> f32 {
-    let size = vec2f(look.environment_size);
-    let entry = environment_columns(place.y) + place.x;
+fn environment_density_of(texel: vec2u) -> f32 {
+    let size = vec2f(lighting.environment_size);
+    let entry = environment_columns(texel.y) + texel.x;
     let share = vec2f(environment_shares[entry + 1u] - environment_shares[entry],
-        environment_shares[place.y + 1u] - environment_shares[place.y]);
-    let sines = sin_cos_turns(f32(2u * place.y + 1u) / (4.0 * size.y)).x
+        environment_shares[texel.y + 1u] - environment_shares[texel.y]);
+    let sines = sin_cos_turns(f32(2u * texel.y + 1u) / (4.0 * size.y)).x
         * sin_cos_turns(0.25 / size.y).x;
     // 4 pi.
     return share.x * (share.y / (12.566371 / size.x * sines));
@@ -81,7 +81,7 @@ fn environment_density_of(place: vec2u) -> f32 {
 
 // The last of a table's entries, but for its end, that is at most the chance; tables have up to 2^12 + 1.
 fn environment_row(chance: f32) -> u32 {
-    var range = vec2u(0u, look.environment_size.y);
+    var range = vec2u(0u, lighting.environment_size.y);
     for (var i = 0u; i < 12u; i++) {
         let middle = (range.x + range.y) >> 1u;
         range = select(vec2u(range.x, middle), vec2u(middle, range.y), environment_shares[middle] <= chance);
@@ -90,7 +90,7 @@ fn environment_row(chance: f32) -> u32 {
 }
 
 fn environment_column(chance: f32, first: u32) -> u32 {
-    var range = vec2u(0u, look.environment_size.x);
+    var range = vec2u(0u, lighting.environment_size.x);
     for (var i = 0u; i < 12u; i++) {
         let middle = (range.x + range.y) >> 1u;
         range = select(vec2u(range.x, middle), vec2u(middle, range.y),

@@ -13,12 +13,12 @@ struct Hit {
     // Index in input order.
     id: u32,
     // Index into the spheres of all bricks.
-    place: u32,
+    shape_index: u32,
     // How far from the camera the ray starts.
     distance: f32,
 }
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<uniform> frame: FrameParameters;
 
 // Zero, and no compiler knows it, because every kernel first sets it from the frame: for `fence`. Reading the
 // frame at each fence takes a software device 5 to 9 % of walking a tree.

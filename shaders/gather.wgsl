@@ -10,12 +10,12 @@ fn gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
     }
     let start = load_start(index);
     let hidden = f32(countOneBits(paths[slot(index, NORMAL)].w));
-    let share = 1.0 / f32(look.occlusion_samples);
-    let paint = load(index, PAINT);
-    let is_caught = paint.w > 0.0;
+    let share = 1.0 / f32(lighting.occlusion_samples);
+    let albedo = load(index, ALBEDO);
+    let is_caught = albedo.w > 0.0;
     let total = light_to_catch(is_caught, start.position);
-    let open = vec4f(paint.rgb * look.ambient * (share * (f32(stage.count) - hidden)), 0.0);
-    let shade = caught(share * hidden * luminance(look.ambient) / total, paint.w);
+    let open = vec4f(albedo.rgb * lighting.ambient * (share * (f32(dispatch.count) - hidden)), 0.0);
+    let shade = caught(share * hidden * luminance(lighting.ambient) / total, albedo.w);
     store(index, RADIANCE, load(index, RADIANCE) + select(open, shade, is_caught));
     paths[slot(index, NORMAL)].w = 0u;
 }

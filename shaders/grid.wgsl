@@ -18,7 +18,7 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
         if (word != EMPTY) {
             test_list(ray, word & ~KIND, found);
         }
-        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).place != NO_PLACE);
+        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).shape_index != NO_SHAPE);
         if (is_done || t_leave >= along.t_leave || !spend(1u)) {
             break;
         }

@@ -36,10 +36,10 @@ struct GridRay {
 // The nearest sphere of this brick.
 struct Found {
     t: f32,
-    place: u32,
+    shape_index: u32,
 }
 
-const NO_PLACE: u32 = 0xffffffffu;
+const NO_SHAPE: u32 = 0xffffffffu;
 
 fn least(v: vec3f) -> f32 {
     return min(v.x, min(v.y, v.z));
@@ -67,16 +67,16 @@ fn first_cell(along: GridRay) -> vec3f {
 }
 
 fn find_nearest(ray: Ray, inverse: vec3f, nearest: ptr<function, Nearest>) {
-    var found = Found((*nearest).t, NO_PLACE);
+    var found = Found((*nearest).t, NO_SHAPE);
     walk(ray, inverse, &found, false);
-    if (found.place != NO_PLACE) {
-        offer(nearest, found.t, found.place);
+    if (found.shape_index != NO_SHAPE) {
+        offer(nearest, found.t, found.shape_index);
     }
 }
 
 fn find_any(ray: Ray, inverse: vec3f, t_max: f32) -> bool {
     // A list takes what is as near as the nearest so far; `t_max` is positive, so this is the number below it.
-    var found = Found(bitcast<f32>(bitcast<u32>(t_max) - 1u), NO_PLACE);
+    var found = Found(bitcast<f32>(bitcast<u32>(t_max) - 1u), NO_SHAPE);
     walk(ray, inverse, &found, true);
-    return found.place != NO_PLACE;
+    return found.shape_index != NO_SHAPE;
 }

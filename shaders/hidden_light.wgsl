@@ -3,8 +3,8 @@
 // Searches the brick; `left` must be the shape on which the ray starts, `to_center` the way to its centre.
 fn is_hidden(start: Start, to_center: vec3f, direction: vec3f, distance: f32) -> bool {
     let ray = Ray(start.position, direction);
-    let to_far_wall = max(2.0 * dot(to_center, direction), 0.0);
-    let is_in_own = has(start.flags, PATH_BACK) && to_far_wall < distance;
+    let to_far_side = max(2.0 * dot(to_center, direction), 0.0);
+    let is_in_own = has(start.flags, PATH_BACK) && to_far_side < distance;
     let is_below = !has(start.flags, PATH_ON_GROUND) && ground_distance(ray, 0.0) < distance;
     let entry = enter_scene(CameraRay(ray, 0.0, true));
     let rest = distance - entry.distance;

@@ -14,5 +14,5 @@ fn load_hit(index: u32) -> Hit {
 }
 
 fn store_hit(index: u32, hit: Hit) {
-    hits[index] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, bitcast<u32>(hit.distance));
+    hits[index] = vec4u(bitcast<u32>(hit.t), hit.id, hit.shape_index, bitcast<u32>(hit.distance));
 }

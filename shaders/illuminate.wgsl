@@ -23,27 +23,27 @@ fn illuminate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     let hidden = paths[slot(index, NORMAL)].w;
     let out = -load(index, DIRECTION).xyz;
     let lobe = load(index, LOBE).xyz;
-    let paint = load(index, PAINT);
+    let albedo = load(index, ALBEDO);
     let weight = load(index, THROUGHPUT).y;
-    let is_caught = paint.w > 0.0;
+    let is_caught = albedo.w > 0.0;
     let total = light_to_catch(is_caught, start.position);
     let address = address_of(index);
-    let seed = pixel_seed(address.pixel, look.seed);
+    let seed = pixel_seed(address.pixel, lighting.seed);
     var sum = vec4f(0.0);
-    for (var light = stage.light; light < stage.light + stage.count; light++) {
-        let u = sample_pair(seed, address.sample, 2u + 4096u * stage.surface + light);
+    for (var light = dispatch.light; light < dispatch.light + dispatch.count; light++) {
+        let u = sample_pair(seed, address.sample, 2u + 4096u * dispatch.surface + light);
         var lamp = sample_lamp(light, start.position, u);
         if (lamp_kind(light) == LAMP_HEAD) {
             lamp = Lamp(out, 0.0, table(3u * light + 1u).rgb, 0.0);
         }
         let is_hidden = (hidden & (1u << (light & 31u))) != 0u;
         let cosine = max(dot(normal, lamp.direction), 0.0);
-        var seen = (1.0 - lobe.x) * cosine * paint.rgb;
+        var seen = (1.0 - lobe.x) * cosine * albedo.rgb;
         if (lobe.x > 0.0) {
             let shine = weight * lobe_light(lobe, normal, out, lamp.direction);
             seen += vec3f(select(0.0, shine, cosine > 0.0));
         }
-        let shade = caught(central_light(light, start.position) / total, paint.w);
+        let shade = caught(central_light(light, start.position) / total, albedo.w);
         let open = select(vec4f(lamp.strength * seen, 0.0), vec4f(0.0), is_caught);
         sum += select(open, select(vec4f(0.0), shade, is_caught), is_hidden);
     }

@@ -22,16 +22,16 @@ fn lamp_kind(light: u32) -> u32 {
 
 // A point of the light, chosen by `u`.
 fn sample_lamp(light: u32, position: vec3f, u: vec2u) -> Lamp {
-    let place = table(3u * light);
+    let light_record = table(3u * light);
     let power = table(3u * light + 1u);
     let kind = lamp_kind(light);
     if (kind == LAMP_DIRECTIONAL) {
         let k = power.w;
-        let direction = to_world(axes_around(place.xyz), cone_direction(u, k));
+        let direction = to_world(axes_around(light_record.xyz), cone_direction(u, k));
         // Radiance times solid angle over pi: strength / sin^2 * 2 k, with sin^2 = k (2 - k).
         return Lamp(direction, NO_HIT, power.rgb * (2.0 / (2.0 - k)), k);
     }
-    let toward = place.xyz - position;
+    let toward = light_record.xyz - position;
     let distance = sqrt(dot(toward, toward));
     let axis = toward / max(distance, 1e-30);
     if (kind == LAMP_POINT) {
@@ -45,6 +45,6 @@ fn sample_lamp(light: u32, position: vec3f, u: vec2u) -> Lamp {
     let middle = dot(toward, direction);
     let foot = toward - middle * direction;
     let half_chord = sqrt(max(radius * radius - dot(foot, foot), 0.0));
-    let to_wall = middle + select(-half_chord, half_chord, is_inside);
-    return Lamp(direction, max(to_wall, 0.0), power.rgb * (2.0 * k), 0.0);
+    let to_surface = middle + select(-half_chord, half_chord, is_inside);
+    return Lamp(direction, max(to_surface, 0.0), power.rgb * (2.0 * k), 0.0);
 }

@@ -4,16 +4,16 @@
 // and one offer is enough.
 fn offer_leaf(ray: Ray, first: u32, count: u32, nearest: ptr<function, Nearest>) {
     var t = NO_HIT;
-    var place = first;
+    var shape_index = first;
     for (var i = first; i < first + count; i++) {
         let found = distance_to(ray, i);
         if (found < t) {
             t = found;
-            place = i;
+            shape_index = i;
         }
     }
     if (t < NO_HIT) {
-        offer(nearest, t, place);
+        offer(nearest, t, shape_index);
     }
 }
 

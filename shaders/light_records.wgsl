@@ -2,7 +2,7 @@
 // offsets and sizes.
 
 // What one dispatch does.
-struct Stage {
+struct DispatchParameters {
     // Which of the samples of every pixel.
     sample: u32,
     // Which of the surfaces that a ray meets, from 0.
@@ -23,9 +23,9 @@ struct Stage {
     first: vec2u,
 }
 
-struct Look {
+struct LightingParameters {
     background: vec3f,
-    // Sums of the LOOK_ constants.
+    // Sums of the LIGHTING_ constants.
     flags: u32,
     ambient: vec3f,
     light_count: u32,
@@ -63,11 +63,11 @@ struct Look {
     filter_table: array<vec4f, 65>,
 }
 
-const LOOK_TRANSPARENT: u32 = 1u;
-const LOOK_SKY_SEEN: u32 = 2u;
-const LOOK_SHADOWS: u32 = 4u;
-const LOOK_GROUND: u32 = 8u;
-const LOOK_CATCHER: u32 = 16u;
+const LIGHTING_TRANSPARENT: u32 = 1u;
+const LIGHTING_SKY_SEEN: u32 = 2u;
+const LIGHTING_SHADOWS: u32 = 4u;
+const LIGHTING_GROUND: u32 = 8u;
+const LIGHTING_CATCHER: u32 = 16u;
 
 const LIGHT_CHANCE: u32 = 0u;
 const LIGHT_DIRECT: u32 = 1u;

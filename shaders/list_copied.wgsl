@@ -6,13 +6,13 @@
 
 fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     var t = NO_HIT;
-    var place = NO_PLACE;
+    var shape_index = NO_SHAPE;
     var at = start;
     loop {
         let here = distance_to(ray, at);
         if (here < t) {
             t = here;
-            place = at;
+            shape_index = at;
         }
         if (shapes[at].w < 0.0) {
             break;
@@ -21,7 +21,7 @@ fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     }
     // Every list has an end, so that it is enough to count here.
     spent += at - start;
-    if (place != NO_PLACE && t <= (*found).t) {
-        *found = Found(t, place);
+    if (shape_index != NO_SHAPE && t <= (*found).t) {
+        *found = Found(t, shape_index);
     }
 }

@@ -7,19 +7,19 @@
 @group(1) @binding(4) var<storage, read> references: array<u32>;
 
 // The bits of a reference that are a place.
-const PLACE: u32 = 0x7fffffffu;
+const SHAPE_INDEX: u32 = 0x7fffffffu;
 
 fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     var t = NO_HIT;
-    var place = NO_PLACE;
+    var shape_index = NO_SHAPE;
     var at = start;
     loop {
         let reference = references[at];
-        let candidate = reference & PLACE;
+        let candidate = reference & SHAPE_INDEX;
         let here = distance_to(ray, candidate);
         if (here < t) {
             t = here;
-            place = candidate;
+            shape_index = candidate;
         }
         if (reference != candidate) {
             break;
@@ -28,7 +28,7 @@ fn test_list(ray: Ray, start: u32, found: ptr<function, Found>) {
     }
     // Every list has an end, so that it is enough to count here.
     spent += at - start;
-    if (place != NO_PLACE && t <= (*found).t) {
-        *found = Found(t, place);
+    if (shape_index != NO_SHAPE && t <= (*found).t) {
+        *found = Found(t, shape_index);
     }
 }

@@ -18,7 +18,7 @@ struct Material {
 }
 
 fn material_of(vertex: Vertex) -> Material {
-    let row = look.material_first + 2u * vertex.material;
+    let row = lighting.material_first + 2u * vertex.material;
     let bits = tables[row];
     let numbers = bitcast<vec2f>(bits.yz);
     return Material(bits.x, numbers.x, numbers.y, bits.w, table(row + 1u).rgb);
@@ -26,7 +26,7 @@ fn material_of(vertex: Vertex) -> Material {
 
 // Without the alpha of the colour.
 fn opacity_of(material: u32) -> f32 {
-    return table(look.material_first + 2u * material + 1u).w;
+    return table(lighting.material_first + 2u * material + 1u).w;
 }
 
 // A table of an energy has so many numbers, and starts at the next multiple of four.

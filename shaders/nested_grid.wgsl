@@ -35,7 +35,7 @@ fn walk(ray: Ray, inverse: vec3f, found: ptr<function, Found>, stop_at_first: bo
         if ((word & KIND) != EMPTY) {
             walk_cell(ray, along, word, cell, t, t_leave, found, stop_at_first);
         }
-        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).place != NO_PLACE);
+        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).shape_index != NO_SHAPE);
         if (is_done || t_leave >= along.t_leave || !spend(1u)) {
             break;
         }
@@ -86,7 +86,7 @@ fn walk_cell(
         if ((inner_word & KIND) == LIST) {
             test_list(ray, inner_word & ~KIND, found);
         }
-        let is_done = (*found).t <= t_inner || (stop_at_first && (*found).place != NO_PLACE);
+        let is_done = (*found).t <= t_inner || (stop_at_first && (*found).shape_index != NO_SHAPE);
         if (is_done || t_inner >= t_leave || !spend(1u)) {
             break;
         }

@@ -8,7 +8,7 @@
 fn noise(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
     let pixels = frame.tile_size.x * frame.tile_size.y;
-    let n = f32(stage.sample);
+    let n = f32(dispatch.sample);
     var found = vec2f(0.0);
     let first = group.x * 4096u + lane;
     for (var turn = 0u; turn < 64u; turn++) {

@@ -8,7 +8,7 @@ fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         return;
     }
     let shadow = load(index, SHADOW);
-    let leaves = load_left(index);
+    let leaves = load_departure(index);
     leave(leaves);
     let entry = enter_scene(CameraRay(Ray(load_start(index).position, shadow.xyz), 0.0, true));
     let rest = shadow.w - entry.distance;

@@ -4,10 +4,10 @@
 
 var<private> left: u32;
 
-fn leave(from_shape: Left) {
-    left = from_shape.id;
+fn leave(departure: Departure) {
+    left = departure.id;
 }
 
-fn is_left(place: u32, shape: Shape) -> bool {
-    return ids[place] == left;
+fn is_left(shape_index: u32, shape: Shape) -> bool {
+    return ids[shape_index] == left;
 }

@@ -3,15 +3,15 @@
 var<private> left: u32;
 var<private> sought: u32;
 
-fn leave(from_shape: Left) {
-    left = from_shape.id;
+fn leave(departure: Departure) {
+    left = departure.id;
     sought = NO_ID;
-    if (from_shape.word != NO_EMITTER) {
-        sought = emitter(from_shape.word).id;
+    if (departure.word != NO_EMITTER) {
+        sought = emitter(departure.word).id;
     }
 }
 
-fn is_left(place: u32, shape: Shape) -> bool {
-    let id = ids[place];
+fn is_left(shape_index: u32, shape: Shape) -> bool {
+    let id = ids[shape_index];
     return id == left || id == sought;
 }

@@ -1,5 +1,5 @@
 // Rays that start on no shape.
 
-fn is_left(place: u32, shape: Shape) -> bool {
+fn is_left(shape_index: u32, shape: Shape) -> bool {
     return false;
 }

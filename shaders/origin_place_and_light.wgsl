@@ -3,14 +3,14 @@
 var<private> left: Shape;
 var<private> sought: Shape;
 
-fn leave(from_shape: Left) {
-    left = own_shape(from_shape);
+fn leave(departure: Departure) {
+    left = own_shape(departure);
     sought = no_shape();
-    if (from_shape.word != NO_EMITTER) {
-        sought = emitter(from_shape.word).sphere;
+    if (departure.word != NO_EMITTER) {
+        sought = emitter(departure.word).sphere;
     }
 }
 
-fn is_left(place: u32, shape: Shape) -> bool {
+fn is_left(shape_index: u32, shape: Shape) -> bool {
     return is_same(shape, left) || is_same(shape, sought);
 }

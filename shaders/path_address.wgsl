@@ -11,5 +11,5 @@ fn address_of(index: u32) -> Address {
     let row = quotient(index, size.x);
     let turn = quotient(row, size.y);
     let pixel = vec2u(index - row * size.x, row - turn * size.y);
-    return Address(frame.tile_origin + pixel, stage.sample + turn);
+    return Address(frame.tile_origin + pixel, dispatch.sample + turn);
 }

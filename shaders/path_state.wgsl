@@ -3,14 +3,14 @@
 // Slot by slot, and in each sample by sample and row by row of the tile. Bits, because there are whole numbers among
 // them.
 @group(0) @binding(3) var<storage, read_write> paths: array<vec4u>;
-@group(0) @binding(4) var<uniform> stage: Stage;
+@group(0) @binding(4) var<uniform> dispatch: DispatchParameters;
 
 // Where the ray starts, and the sum of its PATH_ flags.
 const ORIGIN: u32 = 0u;
 // Where it goes, and the density with which the last surface scattered it there.
 const DIRECTION: u32 = 1u;
-// What it starts on: `Left`.
-const LEFT: u32 = 2u;
+// What it starts on: `Departure`.
+const DEPARTURE: u32 = 2u;
 // What its light counts in the picture. In a studio: what is left for what is behind, and what the surface counts.
 const THROUGHPUT: u32 = 3u;
 // The sample's colour so far, and its opacity.
@@ -28,7 +28,7 @@ const MEDIUM: u32 = 9u;
 // In a studio: the normal of the surface, and a bit for each of 32 lights that are hidden.
 const NORMAL: u32 = 7u;
 // The surface's colour by what it counts, and what is left for what is behind a ground that catches shadows.
-const PAINT: u32 = 8u;
+const ALBEDO: u32 = 8u;
 // The surface's lobe: its share, the square of its roughness, and where its energies are.
 const LOBE: u32 = 9u;
 
@@ -46,7 +46,7 @@ const PATH_FULL: u32 = 32u;
 const PATH_SCATTERED: u32 = 64u;
 
 fn slot(index: u32, which: u32) -> u32 {
-    return which * stage.paths + index;
+    return which * dispatch.paths + index;
 }
 
 fn load(index: u32, which: u32) -> vec4f {
@@ -63,7 +63,7 @@ fn load_hit(index: u32) -> Hit {
 }
 
 fn store_hit(index: u32, hit: Hit) {
-    paths[slot(index, HIT)] = vec4u(bitcast<u32>(hit.t), hit.id, hit.place, bitcast<u32>(hit.distance));
+    paths[slot(index, HIT)] = vec4u(bitcast<u32>(hit.t), hit.id, hit.shape_index, bitcast<u32>(hit.distance));
 }
 
 struct Start {

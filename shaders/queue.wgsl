@@ -19,13 +19,13 @@ const NO_PATH: u32 = 0xffffffffu;
 
 // The list of the paths that go on after this surface.
 fn next_list() -> u32 {
-    return stage.surface & 1u;
+    return dispatch.surface & 1u;
 }
 
 // The order of a list is up to the device; nothing depends on it.
 fn append(list: u32, index: u32) {
-    let place = atomicAdd(&queue.counts[list], 1u);
-    queue.entries[list * stage.paths + place] = index;
+    let at = atomicAdd(&queue.counts[list], 1u);
+    queue.entries[list * dispatch.paths + at] = index;
 }
 
 fn give_up() {

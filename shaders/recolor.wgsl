@@ -5,7 +5,7 @@ struct RecolorRange {
     first: u32,
     count: u32,
     // How many spheres the brick has.
-    place_count: u32,
+    shape_count: u32,
     zero: u32,
 }
 
@@ -14,7 +14,7 @@ struct RecolorRange {
 @group(0) @binding(1) var<storage, read> new_words: array<u32>;
 // Of the brick, by place; see brick.wgsl and appearance.wgsl.
 @group(0) @binding(2) var<storage, read> ids: array<u32>;
-@group(0) @binding(3) var<storage, read_write> looks: array<u32>;
+@group(0) @binding(3) var<storage, read_write> appearances: array<u32>;
 
 @compute @workgroup_size(64)
 fn recolor(
@@ -22,13 +22,13 @@ fn recolor(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let place = (group.y * groups.x + group.x) * 64u + lane;
-    if (place >= range.place_count) {
+    let shape_index = (group.y * groups.x + group.x) * 64u + lane;
+    if (shape_index >= range.shape_count) {
         return;
     }
     // What lies before the first has become a large number.
-    let at = ids[place] - range.first;
+    let at = ids[shape_index] - range.first;
     if (at < range.count) {
-        looks[place] = new_words[at];
+        appearances[shape_index] = new_words[at];
     }
 }

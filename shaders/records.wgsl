@@ -15,7 +15,7 @@ struct Camera {
     third: f32,
 }
 
-struct Frame {
+struct FrameParameters {
     camera: Camera,
     background: vec3f,
     shading: u32,
@@ -50,12 +50,12 @@ struct Brick {
     cell_size: f32,
     cell_counts: vec3u,
     // How many elements `shapes` has.
-    place_count: u32,
+    shape_count: u32,
     // How many places there are in the bricks before this one.
-    first_place: u32,
+    first_shape: u32,
     is_first: u32,
     // The index of the last element of `looks`.
-    last_look: u32,
+    last_appearance: u32,
     // Where the parts of a colour stand in `palette`: at a word of colour, moved right by so many bits times 0, 1, 2
     // and 3, of which these bits count.
     color_shift: u32,

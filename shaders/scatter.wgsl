@@ -32,7 +32,7 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     if (met == NOBODY) {
         return;
     }
-    var radiance = settled(index);
+    var radiance = radiance_so_far(index);
     let through = load(index, THROUGHPUT).rgb;
     if (met == NOTHING_MET) {
         radiance += vec4f(through * light_from_afar(ray.direction, start.flags, direction.w), 0.0);
@@ -46,8 +46,8 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let medium = load_medium(index);
     let arriving = through * kept_by(medium, vertex.distance);
     let address = address_of(index);
-    let seed = pixel_seed(address.pixel, look.seed);
-    let chance = unit2(sample_pair(seed, address.sample, 3u + 8u * stage.surface));
+    let seed = pixel_seed(address.pixel, lighting.seed);
+    let chance = unit2(sample_pair(seed, address.sample, 3u + 8u * dispatch.surface));
     let scattered = start.flags & PATH_SCATTERED;
     let is_passed = chance.y >= vertex.opacity;
     let is_emitter = at.material.kind == EMISSIVE;
@@ -60,7 +60,7 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     radiance = select(vec4f(radiance.rgb + arriving * light, 1.0), radiance, is_passed);
     let is_first = !is_passed && scattered == 0u && first.w >= 0.0;
-    let is_end = stage.is_last != 0u || (is_emitter && !is_passed);
+    let is_end = dispatch.is_last != 0u || (is_emitter && !is_passed);
     var next = bounce(at, out, chance.x, arriving, seed, address.sample, medium);
     next.light = look_for_light(at, out, arriving, seed, address.sample, is_end || is_passed);
     // Glass ends at its wall, also where that lets light pass.
@@ -76,8 +76,8 @@ fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let flags = select(next.flags, next.flags & ~PATH_ALIVE, is_end);
     store_start(index, next.position, flags);
     store(index, DIRECTION, vec4f(next.direction, next.density));
-    let far_wall = select(0.0, far_wall_of(vertex, next.direction), has(flags, PATH_INSIDE));
-    store_left(index, Left(vertex.id, vertex.place, far_wall, sought_by(next.light)));
+    let exit_distance = select(0.0, exit_distance_of(vertex, next.direction), has(flags, PATH_INSIDE));
+    store_departure(index, Departure(vertex.id, vertex.shape_index, exit_distance, sought_by(next.light)));
     store(index, THROUGHPUT, vec4f(next.through, 0.0));
     store_medium(index, next.medium);
     store_light(index, next.light);

@@ -46,8 +46,8 @@ struct Exact {
 @group(0) @binding(1) var<storage, read> values: array<Values>;
 @group(0) @binding(2) var<storage, read_write> answers: array<Exact>;
 
-fn bit(condition: bool, place: u32) -> u32 {
-    return select(0u, 1u, condition) << place;
+fn bit(condition: bool, number: u32) -> u32 {
+    return select(0u, 1u, condition) << number;
 }
 
 @compute @workgroup_size(64)

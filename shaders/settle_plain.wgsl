@@ -1,5 +1,5 @@
 // Where light is added at once, or none is looked for.
 
-fn settled(index: u32) -> vec4f {
+fn radiance_so_far(index: u32) -> vec4f {
     return load(index, RADIANCE);
 }

@@ -22,14 +22,14 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
         }
         return;
     }
-    let place = hit.place - brick.first_place;
+    let shape_index = hit.shape_index - brick.first_shape;
     // What lies before the brick has become a large number.
-    if (place >= brick.place_count) {
+    if (shape_index >= brick.shape_count) {
         return;
     }
     let entry = make_entry(invocation.xy);
-    let normal = shape_normal(entry.ray, shapes[place]);
-    let color = paint_of(place).rgb;
+    let normal = shape_normal(entry.ray, shapes[shape_index]);
+    let color = sphere_color(shape_index).rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));
     // The distance that belongs to this `t`: another kernel's ray may enter the box a little elsewhere.
     write_layers(pixel, hit.distance + hit.t, normal, hit.id);

@@ -9,16 +9,16 @@ fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         return;
     }
     let start = load_start(index);
-    let leaves = load_left(index);
+    let leaves = load_departure(index);
     leave(leaves);
     let address = address_of(index);
-    let seed = pixel_seed(address.pixel, look.seed);
-    let u = sample_pair(seed, address.sample, 2u + 4096u * stage.surface + stage.light);
-    let lamp = sample_lamp(stage.light, start.position, u);
+    let seed = pixel_seed(address.pixel, lighting.seed);
+    let u = sample_pair(seed, address.sample, 2u + 4096u * dispatch.surface + dispatch.light);
+    let lamp = sample_lamp(dispatch.light, start.position, u);
     // What is behind the surface needs no search, and is no shadow.
     let normal = load(index, NORMAL).xyz;
     let is_before = dot(normal, lamp.direction) > 0.0;
     let is_shadow = is_hidden(start, bitcast<f32>(leaves.word) * normal, lamp.direction, select(0.0, lamp.distance, is_before));
-    hide(index, select(0u, 1u << (stage.light & 31u), is_shadow));
+    hide(index, select(0u, 1u << (dispatch.light & 31u), is_shadow));
     report_spent();
 }

@@ -1,7 +1,7 @@
 // A sky with an image. Twin: src/light/sky.rs.
 
 fn sky_radiance(direction: vec3f) -> vec3f {
-    return look.environment_strength * environment_radiance(direction);
+    return lighting.environment_strength * environment_radiance(direction);
 }
 
 fn sky_density(direction: vec3f) -> f32 {

@@ -1,8 +1,8 @@
 // A sky without an image. Twin: src/light/sky.rs.
 
 fn sky_radiance(direction: vec3f) -> vec3f {
-    let end = select(look.nadir, look.zenith, direction.y >= 0.0);
-    return mix(look.horizon, end, abs(direction.y));
+    let end = select(lighting.nadir, lighting.zenith, direction.y >= 0.0);
+    return mix(lighting.horizon, end, abs(direction.y));
 }
 
 // It is found by chance alone.

@@ -24,7 +24,7 @@ fn is_same(a: Shape, b: Shape) -> bool {
 }
 
 struct SphereHit {
-    // Distance to the first point in front of the origin (from inside: the far wall), or NO_HIT.
+    // Distance to the first point in front of the origin (from inside: the far side), or NO_HIT.
     t: f32,
     // Signed distance from the centre's foot point on the ray to the hit point.
     from_foot: f32,

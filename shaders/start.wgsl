@@ -8,17 +8,17 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
         return;
     }
     let address = address_of(index);
-    let seed = pixel_seed(address.pixel, look.seed);
+    let seed = pixel_seed(address.pixel, lighting.seed);
     let offset = filter_offset(sample_pair(seed, address.sample, 0u));
     let lens = unit2(sample_pair(seed, address.sample, 1u));
     let made = camera_ray(sample_location(address.pixel, offset), lens);
-    let is_shown = !made.is_seen && !is_look(LOOK_TRANSPARENT);
+    let is_shown = !made.is_seen && !lighting_has(LIGHTING_TRANSPARENT);
     store_hit(index, Hit(NO_HIT, NO_ID, 0u, 0.0));
     store_start(index, made.ray.origin, select(0u, PATH_ALIVE, made.is_seen) | PATH_FULL);
     store(index, DIRECTION, vec4f(made.ray.direction, 0.0));
-    store_left(index, Left(NO_ID, 0u, 0.0, NO_EMITTER));
+    store_departure(index, Departure(NO_ID, 0u, 0.0, NO_EMITTER));
     store(index, THROUGHPUT, vec4f(1.0));
-    store(index, RADIANCE, vec4f(select(vec3f(0.0), look.background, is_shown), 0.0));
+    store(index, RADIANCE, vec4f(select(vec3f(0.0), lighting.background, is_shown), 0.0));
     store(index, FIRST, vec4f(0.0, 0.0, 0.0, made.distance));
     start_light(index);
     start_medium(index);

@@ -2,7 +2,7 @@
 
 // How much of the colour is lost in the distance.
 fn faded(distance: f32) -> f32 {
-    return clamp((distance - look.cue_near) * look.cue_scale, 0.0, 1.0);
+    return clamp((distance - lighting.cue_near) * lighting.cue_scale, 0.0, 1.0);
 }
 
 @compute @workgroup_size(64)
@@ -26,7 +26,7 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     let radiance = load(index, RADIANCE);
     let left_over = load(index, THROUGHPUT).x;
-    let shown = select(look.background, vec3f(0.0), is_look(LOOK_TRANSPARENT));
+    let shown = select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
     if (met == NOTHING_MET) {
         store(index, RADIANCE, radiance + vec4f(left_over * shown, 0.0));
         store_start(index, vec3f(0.0), 0u);
@@ -34,27 +34,27 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     let vertex = vertex_of(index, ray, hit, met, start.flags, behind);
     let material = material_of(vertex);
-    let is_caught = met == GROUND_MET && is_look(LOOK_CATCHER);
+    let is_caught = met == GROUND_MET && lighting_has(LIGHTING_CATCHER);
     let is_emitter = material.kind == EMISSIVE;
     let far = first.w + vertex.distance;
     let fade = faded(far);
     let weight = left_over * vertex.opacity;
     let rest = left_over - weight;
     let lit = weight * (1.0 - fade);
-    let open = select(look.ambient, vec3f(0.0), look.occlusion_samples > 0u);
+    let open = select(lighting.ambient, vec3f(0.0), lighting.occlusion_samples > 0u);
     let own = select(open, vec3f(material.parameter), is_emitter);
-    let is_last = stage.is_last != 0u || is_caught || rest <= 0.0;
-    let through = select(0.0, rest, stage.is_last != 0u) * shown;
-    let seen = weight * fade * look.cue_color + lit * vertex.color * own + through;
+    let is_last = dispatch.is_last != 0u || is_caught || rest <= 0.0;
+    let through = select(0.0, rest, dispatch.is_last != 0u) * shown;
+    let seen = weight * fade * lighting.cue_color + lit * vertex.color * own + through;
     let added = select(vec4f(seen, weight), vec4f(left_over * shown, 0.0), is_caught);
     store(index, RADIANCE, radiance + added);
-    let is_first = stage.surface == 0u && !is_caught;
+    let is_first = dispatch.surface == 0u && !is_caught;
     store(index, FIRST, vec4f(select(first.rgb, min(vertex.color, vec3f(1.0)), is_first), far));
-    let far_wall = far_wall_of(vertex, ray.direction);
-    store_left(index, Left(vertex.id, vertex.place, far_wall, bitcast<u32>(vertex.sphere.w)));
+    let exit_distance = exit_distance_of(vertex, ray.direction);
+    store_departure(index, Departure(vertex.id, vertex.shape_index, exit_distance, bitcast<u32>(vertex.sphere.w)));
     store(index, THROUGHPUT, vec4f(rest, lit, 0.0, 0.0));
     store(index, NORMAL, vec4f(vertex.normal, 0.0));
-    store(index, PAINT, vec4f(vertex.color * lit, select(0.0, left_over, is_caught)));
+    store(index, ALBEDO, vec4f(vertex.color * lit, select(0.0, left_over, is_caught)));
     let share = select(0.0, material.parameter, material.kind == LAMBERT);
     paths[slot(index, LOBE)] = vec4u(bitcast<vec2u>(vec2f(share, material.alpha)), material.energies, 0u);
     let goes_on = select(PATH_ALIVE, 0u, is_last) | select(PATH_INSIDE, 0u, vertex.is_back || met == GROUND_MET);

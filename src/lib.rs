@@ -155,9 +155,9 @@ pub use image::tone::ToneCurve;
 pub use image::{Image, LayerSet};
 pub use light::environment::Environment;
 pub use render::{Integrator, RenderSettings, Shading};
-pub use scene::material::{Finish, Material};
-pub use scene::points::{Points, Radii};
+pub use scene::material::{Material, SurfaceProperties};
 pub use scene::sphere::Sphere;
+pub use scene::sphere_array::{Radii, SphereArray};
 pub use scene::{Appearance, ColorMap, Colors, Scene};
 
 /// Compiles the example in the README.

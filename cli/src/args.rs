@@ -8,7 +8,7 @@ use super::camera::CameraArgs;
 use super::data::format_parser;
 use super::generate::kinds;
 use super::light::LightArgs;
-use super::patience::PatienceArgs;
+use super::stop_rule::StopArgs;
 use pinhole::accel::AccelChoice;
 use pinhole::image::tone::ToneCurve;
 use pinhole::load::Format;
@@ -57,7 +57,7 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) light: LightArgs,
     #[command(flatten)]
-    pub(super) patience: PatienceArgs,
+    pub(super) stop_rule: StopArgs,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
     #[command(flatten)]

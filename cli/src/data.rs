@@ -67,13 +67,13 @@ pub(super) fn read(
     format: &Format,
     options: &DataOptions,
 ) -> Result<Loaded> {
-    let place = || path.display().to_string();
-    let extra = format.extra_bytes(bytes).with_context(place)?;
+    let file_name = || path.display().to_string();
+    let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
         let what = format!("{}: to read an array of {extra} bytes takes", path.display());
         memory::check_reading(&what, extra).map_err(Error::msg)?;
     }
-    let mut loaded = format.read(bytes, &options.to_read()).with_context(place)?;
+    let mut loaded = format.read(bytes, &options.to_read()).with_context(file_name)?;
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }

@@ -181,15 +181,15 @@ impl Source {
         let mut loaded = data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
         let mut notes = std::mem::take(&mut loaded.notes);
         drop(bytes);
-        let place = || path.display().to_string();
+        let file_name = || path.display().to_string();
         let (film, size_from) = self.film(Film::default())?;
         let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
-        let scene = scene.with_context(place)?;
+        let scene = scene.with_context(file_name)?;
         if scene.is_empty() {
             notes.push(format!("{}: there are no spheres in it", path.display()));
         }
         let parameters = self.camera.unwrap_or_default();
-        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(place)?;
+        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
         let settings = self.light.over(light::plain(self.light.integrator(None)))?;
         let encoding = Encoding::default();
         let files = vec![path.clone()];
@@ -198,8 +198,8 @@ impl Source {
 
     /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
-        let place = || self.path.display().to_string();
-        let file = SceneFile::parse(text).with_context(place)?;
+        let file_name = || self.path.display().to_string();
+        let file = SceneFile::parse(text).with_context(file_name)?;
         let (data, color, notes) = self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator());
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
@@ -210,17 +210,18 @@ impl Source {
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
-            DataSpheres::Points(points) => file.scene_with_points(points, color),
+            DataSpheres::Array(points) => file.scene_with_array(points, color),
         };
-        let scene = scene.with_context(place)?;
+        let scene = scene.with_context(file_name)?;
         let (camera, eyes) = match &self.camera {
-            Some(parameters) => cameras(parameters, &film, &scene).with_context(place)?,
+            Some(parameters) => cameras(parameters, &film, &scene).with_context(file_name)?,
             None => (
-                file.camera(&film, &scene).with_context(place)?,
-                file.stereo_pair(&film, &scene).with_context(place)?,
+                file.camera(&film, &scene).with_context(file_name)?,
+                file.stereo_pair(&film, &scene).with_context(file_name)?,
             ),
         };
-        let settings = file.settings(kind, &scene, camera.as_ref(), image).with_context(place)?;
+        let settings =
+            file.settings(kind, &scene, camera.as_ref(), image).with_context(file_name)?;
         let settings = self.light.over(settings)?;
         let encoding = file.encoding;
         Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })

@@ -33,7 +33,6 @@ mod interrupt;
 mod light;
 mod memory;
 mod output;
-mod patience;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
@@ -43,6 +42,7 @@ mod render;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;
+mod stop_rule;
 #[cfg(feature = "gpu")]
 mod table;
 mod threads;

@@ -13,12 +13,12 @@ use super::input::{Input, Source};
 use super::interrupt;
 use super::light::LightFlags;
 use super::memory;
-use super::patience::Patience;
-#[cfg(feature = "gpu")]
-use super::patience::Watching;
 use super::picture::Outputs;
 use super::progress;
 use super::speak::tell;
+use super::stop_rule::StopRule;
+#[cfg(feature = "gpu")]
+use super::stop_rule::Watching;
 use super::threads;
 use super::views::Views;
 #[cfg(feature = "gpu")]
@@ -36,7 +36,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
-    patience: Patience,
+    stop_rule: StopRule,
     device: Device,
     stereo: Option<Stereo>,
 }
@@ -44,11 +44,11 @@ struct Job {
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
         let outputs = Outputs::new(&args.output, &args.layers)?;
-        let patience = Patience::new(&args.patience)?;
-        let light = LightFlags::new(&args.light)?.with_open_end(patience.open_end());
+        let stop_rule = StopRule::new(&args.stop_rule)?;
+        let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         Ok(Self {
             source: Source::new(&args.input)?.with_light(light),
-            patience,
+            stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
@@ -69,7 +69,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let encoding = job.encoding.over(input.encoding);
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
-        job.patience.check_without_light()?;
+        job.stop_rule.check_without_light()?;
     }
     for note in input.settings.notes(&input.scene) {
         tell(format_args!("note: {note}"));
@@ -85,10 +85,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = job.outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
-        let images = render_views(&input, &job.patience, &views, layers, &opened)?;
+        let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
         return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
     }
-    let image = match render_views(&input, &job.patience, &views, layers, &opened)? {
+    let image = match render_views(&input, &job.stop_rule, &views, layers, &opened)? {
         Views::One(image) => image,
         Views::Two([left, right]) => {
             Image::side_by_side([&left, &right]).context("both eyes in one picture")?
@@ -100,7 +100,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// Renders what the camera, or the one between two eyes, sees.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
     let view = Views::One(input.view());
-    match render_views(input, &Patience::default(), &view, layers, opened)? {
+    match render_views(input, &StopRule::default(), &view, layers, opened)? {
         Views::One(image) | Views::Two([image, _]) => Ok(image),
     }
 }
@@ -108,26 +108,26 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
 /// Renders on the device, and says so if that is not what the user would expect.
 fn render_views(
     input: &Input,
-    patience: &Patience,
+    stop_rule: &StopRule,
     views: &Views<View<'_>>,
     layers: LayerSet,
     opened: &Opened,
 ) -> Result<Views<Image>, Failure> {
     match opened {
-        Opened::Cpu => on_cpu(input, patience, views, layers),
+        Opened::Cpu => on_cpu(input, stop_rule, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
-            check_on_cpu(input, patience, views, layers)?;
+            check_on_cpu(input, stop_rule, views, layers)?;
             tell(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
                  rendering on the CPU reference, which is slower",
             );
-            on_cpu(input, patience, views, layers)
+            on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, doubt } => {
             doubt.iter().for_each(tell);
-            on_gpu(headless, input, patience, views, layers, *choice)
+            on_gpu(headless, input, stop_rule, views, layers, *choice)
         }
     }
 }
@@ -135,23 +135,23 @@ fn render_views(
 /// Refuses what the CPU reference has not, and what does not fit.
 fn check_on_cpu(
     input: &Input,
-    patience: &Patience,
+    stop_rule: &StopRule,
     views: &Views<View<'_>>,
     layers: LayerSet,
 ) -> Result<(), Failure> {
     if !input.settings.integrator.is_primary() {
-        patience.check_on_cpu()?;
+        stop_rule.check_on_cpu()?;
     }
     memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))
 }
 
 fn on_cpu(
     input: &Input,
-    patience: &Patience,
+    stop_rule: &StopRule,
     views: &Views<View<'_>>,
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
-    check_on_cpu(input, patience, views, layers)?;
+    check_on_cpu(input, stop_rule, views, layers)?;
     progress::stage("rendering on the CPU reference");
     let Input { scene, settings, .. } = input;
     let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
@@ -162,7 +162,7 @@ fn on_cpu(
 fn on_gpu(
     headless: &Headless,
     input: &Input,
-    patience: &Patience,
+    stop_rule: &StopRule,
     views: &Views<View<'_>>,
     layers: LayerSet,
     choice: AccelChoice,
@@ -178,7 +178,7 @@ fn on_gpu(
             progress::stage("preparing");
             views.try_each(|view| {
                 let pixels = film.pixel_count();
-                let watching = Watching::new(*patience, views.count(), pixels, is_lit);
+                let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
                 let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);
                 too_short = watching.too_short();
@@ -188,7 +188,7 @@ fn on_gpu(
         if let Some(failure) = too_short {
             return Err(failure);
         }
-        if is_stopped && !patience.keeps_partial() {
+        if is_stopped && !stop_rule.keeps_partial() {
             return Err(Failure::Stopped);
         }
         Ok(done.map(|pictures| (pictures, is_stopped)))

@@ -58,7 +58,7 @@ struct Enlarged {
 
 /// How large the pictures are on a screen.
 #[derive(Debug, PartialEq, Serialize)]
-struct Frame {
+struct PictureSize {
     /// In CSS pixels, if there is so much room; of one that has a row for itself, `wide`.
     width: f64,
     wide: f64,
@@ -69,7 +69,7 @@ struct Frame {
     sharp: bool,
 }
 
-impl Frame {
+impl PictureSize {
     fn new([width, height]: [u32; 2]) -> Self {
         /// A frame is at most so many times as long as wide.
         const LONGEST: f64 = 8.0;
@@ -110,7 +110,7 @@ struct Page<'a> {
     /// Width and height of the pictures, and how many pixels along an axis are one of theirs.
     shown: [u32; 2],
     step: u32,
-    frame: Frame,
+    frame: PictureSize,
     color: String,
     depth: String,
     /// `None` if no pixel was judged.
@@ -146,7 +146,7 @@ pub(super) fn page(
         rendered_otherwise: report.rendered_otherwise.map(|count| grouped(count as u64)),
         shown: whole.shown(),
         step: whole.step,
-        frame: Frame::new(size),
+        frame: PictureSize::new(size),
         color: pictures.color(whole)?,
         depth: pictures.depth_colors(whole)?,
         mask: match certificate.verdicts.is_empty() {
@@ -204,8 +204,8 @@ fn enlarged(
 ) -> Result<Enlarged> {
     let window = Window::around(violation.pixel, size);
     let [i, j] = violation.pixel;
-    let place = |axis: usize| (violation.pixel[axis] - window.first[axis]) * ZOOM;
-    let percent = |place: u32, side: u32| 100.0 * (f64::from(place) + 0.5) / f64::from(side);
+    let pixels_at = |axis: usize| (violation.pixel[axis] - window.first[axis]) * ZOOM;
+    let percent = |pixel: u32, side: u32| 100.0 * (f64::from(pixel) + 0.5) / f64::from(side);
     Ok(Enlarged {
         number,
         listed: violation.into(),
@@ -214,8 +214,8 @@ fn enlarged(
         width: window.size[0] * ZOOM,
         height: window.size[1] * ZOOM,
         zoom: ZOOM,
-        left: place(0),
-        top: place(1),
+        left: pixels_at(0),
+        top: pixels_at(1),
         x: percent(i, size[0]),
         y: percent(j, size[1]),
     })
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn pictures_of_any_shape_have_room() {
         let frame = |size| {
-            let Frame { width, aspect, stretched, sharp, .. } = Frame::new(size);
+            let PictureSize { width, aspect, stretched, sharp, .. } = PictureSize::new(size);
             (width, width / aspect, stretched, sharp)
         };
         assert_eq!(frame([1, 1]), (128.0, 128.0, false, true));

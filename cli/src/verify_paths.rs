@@ -54,13 +54,13 @@ impl From<&PathViolation> for Listed {
 
 impl From<&PathCertificate> for PathReport {
     fn from(certificate: &PathCertificate) -> Self {
-        let PathCertificate { start, extend, scatter, occlude, settle, .. } = *certificate;
+        let PathCertificate { start, extend, scatter, occlude, accumulate, .. } = *certificate;
         let stages = [
             ("start", start),
             ("extend", extend),
             ("scatter", scatter),
             ("occlude", occlude),
-            ("settle", settle),
+            ("accumulate", accumulate),
         ];
         Self {
             paths: certificate.paths,

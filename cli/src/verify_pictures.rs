@@ -132,10 +132,10 @@ impl<'a> Pictures<'a> {
         encoded(window, |block| {
             let judged = block.indices(self.width).filter_map(|i| {
                 let verdict = self.verdicts.get(i)?;
-                let place = Verdict::ALL.iter().position(|of| of == verdict);
-                Some((place, *verdict, pixels.get(i)?.id != NO_ID))
+                let rank = Verdict::ALL.iter().position(|of| of == verdict);
+                Some((rank, *verdict, pixels.get(i)?.id != NO_ID))
             });
-            match judged.max_by_key(|(place, _, is_hit)| (*place, *is_hit)) {
+            match judged.max_by_key(|(rank, _, is_hit)| (*rank, *is_hit)) {
                 Some((_, Verdict::Decided, true)) => DECIDED_HIT,
                 Some((_, verdict, _)) => verdict_color(verdict),
                 None => MISS,
@@ -168,8 +168,8 @@ impl Block {
 fn encoded(window: Window, color: impl Fn(Block) -> [u8; 3] + Sync + Send) -> Result<String> {
     let Window { first, size, step } = window;
     let [width, height] = window.shown();
-    let range = |axis: usize, place: u32| {
-        let start = place * step;
+    let range = |axis: usize, index: u32| {
+        let start = index * step;
         first[axis] + start..first[axis] + (start + step).min(size[axis])
     };
     let row = |j: usize| -> Vec<[u8; 3]> {

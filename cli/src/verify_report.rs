@@ -95,7 +95,7 @@ impl Report {
                 height: recording.film.height(),
                 camera: recording.camera.kind.name(),
                 y_axis: recording.film.y_axis().name(),
-                shading: recording.look.shading.name(),
+                shading: recording.primary.shading.name(),
                 structure: one_line(&provenance.structure),
             },
             counts: Verdict::ALL.iter().map(count).collect(),

@@ -25,7 +25,7 @@ impl Cells {
     }
 
     /// The cell that holds a point, or the nearest one.
-    fn place(&self, at: Vec3) -> [u32; 3] {
+    fn coordinates(&self, at: Vec3) -> [u32; 3] {
         let cells = (at - self.min) / self.size;
         let [width, height, depth] = self.counts;
         // A float is cast to the nearest u32, so what lies below becomes 0.
@@ -49,13 +49,13 @@ impl Cells {
     /// A number for the cell of a sphere's centre, such that cells near each other in space, along any axis,
     /// have numbers near each other: block by block.
     pub(super) fn index_in_blocks(&self, sphere: &[f32; 4]) -> usize {
-        let place = self.place(Vec3::new(sphere[0], sphere[1], sphere[2]));
+        let coordinates = self.coordinates(Vec3::new(sphere[0], sphere[1], sphere[2]));
         let blocks = self.counts.map(|count| count.div_ceil(BLOCK));
         let join = |[x, y, z]: [u32; 3], [width, height]: [u32; 2]| {
             (z as usize * height as usize + y as usize) * width as usize + x as usize
         };
-        let block = join(place.map(|i| i / BLOCK), [blocks[0], blocks[1]]);
-        block * BLOCK.pow(3) as usize + join(place.map(|i| i % BLOCK), [BLOCK, BLOCK])
+        let block = join(coordinates.map(|i| i / BLOCK), [blocks[0], blocks[1]]);
+        block * BLOCK.pow(3) as usize + join(coordinates.map(|i| i % BLOCK), [BLOCK, BLOCK])
     }
 
     /// As [`Self::met_by`], for cells that are only a part of what the sphere may meet: a sphere beside
@@ -78,8 +78,8 @@ impl Cells {
         let center = [x, y, z];
         let outer = radius + margin;
         let inner = (radius - margin).max(0.0);
-        let first = self.place(Vec3::from(center) - outer);
-        let last = self.place(Vec3::from(center) + outer);
+        let first = self.coordinates(Vec3::from(center) - outer);
+        let last = self.coordinates(Vec3::from(center) + outer);
         if is_within && first == last {
             return meet(self.index(first));
         }

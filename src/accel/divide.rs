@@ -86,9 +86,9 @@ fn select(
         let counts = map_chunks(ids, |_, ids| {
             let mut counts = [0_usize; DIGIT as usize];
             for id in ids {
-                let place = key(*id).0;
-                if u64::from(place) >> below == known {
-                    counts[(place >> next & (DIGIT - 1)) as usize] += 1;
+                let coordinate = key(*id).0;
+                if u64::from(coordinate) >> below == known {
+                    counts[(coordinate >> next & (DIGIT - 1)) as usize] += 1;
                 }
             }
             counts
@@ -145,19 +145,19 @@ mod tests {
     /// What sorting says, with many that share a place, and zeros of both signs.
     #[test]
     fn parts_are_those_of_a_sort() {
-        let places = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];
+        let coordinates = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];
         let mut rng = fastrand::Rng::with_seed(1);
         let mut times_parted = 0;
         for count in [0, 1, 2, 3, 1000, 150_000] {
             let spheres: Vec<[f32; 4]> = (0..count)
                 .map(|_| {
-                    let x = if rng.bool() { places[rng.usize(..7)] } else { rng.f32() - 0.5 };
+                    let x = if rng.bool() { coordinates[rng.usize(..7)] } else { rng.f32() - 0.5 };
                     [x, 0.1 * rng.u32(..9) as f32, 0.0, 1.0]
                 })
                 .collect();
             let mut sorted: Vec<u32> = (0..count).collect();
-            let place = |id: &u32| spheres[*id as usize][0] + 0.0;
-            sorted.sort_by(|a, b| place(a).total_cmp(&place(b)));
+            let coordinate = |id: &u32| spheres[*id as usize][0] + 0.0;
+            sorted.sort_by(|a, b| coordinate(a).total_cmp(&coordinate(b)));
             for parts in [1, 2, 3] {
                 let Divided { parts: bricks, may_part_equals } = divide(&spheres, parts);
                 assert_eq!(bricks.len(), parts);

@@ -115,7 +115,7 @@ impl Grid {
         let mut next = Some(start as usize);
         std::iter::from_fn(move || {
             let at = next?;
-            let (place, is_last) = match &self.references {
+            let (shape_index, is_last) = match &self.references {
                 Some(references) => {
                     let reference = *references.get(at)?;
                     (reference & !LAST, reference & LAST != 0)
@@ -123,7 +123,7 @@ impl Grid {
                 None => (at as u32, spheres.get(at)?[3].is_sign_negative()),
             };
             next = (!is_last).then_some(at + 1);
-            Some(place)
+            Some(shape_index)
         })
     }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::cells::{Cells, mean_cells_met};
 use super::grid::{Grid, LAST, ListLayout, MAX_CELLS, word};
-use super::grid_crowd::{Crowd, inner_lists};
+use super::grid_dense::{DenseCells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
 use super::grid_sort::{CHUNK, Lists, count, fill, map_ranges, sort_by_cell, total};
 use crate::parallel::for_each;
@@ -124,7 +124,7 @@ fn coarser(cells: &Cells, max: Vec3) -> Cells {
 
 /// A run of cells on its way into the grid: its words, with positions that count from its own start.
 #[derive(Default)]
-struct Part {
+struct BuiltCells {
     /// Words of the first level.
     words: Vec<u32>,
     /// Words of the grids inside.
@@ -142,10 +142,11 @@ fn assemble(
     lists: &Lists,
 ) -> BuiltGrid {
     let first_level_len = word::in_whole_units(cells.len());
-    let crowd = Crowd::of(cells, &sorted, margin, (&lists.places, &lists.starts), budget);
+    let dense =
+        DenseCells::of(cells, &sorted, margin, (&lists.shape_indices, &lists.starts), budget);
     let parts = map_ranges(cells.len(), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
-        let mut part = Part {
+        let mut part = BuiltCells {
             words: Vec::with_capacity(range.len()),
             inner: Vec::new(),
             lists: Vec::with_capacity(listed),
@@ -153,9 +154,9 @@ fn assemble(
         let (mut keys, mut list) = (Vec::new(), Vec::new());
         for cell in range {
             let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
-            by_id(&lists.places[start..end], &sorted_ids, &mut keys, &mut list);
+            by_id(&lists.shape_indices[start..end], &sorted_ids, &mut keys, &mut list);
             keep_one_of_the_same(&mut list, &sorted);
-            let inner = crowd.level(cell).and_then(|level| {
+            let inner = dense.level(cell).and_then(|level| {
                 Some((level, inner_lists(cells, cell, &list, &sorted, margin, level)?))
             });
             let word = match inner {
@@ -180,26 +181,28 @@ fn assemble(
         cells: Vec::new(),
         references: None,
     };
-    let places = join(&mut grid.cells, first_level_len, &parts);
+    let shape_indices = join(&mut grid.cells, first_level_len, &parts);
     drop(parts);
     mark_empty_surroundings(&mut grid.cells, cells.counts);
     match layout {
         ListLayout::Referenced => {
-            grid.references = Some(places);
+            grid.references = Some(shape_indices);
             BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
         }
         ListLayout::Copied => {
-            let (spheres, ids) = copies(&places, &sorted, &sorted_ids);
+            let (spheres, ids) = copies(&shape_indices, &sorted, &sorted_ids);
             BuiltGrid { grid, spheres, ids }
         }
     }
 }
 
 /// Sorts a list by id, so that of equal distances the first is the one that counts.
-fn by_id(places: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec<u32>) {
+fn by_id(shape_indices: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec<u32>) {
     keys.clear();
     keys.extend(
-        places.iter().map(|&place| u64::from(ids[place as usize]) << 32 | u64::from(place)),
+        shape_indices.iter().map(|&shape_index| {
+            u64::from(ids[shape_index as usize]) << 32 | u64::from(shape_index)
+        }),
     );
     keys.sort_unstable();
     list.clear();
@@ -212,7 +215,7 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     const LONG: usize = 32;
     if list.len() > LONG {
         let mut seen = std::collections::HashSet::with_capacity(list.len());
-        list.retain(|place| seen.insert(sorted[*place as usize].map(f32::to_bits)));
+        list.retain(|shape_index| seen.insert(sorted[*shape_index as usize].map(f32::to_bits)));
     }
 }
 
@@ -228,13 +231,13 @@ fn append(lists: &mut Vec<u32>, list: &[u32]) -> u32 {
 }
 
 /// Joins the parts' words into `cells`, and gives their lists.
-fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[Part]) -> Vec<u32> {
+fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[BuiltCells]) -> Vec<u32> {
     let listed = parts.iter().map(|part| part.lists.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
-    let mut places = vec![0; listed];
+    let mut shape_indices = vec![0; listed];
     *cells = vec![word::EMPTY; first_level_len + inner_len];
     let (first_level, inner) = cells.split_at_mut(first_level_len);
-    let (mut words, mut inner, mut lists) = (first_level, inner, &mut places[..]);
+    let (mut words, mut inner, mut lists) = (first_level, inner, &mut shape_indices[..]);
     let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
     let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
@@ -261,7 +264,7 @@ fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[Part]) -> Vec<u32
         }
         lists.copy_from_slice(&part.lists);
     });
-    places
+    shape_indices
 }
 
 /// Takes the first elements from a slice.
@@ -272,15 +275,20 @@ fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
 }
 
 /// Every listed sphere by itself.
-fn copies(places: &[u32], sorted: &[[f32; 4]], sorted_ids: &[u32]) -> (Vec<[f32; 4]>, Vec<u32>) {
-    let mut spheres = vec![[0.0; 4]; places.len()];
-    let mut ids = vec![0; places.len()];
-    let parts = spheres.chunks_mut(CHUNK).zip(ids.chunks_mut(CHUNK)).zip(places.chunks(CHUNK));
-    for_each(parts.collect(), |((spheres, ids), places)| {
-        for ((sphere, id), place) in spheres.iter_mut().zip(ids).zip(places) {
-            let at = (place & !LAST) as usize;
+fn copies(
+    shape_indices: &[u32],
+    sorted: &[[f32; 4]],
+    sorted_ids: &[u32],
+) -> (Vec<[f32; 4]>, Vec<u32>) {
+    let mut spheres = vec![[0.0; 4]; shape_indices.len()];
+    let mut ids = vec![0; shape_indices.len()];
+    let parts =
+        spheres.chunks_mut(CHUNK).zip(ids.chunks_mut(CHUNK)).zip(shape_indices.chunks(CHUNK));
+    for_each(parts.collect(), |((spheres, ids), shape_indices)| {
+        for ((sphere, id), shape_index) in spheres.iter_mut().zip(ids).zip(shape_indices) {
+            let at = (shape_index & !LAST) as usize;
             *sphere = sorted[at];
-            if place & LAST != 0 {
+            if shape_index & LAST != 0 {
                 sphere[3] = -sphere[3];
             }
             *id = sorted_ids[at];

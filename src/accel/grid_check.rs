@@ -57,10 +57,10 @@ pub enum GridError {
         cell: u32,
     },
     /// A place's id is of no sphere of the input, of another one, or missing from the ids.
-    #[error("the sphere in place {place} is not the one that its id says")]
+    #[error("the sphere at index {shape_index} of the structure is not the one that its id says")]
     Sphere {
         /// The place.
-        place: u32,
+        shape_index: u32,
     },
     /// A sphere, with the margin, is not within the cells.
     #[error("sphere {id} reaches beyond the cells")]
@@ -110,7 +110,7 @@ impl Grid {
         margin: f32,
     ) -> Result<(), GridError> {
         self.check_shape()?;
-        self.check_places(spheres, ids, input)?;
+        self.check_shapes(spheres, ids, input)?;
         let check = Check { grid: self, ids, input, margin: f64::from(margin) };
         let lists = check.lists(spheres)?;
         check.check_reach()?;
@@ -139,27 +139,27 @@ impl Grid {
     }
 
     /// Each place has the sphere of its id; with references, each id has one place.
-    fn check_places(
+    fn check_shapes(
         &self,
         spheres: &[[f32; 4]],
         ids: &[u32],
         input: &[[f32; 4]],
     ) -> Result<(), GridError> {
-        let wrong = |place: usize| Err(GridError::Sphere { place: place as u32 });
+        let wrong = |shape_index: usize| Err(GridError::Sphere { shape_index: shape_index as u32 });
         if spheres.len() != ids.len() {
             return wrong(spheres.len().min(ids.len()));
         }
         let mut seen = vec![false; input.len()];
-        for (place, (sphere, id)) in spheres.iter().zip(ids).enumerate() {
-            let Some(original) = input.get(*id as usize) else { return wrong(place) };
+        for (shape_index, (sphere, id)) in spheres.iter().zip(ids).enumerate() {
+            let Some(original) = input.get(*id as usize) else { return wrong(shape_index) };
             let mut plain = *sphere;
             if self.references.is_none() {
                 plain[3] = plain[3].abs();
             } else if std::mem::replace(&mut seen[*id as usize], true) {
-                return wrong(place);
+                return wrong(shape_index);
             }
             if plain.map(f32::to_bits) != original.map(f32::to_bits) {
-                return wrong(place);
+                return wrong(shape_index);
             }
         }
         if self.references.is_some() && ids.len() != input.len() {
@@ -249,7 +249,7 @@ impl Check<'_> {
                 Some(references) => *references.get(at).ok_or(out)? & LAST != 0,
                 None => spheres.get(at).ok_or(out)?[3].is_sign_negative(),
             };
-            let id = *self.ids.get(self.place(at)).ok_or(out)?;
+            let id = *self.ids.get(self.shape_index(at)).ok_or(out)?;
             if last_id.is_some_and(|last| last >= id) {
                 return Err(GridError::Order { cell });
             }
@@ -262,12 +262,12 @@ impl Check<'_> {
     }
 
     /// The place that an element of a list names.
-    fn place(&self, at: usize) -> usize {
+    fn shape_index(&self, at: usize) -> usize {
         self.grid.references.as_ref().map_or(at, |references| (references[at] & !LAST) as usize)
     }
 
     fn id(&self, at: usize) -> u32 {
-        self.ids[self.place(at)]
+        self.ids[self.shape_index(at)]
     }
 
     /// By a table of sums: how many cells are not empty in the box from the first cell to each.
@@ -300,12 +300,17 @@ impl Check<'_> {
             for octant in 0..8 {
                 let reach = (value >> (3 * octant) & 7) as usize;
                 let descends = |axis: usize| octant >> axis & 1 == 1;
-                let place = [x, y, z];
+                let coordinates = [x, y, z];
                 let low = [0, 1, 2].map(|axis| {
-                    if descends(axis) { place[axis].saturating_sub(reach) } else { place[axis] }
+                    if descends(axis) {
+                        coordinates[axis].saturating_sub(reach)
+                    } else {
+                        coordinates[axis]
+                    }
                 });
                 let high = [(0, width), (1, height), (2, depth)].map(|(axis, count)| {
-                    let last = if descends(axis) { place[axis] } else { place[axis] + reach };
+                    let last =
+                        if descends(axis) { coordinates[axis] } else { coordinates[axis] + reach };
                     (last + 1).min(count)
                 });
                 let corner = |i: usize| {

@@ -47,9 +47,9 @@ fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> 
     for k in 0..depth {
         for j in 0..height {
             for i in 0..width {
-                let place = [in_order(0, i), in_order(1, j), in_order(2, k)];
+                let coordinates = [in_order(0, i), in_order(1, j), in_order(2, k)];
                 let index = |[x, y, z]: [usize; 3]| (z * height + y) * width + x;
-                if !is_empty[index(place)] {
+                if !is_empty[index(coordinates)] {
                     continue;
                 }
                 let mut side = MOST_AHEAD;
@@ -57,16 +57,16 @@ fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> 
                     let ahead = [0, 1, 2].map(|axis| {
                         let moves = neighbour >> axis & 1 == 1;
                         match (moves, octant >> axis & 1) {
-                            (false, _) => Some(place[axis]),
-                            (true, 1) => place[axis].checked_sub(1),
-                            (true, _) => Some(place[axis] + 1).filter(|x| *x < counts[axis]),
+                            (false, _) => Some(coordinates[axis]),
+                            (true, 1) => coordinates[axis].checked_sub(1),
+                            (true, _) => Some(coordinates[axis] + 1).filter(|x| *x < counts[axis]),
                         }
                     });
                     if let [Some(x), Some(y), Some(z)] = ahead {
                         side = side.min(sides[index([x, y, z])]);
                     }
                 }
-                sides[index(place)] = side + 1;
+                sides[index(coordinates)] = side + 1;
             }
         }
     }

@@ -82,9 +82,9 @@ impl Level {
         high: [usize; 3],
     ) -> impl Iterator<Item = Cell> {
         let along = move |axis: usize| low[axis]..high[axis];
-        let places = along(2)
+        let cells = along(2)
             .flat_map(move |z| along(1).flat_map(move |y| along(0).map(move |x| [x, y, z])));
-        places.map(move |[x, y, z]| Cell {
+        cells.map(move |[x, y, z]| Cell {
             index: self.first + (z * self.counts[1] + y) * self.counts[0] + x,
             low: [0, 1, 2].map(|axis| self.low[axis] + [x, y, z][axis] as f64 * self.size),
             size: self.size,

@@ -66,7 +66,7 @@ pub(super) fn total(counts: &[AtomicU32]) -> u64 {
 
 /// The places of the spheres that meet each cell, cell by cell, and where each cell's start.
 pub(super) struct Lists {
-    pub(super) places: Vec<u32>,
+    pub(super) shape_indices: Vec<u32>,
     pub(super) starts: Vec<u32>,
 }
 
@@ -79,17 +79,17 @@ pub(super) fn fill(
 ) -> Lists {
     let total = total(&counts) as usize;
     let ends = add_up(counts);
-    let places = zeros(total);
+    let shape_indices = zeros(total);
     for_ranges(spheres.len(), |range| {
-        for place in range {
-            cells.met_by(&spheres[place], margin, |cell| {
+        for shape_index in range {
+            cells.met_by(&spheres[shape_index], margin, |cell| {
                 let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
-                places[at as usize].store(place as u32, Ordering::Relaxed);
+                shape_indices[at as usize].store(shape_index as u32, Ordering::Relaxed);
             });
         }
     });
     // Counted down, ends are starts.
-    Lists { places: plain(places), starts: plain(ends) }
+    Lists { shape_indices: plain(shape_indices), starts: plain(ends) }
 }
 
 fn zeros(len: usize) -> Vec<AtomicU32> {

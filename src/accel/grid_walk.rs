@@ -11,7 +11,7 @@ use super::sphere::intersect_sphere;
 /// The nearest sphere of this brick.
 struct Found {
     t: f32,
-    place: Option<u32>,
+    shape_index: Option<u32>,
 }
 
 impl Grid {
@@ -25,10 +25,10 @@ impl Grid {
         ray: &RayF32,
         nearest: &mut Nearest,
     ) {
-        let mut found = Found { t: nearest.t, place: None };
+        let mut found = Found { t: nearest.t, shape_index: None };
         self.walk(spheres, ray, &mut found, false);
-        if let Some(place) = found.place {
-            nearest.offer(found.t, ids[place as usize]);
+        if let Some(shape_index) = found.shape_index {
+            nearest.offer(found.t, ids[shape_index as usize]);
         }
     }
 
@@ -36,9 +36,9 @@ impl Grid {
     #[must_use]
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
         // A list takes what is as near as the nearest so far.
-        let mut found = Found { t: t_max.next_down(), place: None };
+        let mut found = Found { t: t_max.next_down(), shape_index: None };
         self.walk(spheres, ray, &mut found, true);
-        found.place.is_some()
+        found.shape_index.is_some()
     }
 
     fn walk(&self, spheres: &[[f32; 4]], ray: &RayF32, found: &mut Found, stop_at_first: bool) {
@@ -60,7 +60,7 @@ impl Grid {
         let speed = ray.direction * per_cell;
         let strides = Vec3::new(1.0, counts.x, counts.x * counts.y);
         let is_done =
-            |found: &Found, t: f32| found.t <= t || (stop_at_first && found.place.is_some());
+            |found: &Found, t: f32| found.t <= t || (stop_at_first && found.shape_index.is_some());
         let octant = word::REACH_BITS * (!forward).bitmask();
         let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
         loop {
@@ -114,14 +114,14 @@ impl Grid {
 
     /// The nearest of a list replaces one that is as near; why, `shaders/list_copied.wgsl` says.
     fn test_list(&self, spheres: &[[f32; 4]], ray: &RayF32, start: u32, found: &mut Found) {
-        let mut best = Found { t: NO_HIT, place: None };
-        for place in self.list(spheres, start) {
-            let t = intersect_sphere(ray, spheres[place as usize]);
+        let mut best = Found { t: NO_HIT, shape_index: None };
+        for shape_index in self.list(spheres, start) {
+            let t = intersect_sphere(ray, spheres[shape_index as usize]);
             if t < best.t {
-                best = Found { t, place: Some(place) };
+                best = Found { t, shape_index: Some(shape_index) };
             }
         }
-        if best.place.is_some() && best.t <= found.t {
+        if best.shape_index.is_some() && best.t <= found.t {
             *found = best;
         }
     }

@@ -15,16 +15,16 @@ pub(super) fn offer_leaf(
     nearest: &mut Nearest,
 ) {
     let mut t = NO_HIT;
-    let mut place = first;
+    let mut shape_index = first;
     for i in first..first + count {
         let found = intersect_sphere(ray, spheres[i as usize]);
         if found < t {
             t = found;
-            place = i;
+            shape_index = i;
         }
     }
     if t < NO_HIT {
-        nearest.offer(t, ids[place as usize]);
+        nearest.offer(t, ids[shape_index as usize]);
     }
 }
 

@@ -6,10 +6,10 @@ use super::sphere::intersect_sphere;
 /// Offers the nearest of the spheres, which ascend in id.
 pub fn find_nearest(spheres: &[[f32; 4]], ids: &[u32], ray: &RayF32, nearest: &mut Nearest) {
     let mut best = (NO_HIT, 0);
-    for (place, sphere) in spheres.iter().enumerate() {
+    for (shape_index, sphere) in spheres.iter().enumerate() {
         let t = intersect_sphere(ray, *sphere);
         if t < best.0 {
-            best = (t, place);
+            best = (t, shape_index);
         }
     }
     if best.0 < NO_HIT {

@@ -14,7 +14,7 @@ mod extent;
 mod grid;
 mod grid_build;
 mod grid_check;
-mod grid_crowd;
+mod grid_dense;
 mod grid_empty;
 mod grid_geometry;
 mod grid_sort;

@@ -191,11 +191,11 @@ impl AccelPlan {
         let bricks = self.brick_count as u64;
         let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
         let listed = self.budget.listed as u64;
-        let places = match self.structure {
+        let shape_indices = match self.structure {
             Structure::Grid(ListLayout::Copied) => listed,
             _ => per_brick,
         };
-        let mut buffers = vec![("spheres", 16 * places), ("ids", 4 * places)];
+        let mut buffers = vec![("spheres", 16 * shape_indices), ("ids", 4 * shape_indices)];
         match self.structure {
             Structure::WideTree | Structure::BinaryTree => {
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
@@ -346,8 +346,8 @@ fn build_trees(
         let (order, index) = build(&own);
         Brick {
             index,
-            spheres: order.iter().map(|place| own[*place as usize]).collect(),
-            ids: order.iter().map(|place| ids[*place as usize]).collect(),
+            spheres: order.iter().map(|shape_index| own[*shape_index as usize]).collect(),
+            ids: order.iter().map(|shape_index| ids[*shape_index as usize]).collect(),
         }
     };
     parts.map(brick).collect()

@@ -96,7 +96,7 @@ fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
         .step_by(stride)
         .map(|sphere| {
             let center = Vec3::new(sphere[0], sphere[1], sphere[2]);
-            let cube = ((center - min) * cubes_per_length).to_array().map(|place| place as u16);
+            let cube = ((center - min) * cubes_per_length).to_array().map(|x| x as u16);
             (cube, sphere.map(f32::to_bits))
         })
         .collect();

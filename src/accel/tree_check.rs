@@ -15,7 +15,9 @@ pub enum TreeError {
         slot: u32,
     },
     /// A child is not a later node that no other slot points to, or a leaf not a range of spheres.
-    #[error("slot {slot} of node {node} points to the wrong place")]
+    #[error(
+        "slot {slot} of node {node} does not point to a later node of its own, or to a range of spheres"
+    )]
     Link {
         /// Index of the node.
         node: u32,
@@ -31,10 +33,10 @@ pub enum TreeError {
         slot: u32,
     },
     /// A place in leaf order is not in exactly one leaf, or its id is not that of exactly one sphere.
-    #[error("the sphere in place {place} is not in exactly one leaf")]
+    #[error("the sphere at index {shape_index} of the structure is not in exactly one leaf")]
     Sphere {
         /// The place in leaf order.
-        place: u32,
+        shape_index: u32,
     },
     /// A node is no child of any other.
     #[error("node {node} is not reached")]
@@ -130,14 +132,14 @@ pub(super) fn validate<T: Tree>(
 ) -> Result<(), TreeError> {
     let ids = tree.ids();
     let mut seen = vec![false; spheres.len()];
-    for (place, id) in ids.iter().enumerate() {
+    for (shape_index, id) in ids.iter().enumerate() {
         match seen.get_mut(*id as usize) {
             Some(seen) if !*seen => *seen = true,
-            _ => return Err(TreeError::Sphere { place: place as u32 }),
+            _ => return Err(TreeError::Sphere { shape_index: shape_index as u32 }),
         }
     }
     if ids.len() != spheres.len() {
-        return Err(TreeError::Sphere { place: ids.len() as u32 });
+        return Err(TreeError::Sphere { shape_index: ids.len() as u32 });
     }
 
     let count = tree.node_count();
@@ -169,12 +171,12 @@ pub(super) fn validate<T: Tree>(
                         return Err(TreeError::Order { node: node_id, slot });
                     }
                     let mut content = NOTHING;
-                    for place in first..end {
-                        if placed[place] {
-                            return Err(TreeError::Sphere { place: place as u32 });
+                    for shape_index in first..end {
+                        if placed[shape_index] {
+                            return Err(TreeError::Sphere { shape_index: shape_index as u32 });
                         }
-                        placed[place] = true;
-                        let sphere = spheres[ids[place] as usize];
+                        placed[shape_index] = true;
+                        let sphere = spheres[ids[shape_index] as usize];
                         content = union(content, inflated(sphere, margin));
                     }
                     content
@@ -189,8 +191,8 @@ pub(super) fn validate<T: Tree>(
     if let Some(node) = (1..count).find(|node| !reached[*node]) {
         return Err(TreeError::Unreached { node: node as u32 });
     }
-    if let Some(place) = placed.iter().position(|placed| !placed) {
-        return Err(TreeError::Sphere { place: place as u32 });
+    if let Some(shape_index) = placed.iter().position(|placed| !placed) {
+        return Err(TreeError::Sphere { shape_index: shape_index as u32 });
     }
     let (found, stated) = (levels[0], tree.levels());
     if found != stated || found > T::MOST_LEVELS {

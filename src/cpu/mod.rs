@@ -5,7 +5,7 @@
 
 use crate::camera::View;
 use crate::image::{Image, ImageTooLarge, LayerSet, Pixel, RowMut};
-use crate::render::{PrimaryLook, RenderSettings, SettingsError};
+use crate::render::{PrimarySettings, RenderSettings, SettingsError};
 use crate::scene::Scene;
 
 mod denoise;
@@ -51,9 +51,9 @@ pub fn render(
     layers: LayerSet,
 ) -> Result<Image, RenderError> {
     match settings.primary() {
-        Some(look) => {
+        Some(primary) => {
             settings.check(scene)?;
-            Ok(render_primary(scene, view, &look, layers)?)
+            Ok(render_primary(scene, view, &primary, layers)?)
         }
         None => Ok(SampledPicture::new(scene, view, settings)?.render(layers)?),
     }
@@ -62,23 +62,28 @@ pub fn render(
 fn render_primary(
     scene: &Scene,
     view: &View<'_>,
-    look: &PrimaryLook,
+    primary: &PrimarySettings,
     layers: LayerSet,
 ) -> Result<Image, ImageTooLarge> {
     let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
     for_each_pixel(&mut image, |pixel, i, row| {
-        row.set(i, &primary_pixel(scene, view, look, pixel));
+        row.set(i, &primary_pixel(scene, view, primary, pixel));
     });
     Ok(image)
 }
 
 /// What the ray through a pixel's centre says.
-fn primary_pixel(scene: &Scene, view: &View<'_>, look: &PrimaryLook, pixel: [u32; 2]) -> Pixel {
+fn primary_pixel(
+    scene: &Scene,
+    view: &View<'_>,
+    primary: &PrimarySettings,
+    pixel: [u32; 2],
+) -> Pixel {
     let ray = view.ray_through_center(pixel);
     let hit = ray.as_ref().and_then(|ray| trace(scene, ray));
     match (&ray, &hit) {
-        (Some(ray), Some(hit)) => shade(scene, look, ray, hit),
-        _ => Pixel::miss(look.background.to_array()),
+        (Some(ray), Some(hit)) => shade(scene, primary, ray, hit),
+        _ => Pixel::miss(primary.background.to_array()),
     }
 }
 

@@ -2,14 +2,14 @@
 
 use crate::geometry::ray::{Hit, Ray};
 use crate::image::Pixel;
-use crate::render::{PrimaryLook, Shading};
+use crate::render::{PrimarySettings, Shading};
 use crate::scene::Scene;
 
 /// The pixel of a primary ray that hit a sphere.
 #[must_use]
-pub fn shade(scene: &Scene, look: &PrimaryLook, ray: &Ray, hit: &Hit) -> Pixel {
+pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> Pixel {
     let surface = scene.color(hit.id).to_array();
-    let color = match look.shading {
+    let color = match primary.shading {
         Shading::Flat => surface,
         Shading::Headlight => {
             let cosine = hit.normal.dot(ray.direction).abs();

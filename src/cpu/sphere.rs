@@ -7,7 +7,7 @@ use crate::geometry::ray::Ray;
 /// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
 /// there, which points away from the centre; `None` for a miss.
 ///
-/// From inside, or from the wall, the first point is on the far wall. By Pythagoras: the centre's foot
+/// From inside, or from the wall, the first point is on the far side. By Pythagoras: the centre's foot
 /// point on the ray lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent
 /// ray hits; a ray that only leaves the wall it starts on does not.
 ///
@@ -43,14 +43,14 @@ mod tests {
         let near = Some(-DVec3::Z);
         let far = Some(DVec3::Z);
         for (case, ray, t, normal) in [
-            ("from outside: the near wall", along_z(0.0, -5.0), Some(3.0), near),
-            ("from the centre: the far wall", along_z(0.0, 0.0), Some(2.0), far),
-            ("from inside: the far wall", along_z(0.0, 1.0), Some(1.0), far),
+            ("from outside: the near side", along_z(0.0, -5.0), Some(3.0), near),
+            ("from the centre: the far side", along_z(0.0, 0.0), Some(2.0), far),
+            ("from inside: the far side", along_z(0.0, 1.0), Some(1.0), far),
             ("behind", along_z(0.0, 5.0), None, None),
             ("beside", along_z(2.5, -5.0), None, None),
             ("tangent", along_z(2.0, -5.0), Some(5.0), Some(DVec3::X)),
             ("leaving from the wall", along_z(0.0, 2.0), None, None),
-            ("entering from the wall: the far wall", along_z(0.0, -2.0), Some(4.0), far),
+            ("entering from the wall: the far side", along_z(0.0, -2.0), Some(4.0), far),
         ] {
             let hit = intersect(&ray, DVec3::ZERO, 2.0);
             assert_eq!(hit.map(|h| h.0), t, "{case}");
@@ -60,7 +60,7 @@ mod tests {
 
     /// In any direction, not only along an axis, where rounding is kind.
     #[test]
-    fn from_the_wall_only_the_far_wall_is_hit() {
+    fn from_the_surface_only_the_far_side_is_hit() {
         let mut random = fastrand::Rng::with_seed(16);
         for _ in 0..10_000 {
             let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X);

@@ -1,12 +1,12 @@
-//! Random numbers that are found by their place, so that any thread can make any sphere.
+//! Random numbers that are found by their slot, so that any thread can make any sphere.
 
 /// The step of `SplitMix64`: 2⁶⁴ divided by the golden ratio.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// How many places each index has.
-const PLACES: u64 = 32;
+/// How many slots each index has.
+const SLOTS: u64 = 32;
 
-/// The numbers of `SplitMix64`, not one after the other but by place: its n-th state is the seed plus n
+/// The numbers of `SplitMix64`, not one after the other but by slot: its n-th state is the seed plus n
 /// steps.
 ///
 /// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the
@@ -22,22 +22,22 @@ impl Uniform {
         Self { seed: mix(seed.wrapping_add(STEP)) }
     }
 
-    /// 64 random bits; `place` is less than [`PLACES`].
-    pub(crate) fn bits(&self, index: u64, place: u64) -> u64 {
-        let n = index.wrapping_mul(PLACES).wrapping_add(place).wrapping_add(1);
+    /// 64 random bits; `slot` is less than [`SLOTS`].
+    pub(crate) fn bits(&self, index: u64, slot: u64) -> u64 {
+        let n = index.wrapping_mul(SLOTS).wrapping_add(slot).wrapping_add(1);
         mix(self.seed.wrapping_add(n.wrapping_mul(STEP)))
     }
 
     /// A multiple of 2⁻⁵³ in [0, 1).
-    pub(crate) fn number(&self, index: u64, place: u64) -> f64 {
-        (self.bits(index, place) >> 11) as f64 / (1_u64 << 53) as f64
+    pub(crate) fn number(&self, index: u64, slot: u64) -> f64 {
+        (self.bits(index, slot) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// The sum of twelve uniform numbers of 16 bits less its mean: mean 0, standard deviation 1 (but for
-    /// 2⁻³²), never beyond 6 (Irwin–Hall). Takes three places.
-    pub(super) fn nearly_normal(&self, index: u64, place: u64) -> f64 {
+    /// 2⁻³²), never beyond 6 (Irwin–Hall). Takes three slots.
+    pub(super) fn nearly_normal(&self, index: u64, slot: u64) -> f64 {
         let quarters = |bits: u64| (0..4).map(move |k| (bits >> (16 * k)) & 0xffff);
-        let sum: u64 = (0..3).flat_map(|k| quarters(self.bits(index, place + k))).sum();
+        let sum: u64 = (0..3).flat_map(|k| quarters(self.bits(index, slot + k))).sum();
         // Twelve times half a step puts the mean at zero.
         (sum as f64 + 6.0) / f64::from(1 << 16) - 6.0
     }
@@ -68,7 +68,7 @@ mod tests {
     fn the_stream_is_that_of_splitmix64() {
         let uniform = Uniform { seed: 0 };
         assert_eq!(
-            [0, 1, 2].map(|place| uniform.bits(0, place)),
+            [0, 1, 2].map(|slot| uniform.bits(0, slot)),
             [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4, 0x06c4_5d18_8009_454f]
         );
     }

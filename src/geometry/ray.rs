@@ -27,6 +27,6 @@ pub struct Hit {
     /// Index of the sphere, in input order.
     pub id: u32,
     /// Unit normal of the sphere at the hit, pointing away from its centre (also when the ray meets
-    /// the far wall from inside).
+    /// the far side from inside).
     pub normal: DVec3,
 }

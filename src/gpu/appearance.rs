@@ -6,7 +6,7 @@ use crate::scene::{Appearance, Colors, SceneAppearance, alpha_of};
 
 /// The words of a brick's spheres, and where they stand.
 #[derive(Debug)]
-pub(super) struct Looks {
+pub(super) struct AppearanceWords {
     /// Never empty.
     pub(super) words: Vec<u32>,
     pub(super) color_shift: u32,
@@ -15,7 +15,7 @@ pub(super) struct Looks {
     pub(super) material_mask: u32,
 }
 
-impl Looks {
+impl AppearanceWords {
     /// Of the spheres with these ids.
     pub(super) fn of(appearance: &SceneAppearance, ids: &[u32]) -> Self {
         let colors = appearance.colors();
@@ -23,7 +23,7 @@ impl Looks {
         let material_first = words.len() as u32;
         let has_materials = words_per_sphere(appearance).materials;
         if has_materials {
-            words.extend(ids.iter().map(|id| appearance.surface_index(*id)));
+            words.extend(ids.iter().map(|id| appearance.material_row(*id)));
         }
         if words.is_empty() {
             words.push(0);
@@ -56,7 +56,7 @@ impl SphereWords {
 pub(super) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
     SphereWords {
         colors: !matches!(appearance.colors(), Colors::One(_)),
-        materials: appearance.surfaces().len() > 1,
+        materials: appearance.material_rows().len() > 1,
     }
 }
 
@@ -108,25 +108,25 @@ pub(super) fn palette(appearance: &Appearance) -> Vec<Color> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::material::{Finish, Material};
-    use crate::scene::points::Points;
+    use crate::scene::material::{Material, SurfaceProperties};
+    use crate::scene::sphere_array::SphereArray;
     use crate::scene::{ColorMap, Scene};
 
     fn scene(appearance: Appearance) -> Scene {
         let spheres = (0..4).map(|i| [i as f32 * 3.0, 0.0, 0.0, 1.0]).collect();
-        Scene::from_parts(Points::F32(spheres), appearance).unwrap()
+        Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap()
     }
 
-    /// As `paint_of` and `material_index` of `shaders/appearance.wgsl`.
-    fn read(looks: &Looks, palette: &[Color], place: u32) -> ([f32; 4], u32) {
-        let last = looks.words.len() as u32 - 1;
-        let word = looks.words[place.min(last) as usize];
-        let paint = [0, 1, 2, 3].map(|k: u32| {
-            let at = (word >> (looks.color_shift * k)) & looks.color_mask;
+    /// As `sphere_color` and `material_index` of `shaders/appearance.wgsl`.
+    fn read(appearances: &AppearanceWords, palette: &[Color], shape_index: u32) -> ([f32; 4], u32) {
+        let last = appearances.words.len() as u32 - 1;
+        let word = appearances.words[shape_index.min(last) as usize];
+        let color = [0, 1, 2, 3].map(|k: u32| {
+            let at = (word >> (appearances.color_shift * k)) & appearances.color_mask;
             palette[at as usize][k as usize]
         });
-        let at = (looks.material_first + place).min(last);
-        (paint, looks.words[at as usize] & looks.material_mask)
+        let at = (appearances.material_first + shape_index).min(last);
+        (color, appearances.words[at as usize] & appearances.material_mask)
     }
 
     #[test]
@@ -136,9 +136,9 @@ mod tests {
         let map = ColorMap::new(palette_of.clone(), [0.0, 2.0]).unwrap();
         let glass =
             Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
-        let finishes = vec![
-            Finish { material: glass, opacity: 1.0 },
-            Finish { opacity: 0.25, ..Finish::default() },
+        let surfaces = vec![
+            SurfaceProperties { material: glass, opacity: 1.0 },
+            SurfaceProperties { opacity: 0.25, ..SurfaceProperties::default() },
         ];
         for colors in [
             Colors::One(gray(77)),
@@ -148,26 +148,28 @@ mod tests {
         ] {
             for appearance in [
                 Appearance::new(colors.clone()),
-                Appearance::new(colors.clone()).with_finish(finishes[0]),
-                Appearance::new(colors).with_finishes(finishes.clone(), vec![0, 1, 0, 0]),
+                Appearance::new(colors.clone()).with_surface(surfaces[0]),
+                Appearance::new(colors).with_surfaces(surfaces.clone(), vec![0, 1, 0, 0]),
             ] {
                 let scene = scene(appearance);
                 let ids = [3, 1, 1, 0, 2];
-                let (looks, palette) =
-                    (Looks::of(scene.checked_appearance(), &ids), palette(scene.appearance()));
+                let (appearances, palette) = (
+                    AppearanceWords::of(scene.checked_appearance(), &ids),
+                    palette(scene.appearance()),
+                );
                 assert_eq!(palette.len(), palette_length(scene.appearance()));
                 let least = words_per_sphere(scene.checked_appearance()).count() * 5;
-                assert_eq!(looks.words.len() as u64, least.max(1));
-                for (place, id) in (0..).zip(ids) {
-                    let ([r, g, b, alpha], row) = read(&looks, &palette, place);
-                    let surface = scene.checked_appearance().surfaces()[row as usize];
-                    let finish = scene.finish(id);
-                    let opacity = (alpha * surface.finish.opacity).to_bits();
+                assert_eq!(appearances.words.len() as u64, least.max(1));
+                for (shape_index, id) in (0..).zip(ids) {
+                    let ([r, g, b, alpha], row) = read(&appearances, &palette, shape_index);
+                    let kept = scene.checked_appearance().material_rows()[row as usize];
+                    let surface = scene.surface(id);
+                    let opacity = (alpha * kept.surface.opacity).to_bits();
                     assert_eq!(LinearRgb::new([r, g, b]), Ok(scene.color(id)));
-                    assert_eq!(opacity, finish.opacity.to_bits());
-                    assert_eq!(surface.finish.material, finish.material);
-                    if finish.material == glass {
-                        assert_eq!(surface.color, scene.color(id));
+                    assert_eq!(opacity, surface.opacity.to_bits());
+                    assert_eq!(kept.surface.material, surface.material);
+                    if surface.material == glass {
+                        assert_eq!(kept.color, scene.color(id));
                     }
                 }
             }
@@ -178,29 +180,31 @@ mod tests {
     #[test]
     fn materials_are_told_apart_only_where_they_differ() {
         let colors = vec![[1, 2, 3, 255], [4, 5, 6, 255], [7, 8, 9, 255], [1, 2, 3, 0]];
-        let metal = Finish { material: Material::Conductor { roughness: 0.2 }, opacity: 1.0 };
-        let one = scene(Appearance::from(colors.clone()).with_finish(metal));
+        let metal =
+            SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 1.0 };
+        let one = scene(Appearance::from(colors.clone()).with_surface(metal));
         assert_eq!(
             (
-                one.checked_appearance().surfaces().len(),
+                one.checked_appearance().material_rows().len(),
                 words_per_sphere(one.checked_appearance()).count()
             ),
             (1, 1)
         );
         let glass =
             Material::Dielectric { ior: 1.5, roughness: 0.0, attenuation_distance: Some(2.0) };
-        let tinted = Appearance::from(colors).with_finish(Finish { material: glass, opacity: 1.0 });
+        let tinted = Appearance::from(colors)
+            .with_surface(SurfaceProperties { material: glass, opacity: 1.0 });
         let tinted = scene(tinted);
         // The first and the last have the same colour.
         assert_eq!(
             (
-                tinted.checked_appearance().surfaces().len(),
+                tinted.checked_appearance().material_rows().len(),
                 words_per_sphere(tinted.checked_appearance()).count()
             ),
             (3, 2)
         );
         assert_eq!(
-            [0, 1, 2, 3].map(|id| tinted.checked_appearance().surface_index(id)),
+            [0, 1, 2, 3].map(|id| tinted.checked_appearance().material_row(id)),
             [0, 1, 2, 0]
         );
     }
@@ -208,8 +212,8 @@ mod tests {
     #[test]
     fn an_empty_scene_has_a_word_and_a_color() {
         let none = Appearance::new(Colors::Palette { palette: Vec::new(), indices: Vec::new() });
-        let scene = Scene::from_parts(Points::F32(Vec::new()), none).unwrap();
-        assert_eq!(Looks::of(scene.checked_appearance(), &[]).words, [0]);
+        let scene = Scene::from_parts(SphereArray::F32(Vec::new()), none).unwrap();
+        assert_eq!(AppearanceWords::of(scene.checked_appearance(), &[]).words, [0]);
         assert_eq!(palette(scene.appearance()), [[0.0; 4]]);
     }
 }

@@ -2,7 +2,7 @@
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
-use super::appearance::Looks;
+use super::appearance::AppearanceWords;
 use super::error::{GpuError, check_storage_size, scoped};
 use super::order::CenterBox;
 use super::records;
@@ -24,8 +24,8 @@ pub(super) struct BrickBuffers {
     /// Of every sphere, in the order of the structure.
     pub(super) ids: Buffer,
     /// What every sphere looks like.
-    pub(super) looks: Buffer,
-    pub(super) place_count: u32,
+    pub(super) appearances: Buffer,
+    pub(super) shape_count: u32,
 }
 
 /// What of a brick is copied.
@@ -57,7 +57,7 @@ pub(super) struct Upload<'a> {
     pub(super) device: &'a Device,
     pub(super) queue: &'a Queue,
     pub(super) appearance: &'a SceneAppearance,
-    pub(super) first_place: u32,
+    pub(super) first_shape: u32,
     pub(super) bytes: u64,
 }
 
@@ -75,16 +75,16 @@ impl Upload<'_> {
             .find(|(of, _)| *of == kind)
             .map(|(_, layout)| layout)
             .ok_or(GpuError::NoStructure { kind })?;
-        let looks = Looks::of(self.appearance, ids);
+        let appearances = AppearanceWords::of(self.appearance, ids);
         let mut record = records::Brick {
-            place_count: ids.len() as u32,
-            first_place: self.first_place,
-            is_first: u32::from(self.first_place == 0),
-            last_look: looks.words.len() as u32 - 1,
-            color_shift: looks.color_shift,
-            color_mask: looks.color_mask,
-            material_first: looks.material_first,
-            material_mask: looks.material_mask,
+            shape_count: ids.len() as u32,
+            first_shape: self.first_shape,
+            is_first: u32::from(self.first_shape == 0),
+            last_appearance: appearances.words.len() as u32 - 1,
+            color_shift: appearances.color_shift,
+            color_mask: appearances.color_mask,
+            material_first: appearances.material_first,
+            material_mask: appearances.material_mask,
             ..bytemuck::Zeroable::zeroed()
         };
         // A binding must not be empty.
@@ -104,10 +104,10 @@ impl Upload<'_> {
             Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
             Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
         }
-        self.first_place += record.place_count;
+        self.first_shape += record.shape_count;
         for (what, bytes) in [
             ("the buffer of spheres", shapes.len()),
-            ("the buffer of colors", size_of_val(&looks.words[..])),
+            ("the buffer of colors", size_of_val(&appearances.words[..])),
         ]
         .into_iter()
         .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
@@ -115,11 +115,11 @@ impl Upload<'_> {
             check_storage_size(self.device, what, bytes as u64)?;
         }
         scoped(self.device, || {
-            let place_count = record.place_count;
+            let shape_count = record.shape_count;
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
             let shapes = self.storage("pinhole shapes", shapes);
             let ids = self.storage("pinhole ids", ids);
-            let looks = self.storage("pinhole looks", &looks.words);
+            let appearances = self.storage("pinhole appearances", &appearances.words);
             let words: Vec<Buffer> =
                 words.iter().map(|words| self.storage("pinhole structure", words)).collect();
             let group = |label, layout, buffers: &[&Buffer]| {
@@ -143,11 +143,11 @@ impl Upload<'_> {
                 surface_group: group(
                     "pinhole surface",
                     layouts.surface_of(kind.primitive),
-                    &[&record, &shapes, &looks, palette],
+                    &[&record, &shapes, &appearances, palette],
                 ),
                 ids,
-                looks,
-                place_count,
+                appearances,
+                shape_count,
             }
         })
     }

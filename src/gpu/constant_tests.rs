@@ -28,7 +28,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LEVEL_SHIFT", word::LEVEL_SHIFT),
         ("INNER_START", word::INNER_START),
         ("INNER_UNIT", word::INNER_UNIT),
-        ("PLACE", !LAST),
+        ("SHAPE_INDEX", !LAST),
         ("LEAF_FIRST", LEAF_FIRST),
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
         ("WIDE_LEVELS", accel::WIDE_LEVELS),
@@ -37,11 +37,11 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("BINARY_INNER", accel::BINARY_INNER),
         ("BINARY_NODE_VECTORS", vectors(size_of::<BinaryNode>())),
         ("BINARY_CHILD_VECTORS", vectors(size_of::<BinaryChild>())),
-        ("LOOK_TRANSPARENT", lit::records::TRANSPARENT),
-        ("LOOK_SKY_SEEN", lit::records::SKY_SEEN),
-        ("LOOK_SHADOWS", lit::records::SHADOWS),
-        ("LOOK_GROUND", lit::records::GROUND),
-        ("LOOK_CATCHER", lit::records::CATCHER),
+        ("LIGHTING_TRANSPARENT", lit::records::TRANSPARENT),
+        ("LIGHTING_SKY_SEEN", lit::records::SKY_SEEN),
+        ("LIGHTING_SHADOWS", lit::records::SHADOWS),
+        ("LIGHTING_GROUND", lit::records::GROUND),
+        ("LIGHTING_CATCHER", lit::records::CATCHER),
         ("LIST_OF_LIGHT", lit::records::LIST_OF_LIGHT),
         ("ENERGIES", crate::light::energy::ENTRIES as u32),
     ];
@@ -64,7 +64,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
 /// What kernels alone know; the shadings, which a test of `records.rs` compares; and the names for what stands in
 /// tables, of which `tests/gpu/light` and `tests/gpu/paths` compare what becomes.
 const OF_KERNELS_ALONE: &[&str] = &[
-    "NO_PLACE",
+    "NO_SHAPE",
     "NO_PATH",
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",
@@ -73,7 +73,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     // Slots of a path's state, and flags in it.
     "ORIGIN",
     "DIRECTION",
-    "LEFT",
+    "DEPARTURE",
     "THROUGHPUT",
     "RADIANCE",
     "FIRST",
@@ -83,7 +83,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "MEDIUM",
     "NORMAL",
     "NO_EMITTER",
-    "PAINT",
+    "ALBEDO",
     "LOBE",
     "PATH_ALIVE",
     "PATH_INSIDE",

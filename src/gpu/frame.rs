@@ -9,10 +9,10 @@ use super::order::nearest_first;
 use super::records;
 use super::renderer::Renderer;
 use super::scene_buffers::{SceneBuffers, SceneId, part};
-use super::seen::Seen;
 use super::tiles::{self, Groups, Tile};
+use super::visible_region::VisibleRegion;
 use crate::camera::{CameraKind, View};
-use crate::render::{PrimaryLook, RenderSettings};
+use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
 
 /// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
@@ -66,14 +66,14 @@ pub(super) struct SetView {
     pub(super) scene: SceneId,
     /// The sizes of the bands that are rendered, in their order.
     pub(super) bands: Vec<[u32; 2]>,
-    records: Vec<records::Frame>,
+    records: Vec<records::FrameParameters>,
     /// The bricks in the order in which they are traced.
     order: Vec<usize>,
 }
 
 /// One brick, for one band.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct BandBrick {
     pub(super) band: usize,
     pub(super) brick: usize,
     pub(super) groups: Groups,
@@ -104,7 +104,7 @@ impl Frame {
         let band = BandBuffers::new(&limits, size, keeps_rays);
         check_storage_size(device, "the buffer of hits", band.hits)?;
         check_storage_size(device, "the buffer of rays", band.rays.unwrap_or(0))?;
-        let record_size = size_of::<records::Frame>();
+        let record_size = size_of::<records::FrameParameters>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
         let bands = size[1].div_ceil(rows_per_band) as usize;
@@ -197,7 +197,7 @@ impl Frame {
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Result<(), GpuError> {
-        let look = scene.primary_look(settings)?;
+        let primary = scene.primary_settings(settings)?;
         let film_size = [view.film.width(), view.film.height()];
         if film_size != self.size {
             return Err(GpuError::Target {
@@ -207,7 +207,7 @@ impl Frame {
             });
         }
         let tile = Tile { origin: [0, 0], size: film_size, in_target: [0, 0] };
-        self.set_tile(queue, scene, view, tile, &look);
+        self.set_tile(queue, scene, view, tile, &primary);
         Ok(())
     }
 
@@ -218,22 +218,25 @@ impl Frame {
         scene: &SceneBuffers,
         view: &View<'_>,
         tile: Tile,
-        look: &PrimaryLook,
+        primary: &PrimarySettings,
     ) {
         let (camera, space) = (RequestedCamera::of(view.camera), scene.space());
-        let seen = Seen::of(view, space);
+        let region = VisibleRegion::of(view, space);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
         let limit = self.iteration_limit;
         let records: Vec<_> = bands
             .iter()
             .map(|band| {
-                let traced = seen.groups_of(*band);
-                records::Frame::new(&camera, space, &view.film, *band, traced, look, limit)
+                let traced = region.groups_of(*band);
+                records::FrameParameters::new(
+                    &camera, space, &view.film, *band, traced, primary, limit,
+                )
             })
             .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];
         for (target, record) in bytes.chunks_mut(self.stride).zip(&records) {
-            target[..size_of::<records::Frame>()].copy_from_slice(bytemuck::bytes_of(record));
+            target[..size_of::<records::FrameParameters>()]
+                .copy_from_slice(bytemuck::bytes_of(record));
         }
         queue.write_buffer(&self.records, 0, &bytes);
         let boxes = scene.bricks().iter().map(|brick| brick.center_box);
@@ -259,7 +262,7 @@ impl Frame {
     }
 
     /// What is to be traced for the view, in order.
-    pub(super) fn parts(&self) -> Vec<Part> {
+    pub(super) fn parts(&self) -> Vec<BandBrick> {
         let Some(view) = &self.view else {
             return Vec::new();
         };
@@ -267,7 +270,7 @@ impl Frame {
         let mut parts = Vec::new();
         for (band, record) in view.records.iter().enumerate() {
             for (turn, brick) in view.order.iter().enumerate() {
-                parts.push(Part {
+                parts.push(BandBrick {
                     band,
                     brick: *brick,
                     groups: Groups { first: [0, 0], size: record.traced_size },

@@ -227,8 +227,8 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
         if settings.integrator.is_primary() {
-            let look = scene.primary_look(settings)?;
-            let image = self.render_primary(scene, view, &look, layers, watch)?;
+            let primary = scene.primary_settings(settings)?;
+            let image = self.render_primary(scene, view, &primary, layers, watch)?;
             Ok(Picture { image, samples: 1, noise: None, hits: None })
         } else {
             self.render_lit(scene, view, settings, layers, watch)

@@ -10,7 +10,8 @@ use wgpu::{Buffer, CommandEncoder, Device, Queue};
 use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::lit::{
-    AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, MOST_STAGES, Recorder, Round,
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MOST_DISPATCHES, Recorder,
+    Round,
 };
 use super::scene_buffers::SceneBuffers;
 use super::tiles::tiles;
@@ -22,7 +23,7 @@ use crate::render::RenderSettings;
 pub struct HostedPicture {
     passes: LitPasses,
     frame: LitFrame,
-    lit: Lit,
+    lighting: LightingData,
     is_indirect: bool,
 }
 
@@ -54,15 +55,15 @@ impl HostedPicture {
     ) -> Result<Self, GpuError> {
         settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
-        let lit = Lit::new(settings, scene.summary(), view.camera);
-        let passes = LitPasses::new(device, scenes.key(view, &lit), &[])?;
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let passes = LitPasses::new(device, scenes.key(view, &lighting), &[])?;
         let samples = settings.sampling.samples;
-        let sizes = LitSizes::new(&device.limits(), &view.film, lit.mode, samples);
-        let (seen, limit) = (scenes.seen(view, settings), iteration_limit(device));
+        let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, samples);
+        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let records = tiles(&view.film, sizes.tile)
-            .map(|tile| (tile, scenes.frames(view, seen, tile, limit)));
-        let frame = LitFrame::new(device, queue, &passes, sizes, &lit, records)?;
-        Ok(Self { passes, frame, lit, is_indirect })
+            .map(|tile| (tile, scenes.frames(view, region, tile, limit)));
+        let frame = LitFrame::new(device, queue, &passes, sizes, &lighting, records)?;
+        Ok(Self { passes, frame, lighting, is_indirect })
     }
 
     /// Records some samples of every pixel. What the passes read is queued, and holds for the queue's next submission,
@@ -78,10 +79,10 @@ impl HostedPicture {
         settings: &RenderSettings,
         samples: Range<u32>,
     ) -> Result<(), GpuError> {
-        let Self { passes, frame, lit, is_indirect } = self;
+        let Self { passes, frame, lighting, is_indirect } = self;
         let occluders = scene.occluders(settings)?;
         let room = frame.sizes.room();
-        let round = Round { passes, lit, scene, occluders, room, at_once: AT_ONCE };
+        let round = Round { passes, lighting, scene, occluders, room, at_once: AT_ONCE };
         let mut recorder = Recorder::new(frame, passes.advance(), *is_indirect);
         for tile in 0..frame.tiles.len() {
             recorder.tile = tile;
@@ -90,12 +91,12 @@ impl HostedPicture {
                 let end = samples.end.min(start + frame.sizes.in_flight);
                 let steps = round.steps(start..end)?;
                 let needed = recorder.dispatches() + steps.len();
-                if needed > MOST_STAGES {
+                if needed > MOST_DISPATCHES {
                     return Err(GpuError::Limit {
                         what: "one recording of lit samples",
                         needed: needed as u64,
                         limit_name: "dispatches of one submission",
-                        limit: MOST_STAGES as u64,
+                        limit: MOST_DISPATCHES as u64,
                     });
                 }
                 frame.record_clear_lists(encoder);
@@ -105,7 +106,7 @@ impl HostedPicture {
                 start = end;
             }
         }
-        frame.queue_stages(queue, &recorder.take_stages());
+        frame.queue_parameters(queue, &recorder.take_parameters());
         Ok(())
     }
 

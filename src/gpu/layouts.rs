@@ -33,7 +33,7 @@ impl Layouts {
             targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
         }
         let mut frame = vec![
-            uniform::<records::Frame>(),
+            uniform::<records::FrameParameters>(),
             storage::<records::Hit>(false),
             storage::<records::Status>(false),
         ];

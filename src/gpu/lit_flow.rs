@@ -6,7 +6,7 @@ use wgpu::{CommandEncoder, SubmissionIndex};
 
 use super::error::GpuError;
 use super::headless::Headless;
-use super::lit::{LitFrame, LitPasses, MOST_STAGES, Moment, Recorder, Step};
+use super::lit::{LitFrame, LitPasses, MOST_DISPATCHES, Moment, Recorder, Step};
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Groups;
 
@@ -25,7 +25,7 @@ pub(super) struct Flow<'a> {
     /// How many samples a tile will have after the round that is recorded.
     end: u32,
     /// The tiles, and the samples that will be summed up there once the encoder has been submitted.
-    deposits: Vec<(usize, u32)>,
+    accumulated: Vec<(usize, u32)>,
     submitted: Option<Submitted>,
     /// When the submission before that was done.
     last_done: Instant,
@@ -54,7 +54,7 @@ impl<'a> Flow<'a> {
             encoder: None,
             gathered: 0,
             end: 0,
-            deposits: Vec::new(),
+            accumulated: Vec::new(),
             submitted: None,
             last_done: Instant::now(),
             samples: vec![0; frame.tiles.len()],
@@ -90,26 +90,26 @@ impl<'a> Flow<'a> {
     /// Records a dispatch, in slices if it takes long.
     pub(super) fn step(&mut self, step: &Step<'a>, after: &mut After<'_>) -> Result<(), GpuError> {
         // A slice of a list needs one more.
-        if self.recorder.dispatches() + 2 > MOST_STAGES {
+        if self.recorder.dispatches() + 2 > MOST_DISPATCHES {
             self.send(after)?;
         }
         let whole = self.recorder.groups(step);
         let weight = u64::from(step.layers()) * u64::from(step.rays());
-        let pace = self.scene.pace().groups();
-        if !step.is_search() || whole.count() * weight <= pace {
+        let submission_size = self.scene.submission_size().groups();
+        if !step.is_search() || whole.count() * weight <= submission_size {
             self.record(step, None);
             if step.is_search() {
                 self.gathered += whole.count() * weight;
             }
-            if step.moment == Some(Moment::Deposited) {
-                self.deposits.push((self.recorder.tile, self.end));
+            if step.moment == Some(Moment::Accumulated) {
+                self.accumulated.push((self.recorder.tile, self.end));
             }
-            return if self.gathered >= pace { self.send(after) } else { Ok(()) };
+            return if self.gathered >= submission_size { self.send(after) } else { Ok(()) };
         }
         self.send(after)?;
         let mut left = vec![whole];
         while let Some(slice) =
-            Groups::take(&mut left, (self.scene.pace().groups() / weight).max(1))
+            Groups::take(&mut left, (self.scene.submission_size().groups() / weight).max(1))
         {
             self.record(step, Some(slice));
             self.gathered = slice.count() * weight;
@@ -130,10 +130,10 @@ impl<'a> Flow<'a> {
             return Ok(());
         };
         let queue = self.headless.queue();
-        self.frame.queue_stages(queue, &self.recorder.take_stages());
+        self.frame.queue_parameters(queue, &self.recorder.take_parameters());
         let at = Instant::now();
         let index = self.headless.start(encoder);
-        for (tile, samples) in self.deposits.drain(..) {
+        for (tile, samples) in self.accumulated.drain(..) {
             self.samples[tile] = samples;
         }
         let groups = std::mem::take(&mut self.gathered);
@@ -155,8 +155,8 @@ impl<'a> Flow<'a> {
     /// Drops what was gathered, and waits until what was submitted is done.
     pub(super) fn abandon(&mut self) -> Result<(), GpuError> {
         self.encoder = None;
-        self.deposits.clear();
-        self.recorder.take_stages();
+        self.accumulated.clear();
+        self.recorder.take_parameters();
         let last = self.submitted.take();
         self.wait_for(last)
     }

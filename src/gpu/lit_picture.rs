@@ -6,7 +6,7 @@ use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::headless::Headless;
 use super::lit::sums::{self, Totals};
-use super::lit::{AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, Round};
+use super::lit::{AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Round};
 use super::lit_flow::Flow;
 use super::progress::{Decision, Picture, Progress, Watch};
 use super::scene_buffers::SceneBuffers;
@@ -14,7 +14,7 @@ use super::tiles::tiles;
 use crate::camera::View;
 use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
-use crate::render::{PrimaryLook, RenderSettings};
+use crate::render::{PrimarySettings, RenderSettings};
 
 /// How many samples are taken after so many. After each batch there is a picture that could be kept.
 fn batch(done: u32, total: u32) -> u32 {
@@ -35,20 +35,20 @@ impl Headless {
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let wanted = settings.layers_for(layers);
         let mut image = self.data_layers(scene, view, settings, wanted, watch)?;
-        let lit = Lit::new(settings, scene.summary(), view.camera);
-        let (samples, totals) = self.with_lit_passes(scenes.key(view, &lit), |passes| {
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let (samples, totals) = self.with_lit_passes(scenes.key(view, &lighting), |passes| {
             let work = Work {
                 headless: self,
                 passes,
                 scenes,
                 view,
                 settings,
-                lit: &lit,
+                lighting: &lighting,
                 at_once: AT_ONCE,
             };
             match work.gather(&mut image, watch) {
                 // Several directions take more steps than one.
-                Err(GpuError::Steps) if lit.look.occlusion_samples > 1 => {
+                Err(GpuError::Steps) if lighting.parameters.occlusion_samples > 1 => {
                     Work { at_once: 1, ..work }.gather(&mut image, watch)
                 }
                 done => done,
@@ -85,7 +85,7 @@ impl Headless {
             Decision::Stop => Decision::Stop,
             _ => Decision::GoOn,
         };
-        self.render_primary(scene, view, &PrimaryLook::default(), layers, watch)
+        self.render_primary(scene, view, &PrimarySettings::default(), layers, watch)
     }
 }
 
@@ -96,7 +96,7 @@ struct Work<'a> {
     scenes: LitScene<'a>,
     view: &'a View<'a>,
     settings: &'a RenderSettings,
-    lit: &'a Lit,
+    lighting: &'a LightingData,
     /// How many directions of ambient light are searched at once.
     at_once: u32,
 }
@@ -105,14 +105,14 @@ impl Work<'_> {
     /// Takes samples until there are enough of them or the caller says so, and writes their means. Gives how many
     /// every pixel has.
     fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
-        let Self { headless, passes, scenes, view, settings, lit, .. } = *self;
+        let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
         let total = settings.sampling.samples;
-        let sizes = LitSizes::new(&device.limits(), &view.film, lit.mode, total);
-        let (seen, limit) = (scenes.seen(view, settings), iteration_limit(device));
+        let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, total);
+        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let tiles = tiles(&view.film, sizes.tile);
-        let records = tiles.map(|tile| (tile, scenes.frames(view, seen, tile, limit)));
-        let frame = LitFrame::new(device, queue, passes, sizes, lit, records)?;
+        let records = tiles.map(|tile| (tile, scenes.frames(view, region, tile, limit)));
+        let frame = LitFrame::new(device, queue, passes, sizes, lighting, records)?;
         let mut flow = Flow::new(headless, &frame, passes, scenes.all);
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
         let mut wants_noise = false;
@@ -168,10 +168,16 @@ impl Work<'_> {
         samples: Range<u32>,
         go_on: &mut dyn FnMut(f64) -> bool,
     ) -> Result<(), GpuError> {
-        let Self { passes, scenes, lit, at_once, .. } = *self;
+        let Self { passes, scenes, lighting, at_once, .. } = *self;
         let room = frame.sizes.room();
-        let round =
-            Round { passes, lit, scene: scenes.all, occluders: scenes.occluders, room, at_once };
+        let round = Round {
+            passes,
+            lighting,
+            scene: scenes.all,
+            occluders: scenes.occluders,
+            room,
+            at_once,
+        };
         let (total, tiles) = (f64::from(self.settings.sampling.samples), frame.tiles.len());
         let count = f64::from(samples.end - samples.start);
         for tile in 0..tiles {

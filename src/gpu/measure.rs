@@ -4,7 +4,7 @@ use wgpu::ComputePassDescriptor;
 
 use super::bands::tile_size;
 use super::error::{GpuError, scoped};
-use super::frame::{Frame, Part};
+use super::frame::{BandBrick, Frame};
 use super::headless::Headless;
 use super::renderer::Renderer;
 use super::renderer_options::Query;
@@ -14,7 +14,7 @@ use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tiles};
 use super::timer::{PassTimer, TraceTime};
 use crate::camera::View;
-use crate::render::PrimaryLook;
+use crate::render::PrimarySettings;
 
 impl Headless {
     /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
@@ -49,17 +49,17 @@ impl Headless {
         self.run(encoder, &[])?;
         let mut time = TraceTime::default();
         for tile in tiles(&view.film, tile_size) {
-            frame.set_tile(self.queue(), scene, view, tile, &PrimaryLook::default());
+            frame.set_tile(self.queue(), scene, view, tile, &PrimarySettings::default());
             for part in frame.parts() {
                 let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
+                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.band, groups.first);
                     let mut encoder = self.encoder();
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
                         label: Some("pinhole"),
                         timestamp_writes: timer.as_ref().map(PassTimer::writes),
                     });
-                    let slice = Part { groups, ..part };
+                    let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
                     if let Some(timer) = &timer {

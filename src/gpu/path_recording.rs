@@ -6,8 +6,10 @@ use std::ops::Range;
 use super::error::GpuError;
 use super::frame::iteration_limit;
 use super::headless::Headless;
-use super::lit::records::{FILM_SLOTS, Look};
-use super::lit::{AT_ONCE, Lit, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round};
+use super::lit::records::{FILM_SLOTS, LightingParameters};
+use super::lit::{
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round,
+};
 use super::lit_flow::Flow;
 use super::progress::{Decision, Progress, Watch};
 use super::readback::ReadableBuffer;
@@ -20,7 +22,7 @@ use crate::camera::film::Film;
 use crate::light::SkyLight;
 use crate::render::{Integrator, RenderSettings};
 use crate::verify::{
-    PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLook, UploadedSky,
+    PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
 };
 
 /// The longest side of the rectangle whose paths are recorded, in pixels: a sample of eight surfaces then takes
@@ -40,7 +42,7 @@ impl Keeper<'_> {
     /// Reads what a pass has changed.
     fn keep(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
         let frame = self.frame;
-        if moment == Moment::Deposited {
+        if moment == Moment::Accumulated {
             frame.record_copy_film(flow.encoder(), 0);
             frame.record_copy_spent(flow.encoder());
             flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()])?;
@@ -130,18 +132,20 @@ impl Headless {
         if !matches!(settings.integrator, Integrator::Path(_)) {
             return Err(GpuError::NotPaths);
         }
-        let lit = Lit::new(settings, scene.summary(), view.camera);
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
         let scenes = LitScene { all: scene, occluders: scene };
         let tile = middle_of(&view.film);
-        let mut recording = new_recording(scene.space(), view, settings, &lit);
-        self.with_lit_passes(scenes.key(view, &lit), |passes| {
-            let (seen, limit) = (scenes.seen(view, settings), iteration_limit(self.device()));
-            let frames = scenes.frames(view, seen, tile, limit);
-            let sizes = LitSizes::of_one_sample(tile.size, lit.mode);
+        let mut recording = new_recording(scene.space(), view, settings, &lighting);
+        self.with_lit_passes(scenes.key(view, &lighting), |passes| {
+            let (region, limit) =
+                (scenes.visible_region(view, settings), iteration_limit(self.device()));
+            let frames = scenes.frames(view, region, tile, limit);
+            let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
             let tiles = std::iter::once((tile, frames));
-            let frame = LitFrame::new(self.device(), self.queue(), passes, sizes, &lit, tiles)?;
+            let frame =
+                LitFrame::new(self.device(), self.queue(), passes, sizes, &lighting, tiles)?;
             recording.samples =
-                self.record_samples(passes, scenes, &frame, &lit, samples, watch)?;
+                self.record_samples(passes, scenes, &frame, &lighting, samples, watch)?;
             Ok(recording)
         })
     }
@@ -151,12 +155,12 @@ impl Headless {
         passes: &LitPasses,
         LitScene { all, occluders }: LitScene<'_>,
         frame: &LitFrame,
-        lit: &Lit,
+        lighting: &LightingData,
         samples: Range<u32>,
         watch: &mut Watch<'_>,
     ) -> Result<Vec<RecordedSample>, GpuError> {
         let room = frame.sizes.room();
-        let round = Round { passes, lit, scene: all, occluders, room, at_once: AT_ONCE };
+        let round = Round { passes, lighting, scene: all, occluders, room, at_once: AT_ONCE };
         let mut keeper = Keeper {
             frame,
             paths: ReadableBuffer::new(
@@ -165,7 +169,7 @@ impl Headless {
                 frame.paths.size(),
             ),
             pixels: room as usize,
-            slots: kept_slots(lit.mode),
+            slots: kept_slots(lighting.mode),
             sample: RecordedSample::default(),
         };
         let total = samples.end.saturating_sub(samples.start);
@@ -199,7 +203,7 @@ fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
     settings: &RenderSettings,
-    lit: &Lit,
+    lighting: &LightingData,
 ) -> PathRecording {
     let (camera, uploaded) = requested_view(space, view.camera);
     let Tile { origin, size, .. } = middle_of(&view.film);
@@ -214,8 +218,8 @@ fn new_recording(
             Integrator::Path(path) => path.max_depth,
             Integrator::Primary(_) | Integrator::Studio(_) => 0,
         },
-        look: uploaded_look(&lit.look),
-        tables: lit.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
+        lighting: uploaded_lighting(&lighting.parameters),
+        tables: lighting.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
         sky: uploaded_sky(settings),
         samples: Vec::new(),
     }
@@ -229,31 +233,31 @@ fn middle_of(film: &Film) -> Tile {
     Tile { origin, size, in_target: [0, 0] }
 }
 
-fn uploaded_look(look: &Look) -> UploadedLook {
-    let mut filter_table: Vec<f32> = look.filter_table.iter().flatten().copied().collect();
+fn uploaded_lighting(lighting: &LightingParameters) -> UploadedLighting {
+    let mut filter_table: Vec<f32> = lighting.filter_table.iter().flatten().copied().collect();
     // Rows of four; the last has one.
     filter_table.truncate(257);
-    UploadedLook {
-        background: look.background,
-        flags: look.flags,
-        light_count: look.light_count,
-        zenith: look.zenith,
-        horizon: look.horizon,
-        nadir: look.nadir,
-        roulette_from: look.roulette_from,
-        source_count: look.source_count,
-        light_sampling: look.light_sampling,
-        ground_normal: look.ground_normal,
-        ground_point: look.ground_point,
-        ground_color: look.ground_color,
-        seed: look.seed,
-        emitter_first: look.emitter_first,
-        emitter_count: look.emitter_count,
-        material_first: look.material_first,
-        environment_size: look.environment_size,
-        environment_rotation: look.environment_rotation,
-        environment_strength: look.environment_strength,
-        lamp_sources: look.lamp_sources,
+    UploadedLighting {
+        background: lighting.background,
+        flags: lighting.flags,
+        light_count: lighting.light_count,
+        zenith: lighting.zenith,
+        horizon: lighting.horizon,
+        nadir: lighting.nadir,
+        roulette_from: lighting.roulette_from,
+        source_count: lighting.source_count,
+        light_sampling: lighting.light_sampling,
+        ground_normal: lighting.ground_normal,
+        ground_point: lighting.ground_point,
+        ground_color: lighting.ground_color,
+        seed: lighting.seed,
+        emitter_first: lighting.emitter_first,
+        emitter_count: lighting.emitter_count,
+        material_first: lighting.material_first,
+        environment_size: lighting.environment_size,
+        environment_rotation: lighting.environment_rotation,
+        environment_strength: lighting.environment_strength,
+        lamp_sources: lighting.lamp_sources,
         filter_table,
     }
 }
@@ -294,13 +298,13 @@ mod tests {
             let (min, max) = plan.build(spheres).bounds();
             let space = SceneSpace { origin: random.scene.origin(), min, max };
             let summary = SceneSummary::of(&random.scene);
-            let lit = Lit::new(&random.settings, &summary, view.camera);
-            let mut recording = new_recording(&space, &view, &random.settings, &lit);
+            let lighting = LightingData::new(&random.settings, &summary, view.camera);
+            let mut recording = new_recording(&space, &view, &random.settings, &lighting);
             let certificate = checker.certify_paths(&recording);
             assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);
             // That says something: with another roughness, which is at most 1, it does not.
             if seed % 8 == 0 {
-                let material = recording.look.material_first as usize;
+                let material = recording.lighting.material_first as usize;
                 recording.tables[material][2] = 1.001_f32.to_bits();
                 let certificate = checker.certify_paths(&recording);
                 assert!(certificate.upload.is_some(), "seed {seed}: {}", random.name);

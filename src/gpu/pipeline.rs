@@ -37,7 +37,7 @@ pub(super) fn pipeline(
     })
     .map_err(|error| match error {
         GpuError::Device { message } => {
-            GpuError::Device { message: kernel.with_places_in_parts(&message) }
+            GpuError::Device { message: kernel.with_positions_in_parts(&message) }
         }
         other => other,
     })

@@ -284,8 +284,8 @@ mod tests {
     use crate::camera::PinholeCamera;
     use crate::image::Layer;
     use crate::image::color::LinearRgb;
-    use crate::scene::material::Finish;
-    use crate::scene::points::Points;
+    use crate::scene::material::SurfaceProperties;
+    use crate::scene::sphere_array::SphereArray;
     use crate::scene::{Appearance, Colors};
 
     fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(alpha.tile_textures, data.tile_textures);
     }
 
-    /// Four bytes each, of ten million different ones, and as many for which of two finishes a sphere has.
+    /// Four bytes each, of ten million different ones, and as many for which of two surfaces a sphere has.
     #[test]
     fn a_color_of_its_own_takes_four_bytes_a_sphere() {
         let count = 10_000_000;
@@ -361,14 +361,17 @@ mod tests {
         assert_eq!(ids, 4 * count as u64);
         let mut spheres = spheres;
         for words in [1, 2] {
-            let scene = Scene::from_parts(Points::F32(spheres), appearance.clone()).unwrap();
+            let scene = Scene::from_parts(SphereArray::F32(spheres), appearance.clone()).unwrap();
             let buffers = scene_buffers(&scene, &accel);
             let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
             assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
             spheres = scene.spheres().to_vec();
-            let finishes = vec![Finish::default(), Finish { opacity: 0.5, ..Finish::default() }];
+            let surfaces = vec![
+                SurfaceProperties::default(),
+                SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() },
+            ];
             let indices = (0..count as u32).map(|i| i % 2).collect();
-            appearance = appearance.with_finishes(finishes, indices);
+            appearance = appearance.with_surfaces(surfaces, indices);
         }
     }
 

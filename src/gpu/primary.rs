@@ -5,7 +5,7 @@ use wgpu::ComputePassDescriptor;
 use super::bands::tile_size;
 use super::derived::Derived;
 use super::error::{GpuError, scoped};
-use super::frame::{Frame, Part};
+use super::frame::{BandBrick, Frame};
 use super::headless::Headless;
 use super::progress::{TracedPixels, Watch};
 use super::readable_trace::ReadableTrace;
@@ -13,12 +13,12 @@ use super::readback::ReadableTexture;
 use super::renderer::Renderer;
 use super::renderers::RendererKey;
 use super::scene_buffers::SceneBuffers;
-use super::seen::traced_pixels;
 use super::tile_textures::TileTextures;
 use super::tiles::{Groups, tiles};
+use super::visible_region::traced_pixels;
 use crate::camera::View;
 use crate::image::{Image, LayerSet};
-use crate::render::PrimaryLook;
+use crate::render::PrimarySettings;
 use crate::verify::TracedPixel;
 
 /// What a picture is written to.
@@ -34,7 +34,7 @@ impl Headless {
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
-        look: &PrimaryLook,
+        primary: &PrimarySettings,
         layers: LayerSet,
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
@@ -43,7 +43,7 @@ impl Headless {
         self.with_renderer(key, |renderer| {
             let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
             let output = Output { image: &mut image, pixels: None };
-            self.render_tiles(renderer, scene, view, look, output, watch)?;
+            self.render_tiles(renderer, scene, view, primary, output, watch)?;
             Ok(image)
         })
     }
@@ -53,7 +53,7 @@ impl Headless {
         renderer: &Renderer,
         scene: &SceneBuffers,
         view: &View<'_>,
-        look: &PrimaryLook,
+        primary: &PrimarySettings,
         mut output: Output<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
@@ -66,7 +66,7 @@ impl Headless {
         let derived = Derived { view: *view, appearance: scene.appearance() };
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
-            frame.set_tile(self.queue(), scene, view, tile, look);
+            frame.set_tile(self.queue(), scene, view, tile, primary);
             let mut encoder = self.encoder();
             if renderer.keeps_rays {
                 // Those that are not traced are known by having none.
@@ -75,10 +75,10 @@ impl Headless {
             let mut unfinished = Groups::NONE;
             for part in frame.parts() {
                 let mut left = vec![part.groups];
-                while let Some(groups) = Groups::take(&mut left, scene.pace().groups()) {
+                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.band, groups.first);
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                    let slice = Part { groups, ..part };
+                    let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
                     if left.is_empty() && part.is_last {

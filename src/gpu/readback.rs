@@ -122,16 +122,16 @@ impl ReadableBuffer {
         encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
     }
 
-    /// What `look` makes of its elements; unmaps the buffer, which must be mapped.
+    /// What `read` makes of its elements; unmaps the buffer, which must be mapped.
     pub(super) fn read<T: bytemuck::AnyBitPattern, R>(
         &self,
-        look: impl FnOnce(&[T]) -> R,
+        read: impl FnOnce(&[T]) -> R,
     ) -> Result<R, GpuError> {
         let bytes = self
             .buffer
             .get_mapped_range(..)
             .map_err(|error| GpuError::Device { message: error.to_string() })?;
-        let seen = look(bytemuck::cast_slice(&bytes));
+        let seen = read(bytemuck::cast_slice(&bytes));
         drop(bytes);
         self.buffer.unmap();
         Ok(seen)

@@ -11,7 +11,7 @@ use super::pipeline::pipeline;
 use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::scene_summary::SceneSummary;
 use super::shaders::{Kernel, part};
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
 /// The spheres that a dispatch is of.
@@ -20,7 +20,7 @@ use crate::scene::{Colors, Scene, SceneUpdate};
 pub(super) struct RecolorRange {
     pub(super) first: u32,
     pub(super) count: u32,
-    pub(super) place_count: u32,
+    pub(super) shape_count: u32,
     pub(super) zero: u32,
 }
 
@@ -104,12 +104,12 @@ impl Recolor {
             };
             let new_words = of_contents(bytemuck::cast_slice(words), BufferUsages::STORAGE);
             for brick in buffers.bricks() {
-                let BrickBuffers { ids, looks, place_count, .. } = brick;
-                let (count, place_count) = (words.len() as u32, *place_count);
-                let record = RecolorRange { first, count, place_count, zero: 0 };
+                let BrickBuffers { ids, appearances, shape_count, .. } = brick;
+                let (count, shape_count) = (words.len() as u32, *shape_count);
+                let record = RecolorRange { first, count, shape_count, zero: 0 };
                 let range = of_contents(bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
                 let entries: Vec<_> = (0..)
-                    .zip([&range, &new_words, ids, looks].map(Buffer::as_entire_binding))
+                    .zip([&range, &new_words, ids, appearances].map(Buffer::as_entire_binding))
                     .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
                     .collect();
                 let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -123,7 +123,7 @@ impl Recolor {
                 });
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, &group, &[]);
-                let groups = place_count.div_ceil(64);
+                let groups = shape_count.div_ceil(64);
                 pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
             }
         })
@@ -136,8 +136,8 @@ impl SceneBuffers {
     /// light by its colour, and where a studio was planned for and spheres become opaque, or cease to be.
     #[must_use]
     pub fn takes_in_place(&self, scene: &Scene, update: &SceneUpdate<'_>) -> bool {
-        let absorbs = |finish: &Finish| {
-            matches!(finish.material, Material::Dielectric { attenuation_distance: Some(_), .. })
+        let absorbs = |surface: &SurfaceProperties| {
+            matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
         };
         let (before, after) = (self.appearance(), scene.appearance());
         let is_same_kind = match (before.colors(), after.colors()) {
@@ -153,8 +153,8 @@ impl SceneBuffers {
         !update.changes_shape()
             && is_same_kind
             && before.sphere_count() == scene.len()
-            && before.finishes() == after.finishes()
-            && !after.finishes().iter().any(absorbs)
+            && before.surfaces() == after.surfaces()
+            && !after.surfaces().iter().any(absorbs)
             && (!self.has_occluders() || hides_the_same())
     }
 }

@@ -3,7 +3,7 @@
 use wgpu::ComputePass;
 
 use super::error::GpuError;
-use super::frame::{Frame, Part};
+use super::frame::{BandBrick, Frame};
 use super::renderer::Renderer;
 use super::scene_buffers::SceneBuffers;
 use super::tiles::Groups;
@@ -43,7 +43,7 @@ impl Renderer {
         pass: &mut ComputePass<'_>,
         scene: &SceneBuffers,
         frame: &Frame,
-        part: Part,
+        part: BandBrick,
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
         if part.groups.count() == 0 {

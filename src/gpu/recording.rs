@@ -11,7 +11,7 @@ use super::scene_buffers::SceneBuffers;
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
 use crate::image::{Image, LayerSet, NO_ID};
-use crate::render::{PrimaryLook, RenderSettings};
+use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
@@ -42,7 +42,7 @@ pub(super) fn requested_view(
 fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
-    look: PrimaryLook,
+    primary: PrimarySettings,
 ) -> Result<Recording, GpuError> {
     let (requested, uploaded) = requested_view(space, view.camera);
     let film = view.film;
@@ -52,7 +52,7 @@ fn new_recording(
         camera: requested,
         uploaded,
         film,
-        look,
+        primary,
         pixels: vec![untraced; image.color().len()],
         image,
         rendered: Rendered::None,
@@ -73,17 +73,17 @@ impl Headless {
         settings: &RenderSettings,
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
-        let look = scene.primary_look(settings)?;
+        let primary = scene.primary_settings(settings)?;
         let key = RendererKey {
             data_layers: true,
             keeps_rays: true,
             ..RendererKey::new(scene, view.camera)
         };
         self.with_renderer(key, |renderer| {
-            let mut recording = new_recording(scene.space(), view, look)?;
+            let mut recording = new_recording(scene.space(), view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
-            self.render_tiles(renderer, scene, view, &look, output, watch)?;
+            self.render_tiles(renderer, scene, view, &primary, output, watch)?;
             Ok(recording)
         })
     }

@@ -7,7 +7,7 @@ use super::tiles::{Groups, Tile};
 use crate::camera::View;
 use crate::camera::film::{Film, YAxis};
 use crate::geometry::bounds::Bounds;
-use crate::render::{PrimaryLook, Shading};
+use crate::render::{PrimarySettings, Shading};
 use crate::verify::RequestedCamera;
 
 #[repr(C)]
@@ -25,7 +25,7 @@ pub(super) struct Camera {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct Frame {
+pub(super) struct FrameParameters {
     camera: Camera,
     background: [f32; 3],
     shading: u32,
@@ -50,10 +50,10 @@ pub(super) struct Brick {
     pub(super) min: [f32; 3],
     pub(super) cell_size: f32,
     pub(super) cell_counts: [u32; 3],
-    pub(super) place_count: u32,
-    pub(super) first_place: u32,
+    pub(super) shape_count: u32,
+    pub(super) first_shape: u32,
     pub(super) is_first: u32,
-    pub(super) last_look: u32,
+    pub(super) last_appearance: u32,
     pub(super) color_shift: u32,
     pub(super) color_mask: u32,
     pub(super) material_first: u32,
@@ -125,14 +125,14 @@ impl Camera {
     }
 }
 
-impl Frame {
+impl FrameParameters {
     pub(super) fn new(
         camera: &RequestedCamera,
         scene: &SceneSpace,
         film: &Film,
         tile: Tile,
         traced: Groups,
-        look: &PrimaryLook,
+        primary: &PrimarySettings,
         iteration_limit: u32,
     ) -> Self {
         Self {
@@ -145,8 +145,8 @@ impl Frame {
             first_group: [0, 0],
             row_step: row_step(traced.size[1]),
             zero: 0,
-            background: look.background.to_array(),
-            shading: match look.shading {
+            background: primary.background.to_array(),
+            shading: match primary.shading {
                 Shading::Flat => 0,
                 Shading::Headlight => 1,
             },
@@ -162,7 +162,7 @@ impl Frame {
     }
 }
 
-impl Frame {
+impl FrameParameters {
     /// For lit pictures, whose colours other records decide.
     pub(super) fn of_tile(
         view: &View<'_>,
@@ -171,8 +171,8 @@ impl Frame {
         traced: Groups,
         iteration_limit: u32,
     ) -> Self {
-        let (camera, look) = (RequestedCamera::of(view.camera), PrimaryLook::default());
-        Self::new(&camera, scene, &view.film, tile, traced, &look, iteration_limit)
+        let (camera, primary) = (RequestedCamera::of(view.camera), PrimarySettings::default());
+        Self::new(&camera, scene, &view.film, tile, traced, &primary, iteration_limit)
     }
 }
 
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::denoise::Denoise;
-    use crate::gpu::lit::records::{Look, Stage};
+    use crate::gpu::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
     use crate::gpu::shaders;
@@ -244,7 +244,7 @@ mod tests {
     fn records_are_the_same_in_rust_and_wgsl() {
         let records = [
             layout!(Camera { origin, advance, right, first, up, second, forward, third }),
-            layout!(Frame {
+            layout!(FrameParameters {
                 camera,
                 background,
                 shading,
@@ -266,10 +266,10 @@ mod tests {
                 min,
                 cell_size,
                 cell_counts,
-                place_count,
-                first_place,
+                shape_count,
+                first_shape,
                 is_first,
-                last_look,
+                last_appearance,
                 color_shift,
                 color_mask,
                 material_first,
@@ -317,9 +317,19 @@ mod tests {
             }),
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
-            layout!(Stage { sample, surface, is_last, light, count, list, is_new, paths, first }),
-            layout!(RecolorRange { first, count, place_count, zero }),
-            layout!(Look {
+            layout!(DispatchParameters {
+                sample,
+                surface,
+                is_last,
+                light,
+                count,
+                list,
+                is_new,
+                paths,
+                first
+            }),
+            layout!(RecolorRange { first, count, shape_count, zero }),
+            layout!(LightingParameters {
                 background,
                 flags,
                 ambient,
@@ -383,10 +393,18 @@ mod tests {
         };
         let source = include_str!("../../shaders/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
-            let look = PrimaryLook { shading, ..PrimaryLook::default() };
+            let primary = PrimarySettings { shading, ..PrimarySettings::default() };
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
             let camera = RequestedCamera { kind: CameraKind::Pinhole, vectors };
-            let frame = Frame::new(&camera, &scene, &film, tile, Groups::of_size([1, 1]), &look, 0);
+            let frame = FrameParameters::new(
+                &camera,
+                &scene,
+                &film,
+                tile,
+                Groups::of_size([1, 1]),
+                &primary,
+                0,
+            );
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
         }

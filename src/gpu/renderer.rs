@@ -7,7 +7,7 @@ use super::formats::ColorTarget;
 use super::layouts::Layouts;
 use super::pipeline::pipeline;
 use super::renderer_options::{Query, RendererOptions};
-use super::shaders::{self, Turn};
+use super::shaders::{self, BrickPass};
 use crate::accel::{BrickKind, Primitive};
 use crate::camera::CameraKind;
 
@@ -50,15 +50,17 @@ impl Renderer {
             }
             for (kind, brick) in &renderer.layouts.brick {
                 let groups = [frame, brick];
-                let build = |turn| {
+                let build = |brick_pass| {
                     let kernel = match query {
-                        Query::Nearest => shaders::trace_kernel(camera, *kind, turn, keeps_rays),
-                        Query::Any => shaders::occluded_kernel(camera, *kind, turn),
+                        Query::Nearest => {
+                            shaders::trace_kernel(camera, *kind, brick_pass, keeps_rays)
+                        }
+                        Query::Any => shaders::occluded_kernel(camera, *kind, brick_pass),
                     };
                     pipeline(device, &kernel.edited(&options.edits)?, &groups)
                 };
-                let later = options.several_bricks.then(|| build(Turn::Later)).transpose()?;
-                let pipelines = TracePipelines { first: build(Turn::First)?, later };
+                let later = options.several_bricks.then(|| build(BrickPass::Later)).transpose()?;
+                let pipelines = TracePipelines { first: build(BrickPass::First)?, later };
                 renderer.trace.push((camera, *kind, pipelines));
             }
         }
@@ -106,9 +108,13 @@ mod tests {
             Layouts::new(&device, &RendererOptions { structures, ..RendererOptions::default() });
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
-            let kernel =
-                shaders::trace_kernel(CameraKind::Pinhole, layouts.brick[0].0, Turn::First, false)
-                    .with_part("broken.wgsl", broken);
+            let kernel = shaders::trace_kernel(
+                CameraKind::Pinhole,
+                layouts.brick[0].0,
+                BrickPass::First,
+                false,
+            )
+            .with_part("broken.wgsl", broken);
             match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
                 Err(GpuError::Device { message }) => {
                     assert!(message.contains("broken.wgsl:"), "{message}");

@@ -64,7 +64,7 @@ impl Renderers {
         let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
         match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(place) => {
+            Entry::Vacant(entry) => {
                 let options = RendererOptions {
                     color: ColorTarget::Linear32,
                     data_layers,
@@ -76,7 +76,7 @@ impl Renderers {
                     keeps_rays,
                     edits: self.edits.clone(),
                 };
-                Ok(place.insert(Renderer::new(device, &options)?))
+                Ok(entry.insert(Renderer::new(device, &options)?))
             }
         }
     }
@@ -85,7 +85,7 @@ impl Renderers {
     pub(super) fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
         match &mut self.recolor {
             Some(built) => Ok(built),
-            place @ None => Ok(place.insert(Recolor::new(device)?)),
+            entry @ None => Ok(entry.insert(Recolor::new(device)?)),
         }
     }
 
@@ -93,7 +93,7 @@ impl Renderers {
     pub(super) fn lit(&mut self, device: &Device, key: LitKey) -> Result<&LitPasses, GpuError> {
         match self.lit.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(place) => Ok(place.insert(LitPasses::new(device, key, &self.edits)?)),
+            Entry::Vacant(entry) => Ok(entry.insert(LitPasses::new(device, key, &self.edits)?)),
         }
     }
 }

@@ -10,14 +10,14 @@ use wgpu::{Buffer, Device, Queue};
 use super::appearance;
 use super::brick_buffers::{BrickBuffers, BrickContents, Upload};
 use super::error::{GpuError, check_storage_size, scoped};
-use super::pace::Pace;
 use super::records::SceneSpace;
 use super::renderer::Renderer;
 use super::scene_summary::SceneSummary;
-use super::shape_ids::{LeftBy, ShapeIds};
+use super::shape_ids::{ExcludeBy, ShapeIds};
+use super::submission_size::SubmissionSize;
 use super::tiles::Groups;
 use crate::accel::{Accel, AccelChoice, AccelPlan, BrickKind, LIST_LEN, Structure};
-use crate::render::{PrimaryLook, RenderSettings};
+use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
 /// Tells scenes on devices apart, and where the spheres of each are.
@@ -44,13 +44,13 @@ pub struct SceneBuffers {
     summary: SceneSummary,
     structure: Structure,
     /// How lit pictures keep rays from the spheres that they start on.
-    left_by: LeftBy,
+    exclude_by: ExcludeBy,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
     /// How many spheres a ray tries in one dispatch, if it is many.
     tests_per_ray: usize,
     /// What the last picture of the scene taught of the device.
-    pace: Mutex<Pace>,
+    submission_size: Mutex<SubmissionSize>,
     /// Of the spheres that cast shadows in a studio, where some do not and a studio was planned for.
     occluders: Option<Box<Self>>,
 }
@@ -103,7 +103,7 @@ impl SceneBuffers {
         mut flush: impl FnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
         let appearance = &summary.appearance;
-        let mut upload = Upload { renderer, device, queue, appearance, first_place: 0, bytes: 0 };
+        let mut upload = Upload { renderer, device, queue, appearance, first_shape: 0, bytes: 0 };
         let palette = appearance::palette(appearance);
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
         let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
@@ -121,12 +121,12 @@ impl SceneBuffers {
             space: SceneSpace { origin: summary.origin, min, max },
             summary,
             structure: accel.structure(),
-            left_by: ids.left_by,
+            exclude_by: ids.exclude_by,
             bricks,
             bytes,
             occluders: None,
             tests_per_ray: tests_per_ray(accel),
-            pace: Mutex::new(Pace::new(tests_per_ray(accel))),
+            submission_size: Mutex::new(SubmissionSize::new(tests_per_ray(accel))),
         })
     }
 
@@ -147,9 +147,9 @@ impl SceneBuffers {
         let SceneId { scene, shape } = self.id;
         let is_like = copy.structure == self.structure;
         // What pictures have taught of the device holds on.
-        let pace = if is_like { self.pace() } else { copy.pace() };
+        let submission_size = if is_like { self.submission_size() } else { copy.submission_size() };
         let id = SceneId { scene, shape: shape + 1 };
-        *self = Self { id, pace: Mutex::new(pace), ..copy };
+        *self = Self { id, submission_size: Mutex::new(submission_size), ..copy };
     }
 
     /// Whether there is a structure of what casts shadows in a studio.
@@ -179,11 +179,14 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// [`GpuError::NotPrimary`] if the picture is to be lit; what [`RenderSettings::check`] refuses.
-    pub(super) fn primary_look(&self, settings: &RenderSettings) -> Result<PrimaryLook, GpuError> {
+    pub(super) fn primary_settings(
+        &self,
+        settings: &RenderSettings,
+    ) -> Result<PrimarySettings, GpuError> {
         let integrator = settings.integrator.name();
-        let look = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
+        let primary = settings.primary().ok_or(GpuError::NotPrimary { integrator })?;
         settings.check_with(&self.summary.appearance)?;
-        Ok(look)
+        Ok(primary)
     }
 
     pub(super) fn summary(&self) -> &SceneSummary {
@@ -202,14 +205,17 @@ impl SceneBuffers {
     }
 
     /// How much of a picture to submit at once.
-    pub(super) fn pace(&self) -> Pace {
-        *self.pace.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(super) fn submission_size(&self) -> SubmissionSize {
+        *self.submission_size.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes note of what a submission took. The next picture starts as this one ends, because most pictures
     /// of a scene cost about the same.
     pub(super) fn took(&self, groups: Groups, elapsed: Duration) {
-        self.pace.lock().unwrap_or_else(PoisonError::into_inner).took(groups.count(), elapsed);
+        self.submission_size
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .took(groups.count(), elapsed);
     }
 
     pub(super) fn appearance(&self) -> &SceneAppearance {
@@ -224,8 +230,8 @@ impl SceneBuffers {
         self.structure
     }
 
-    pub(super) fn left_by(&self) -> LeftBy {
-        self.left_by
+    pub(super) fn exclude_by(&self) -> ExcludeBy {
+        self.exclude_by
     }
 
     /// The kinds of the bricks, each once.

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use crate::image::color::LinearRgb;
 use crate::light::emitters::Emitters;
-use crate::scene::material::Finish;
+use crate::scene::material::SurfaceProperties;
 use crate::scene::{Scene, SceneAppearance};
 
-/// Palette, finishes and emissive spheres of a scene.
+/// Palette, surfaces and emissive spheres of a scene.
 #[derive(Debug)]
 pub(super) struct SceneSummary {
     /// Of the scene's frame, in the world.
@@ -26,7 +26,7 @@ pub(super) struct EmissiveSphere {
     /// Centre in the scene's frame, and radius.
     pub(super) sphere: [f32; 4],
     pub(super) color: LinearRgb,
-    pub(super) finish: Finish,
+    pub(super) surface: SurfaceProperties,
 }
 
 impl SceneSummary {
@@ -35,7 +35,7 @@ impl SceneSummary {
         let emissive = |id: &u32| EmissiveSphere {
             sphere: scene.spheres()[*id as usize],
             color: scene.color(*id),
-            finish: scene.finish(*id),
+            surface: scene.surface(*id),
         };
         Self {
             origin: scene.origin(),

@@ -43,7 +43,7 @@ pub(super) struct Kernel {
 
 /// Whether a brick is the first that a picture's rays meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Turn {
+pub(super) enum BrickPass {
     First,
     Later,
 }
@@ -62,22 +62,26 @@ pub(super) enum Probe {
 pub(super) fn trace_kernel(
     camera: CameraKind,
     kind: BrickKind,
-    turn: Turn,
+    brick_pass: BrickPass,
     keeps_rays: bool,
 ) -> Kernel {
-    let mut parts = walk_parts(camera, kind, turn);
-    parts.push(match (keeps_rays, turn) {
+    let mut parts = walk_parts(camera, kind, brick_pass);
+    parts.push(match (keeps_rays, brick_pass) {
         (false, _) => part!("entry_made.wgsl"),
-        (true, Turn::First) => part!("entry_recorded.wgsl"),
-        (true, Turn::Later) => part!("entry_replayed.wgsl"),
+        (true, BrickPass::First) => part!("entry_recorded.wgsl"),
+        (true, BrickPass::Later) => part!("entry_replayed.wgsl"),
     });
     parts.push(part!("trace.wgsl"));
     Kernel { entry_point: "trace", parts }
 }
 
 /// Finds whether every ray hits anything.
-pub(super) fn occluded_kernel(camera: CameraKind, kind: BrickKind, turn: Turn) -> Kernel {
-    let mut parts = walk_parts(camera, kind, turn);
+pub(super) fn occluded_kernel(
+    camera: CameraKind,
+    kind: BrickKind,
+    brick_pass: BrickPass,
+) -> Kernel {
+    let mut parts = walk_parts(camera, kind, brick_pass);
     parts.extend([part!("entry_made.wgsl"), part!("occluded.wgsl")]);
     Kernel { entry_point: "occluded", parts }
 }
@@ -85,7 +89,7 @@ pub(super) fn occluded_kernel(camera: CameraKind, kind: BrickKind, turn: Turn) -
 fn walk_parts(
     camera: CameraKind,
     BrickKind { structure, primitive }: BrickKind,
-    turn: Turn,
+    brick_pass: BrickPass,
 ) -> Vec<Part> {
     let mut parts = common_parts(camera, primitive);
     parts.extend([
@@ -95,9 +99,9 @@ fn walk_parts(
         part!("origin_none.wgsl"),
         part!("brick.wgsl"),
     ]);
-    parts.push(match turn {
-        Turn::First => part!("first_brick.wgsl"),
-        Turn::Later => part!("later_brick.wgsl"),
+    parts.push(match brick_pass {
+        BrickPass::First => part!("first_brick.wgsl"),
+        BrickPass::Later => part!("later_brick.wgsl"),
     });
     parts.extend(structure_parts(structure));
     parts
@@ -265,17 +269,17 @@ impl Kernel {
     /// Replaces every place in the composed WGSL, in a message of naga's or wgpu's, by a place in a part.
     ///
     /// The parser calls the text `wgsl`, the validator by its label, which is the kernel's name.
-    pub(super) fn with_places_in_parts(&self, message: &str) -> String {
-        let places = self.replace_places("wgsl:", message);
-        self.replace_places(&format!("{}:", self.name()), &places)
+    pub(super) fn with_positions_in_parts(&self, message: &str) -> String {
+        let positions = self.replace_positions("wgsl:", message);
+        self.replace_positions(&format!("{}:", self.name()), &positions)
     }
 
-    fn replace_places(&self, prefix: &str, message: &str) -> String {
+    fn replace_positions(&self, prefix: &str, message: &str) -> String {
         let mut pieces = message.split(prefix);
         let mut text = pieces.next().unwrap_or_default().to_owned();
         for piece in pieces {
             let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
-            match piece[..digits].parse().ok().and_then(|line| self.place(line)) {
+            match piece[..digits].parse().ok().and_then(|line| self.position(line)) {
                 Some((file, line)) => text += &format!("{file}:{line}{}", &piece[digits..]),
                 None => text += &format!("{prefix}{piece}"),
             }
@@ -284,7 +288,7 @@ impl Kernel {
     }
 
     /// The part, and the line in it, that a line of the composed WGSL comes from; lines count from 1.
-    fn place(&self, line: usize) -> Option<(&'static str, usize)> {
+    fn position(&self, line: usize) -> Option<(&'static str, usize)> {
         let mut first = 1;
         for part in &self.parts {
             // One more for the line end that `source` adds.
@@ -305,11 +309,11 @@ pub(super) fn all_kernels() -> Vec<Kernel> {
         [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
     for &camera in CameraKind::ALL {
         for kind in BrickKind::of(Structure::ALL, Primitive::ALL) {
-            for turn in [Turn::First, Turn::Later] {
+            for brick_pass in [BrickPass::First, BrickPass::Later] {
                 for keeps_rays in [false, true] {
-                    kernels.push(trace_kernel(camera, kind, turn, keeps_rays));
+                    kernels.push(trace_kernel(camera, kind, brick_pass, keeps_rays));
                 }
-                kernels.push(occluded_kernel(camera, kind, turn));
+                kernels.push(occluded_kernel(camera, kind, brick_pass));
             }
         }
         for &primitive in Primitive::ALL {
@@ -335,7 +339,7 @@ mod tests {
 
     fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
         let source = kernel.source();
-        let readable = |message: String| kernel.with_places_in_parts(&message);
+        let readable = |message: String| kernel.with_positions_in_parts(&message);
         let module = naga::front::wgsl::parse_str(&source)
             .map_err(|error| readable(error.emit_to_string(&source)))?;
         naga::valid::Validator::new(

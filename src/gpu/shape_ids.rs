@@ -7,18 +7,18 @@ use crate::scene::{Duplicates, Scene};
 
 /// How a ray is kept from meeting the shape that it starts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum LeftBy {
+pub(super) enum ExcludeBy {
     /// It knows the shape's place in the structure that it searches, and no equal shape is in another brick. Costs
     /// nothing for each test.
-    Place,
+    Index,
     /// It knows the shape's id. A read for each test.
     Id,
 }
 
-impl LeftBy {
+impl ExcludeBy {
     /// Both.
     #[cfg(test)]
-    pub(super) const ALL: [Self; 2] = [Self::Place, Self::Id];
+    pub(super) const ALL: [Self; 2] = [Self::Index, Self::Id];
 }
 
 /// By which ids kernels know the spheres of a structure, and rays those that they start on.
@@ -26,7 +26,7 @@ impl LeftBy {
 pub(super) struct ShapeIds {
     /// Of every sphere that the structure was built of; `None` if that is its index.
     ids: Option<Vec<u32>>,
-    pub(super) left_by: LeftBy,
+    pub(super) exclude_by: ExcludeBy,
 }
 
 impl ShapeIds {
@@ -35,15 +35,15 @@ impl ShapeIds {
         // Where equal spheres are in one brick, their places will do.
         let duplicates = accel.may_part_equals().then(|| Duplicates::of(scene.spheres()));
         let ids = duplicates.and_then(Duplicates::into_firsts);
-        let left_by = if ids.is_some() { LeftBy::Id } else { LeftBy::Place };
-        Self { ids, left_by }
+        let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
+        Self { ids, exclude_by }
     }
 
     /// For a structure of the opaque spheres alone, by their indices among all.
     pub(super) fn of_opaque(scene: &Scene) -> Self {
         let duplicates = Duplicates::of(scene.spheres());
         let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
-        Self { ids: Some(ids), left_by: LeftBy::Id }
+        Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
     }
 
     /// What spheres are called that the structure knows by these numbers.

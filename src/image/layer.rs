@@ -109,10 +109,10 @@ impl LayerSet {
     pub const DATA: Self = Self::COLOR.with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
     /// Every layer.
     pub const ALL: Self = {
-        let (mut set, mut place) = (Self::COLOR, 0);
-        while place < Layer::ALL.len() {
-            set = set.with(Layer::ALL[place]);
-            place += 1;
+        let (mut set, mut next) = (Self::COLOR, 0);
+        while next < Layer::ALL.len() {
+            set = set.with(Layer::ALL[next]);
+            next += 1;
         }
         set
     };

@@ -1,7 +1,7 @@
 //! Which emissive sphere is sampled, by chance in proportion to its power.
 
 use crate::image::color::luminance;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Duplicates, Scene};
 
 /// The emissive spheres of a scene, each with the probability by which light is sought at it.
@@ -19,15 +19,15 @@ impl Emitters {
     /// times the square of their radius. A sphere with the centre and radius of one before it is never met, and none.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let shines = |finish: &Finish| matches!(finish.material, Material::Emissive { strength } if strength > 0.0);
-        if !scene.appearance().finishes().iter().any(shines) {
+        let shines = |surface: &SurfaceProperties| matches!(surface.material, Material::Emissive { strength } if strength > 0.0);
+        if !scene.appearance().surfaces().iter().any(shines) {
             return Self::default();
         }
         let mut weights: Vec<(u32, f64)> = (0..scene.len() as u32)
             .map(|id| {
                 let radius = f64::from(scene.spheres()[id as usize][3]);
                 let color = scene.color(id).to_array().map(f64::from);
-                (id, brightness(color, &scene.finish(id)) * radius * radius)
+                (id, brightness(color, &scene.surface(id)) * radius * radius)
             })
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
@@ -37,11 +37,11 @@ impl Emitters {
         // Each has one by right, and its share of the others.
         let others = (1_u64 << 32) - weights.len() as u64;
         let mut sum = 0.0;
-        let last = weights.iter().enumerate().map(|(place, (_, weight))| {
+        let last = weights.iter().enumerate().map(|(index, (_, weight))| {
             sum += weight;
             let shared = (sum / total * others as f64).floor() as u64;
             // One less than what is up to here, of which there is at least one.
-            (place as u64 + shared.min(others)) as u32
+            (index as u64 + shared.min(others)) as u32
         });
         let mut last: Vec<u32> = last.collect();
         if let Some(end) = last.last_mut() {
@@ -73,26 +73,26 @@ impl Emitters {
     /// there are no emitters.
     #[must_use]
     pub fn pick(&self, u: u32) -> Option<(usize, f64)> {
-        let place = self.last.partition_point(|last| *last < u);
-        (place < self.last.len()).then(|| (place, self.probability_at(place)))
+        let index = self.last.partition_point(|last| *last < u);
+        (index < self.last.len()).then(|| (index, self.probability_at(index)))
     }
 
     /// The probability by which a sphere is picked; 0 for one that sends out no light.
     #[must_use]
     pub fn probability(&self, id: u32) -> f64 {
-        self.ids.binary_search(&id).map_or(0.0, |place| self.probability_at(place))
+        self.ids.binary_search(&id).map_or(0.0, |index| self.probability_at(index))
     }
 
-    fn probability_at(&self, place: usize) -> f64 {
-        let before = if place == 0 { 0.0 } else { f64::from(self.last[place - 1]) + 1.0 };
-        (f64::from(self.last[place]) + 1.0 - before) / 2_f64.powi(32)
+    fn probability_at(&self, index: usize) -> f64 {
+        let before = if index == 0 { 0.0 } else { f64::from(self.last[index - 1]) + 1.0 };
+        (f64::from(self.last[index]) + 1.0 - before) / 2_f64.powi(32)
     }
 }
 
-fn brightness(color: [f64; 3], finish: &Finish) -> f64 {
-    match finish.material {
+fn brightness(color: [f64; 3], surface: &SurfaceProperties) -> f64 {
+    match surface.material {
         Material::Emissive { strength } => {
-            luminance(color) * f64::from(strength) * f64::from(finish.opacity)
+            luminance(color) * f64::from(strength) * f64::from(surface.opacity)
         }
         _ => 0.0,
     }
@@ -134,14 +134,14 @@ mod tests {
         let spheres = [lamp(1e-9, 1e-9), lamp(1e9, 1e6), lamp(2e-9, 1e-9), lamp(1.0, 1e-3)];
         let emitters = Emitters::of(&Scene::new(&spheres).unwrap());
         let mut first = 0_u64;
-        for (place, id) in emitters.ids().iter().enumerate() {
-            let last = u64::from(emitters.last_picks()[place]);
+        for (index, id) in emitters.ids().iter().enumerate() {
+            let last = u64::from(emitters.last_picks()[index]);
             let probability = (last + 1 - first) as f64 / 2_f64.powi(32);
             assert!(last >= first, "{id}");
             for u in [first, last] {
-                assert_eq!(emitters.pick(u as u32), Some((place, probability)));
+                assert_eq!(emitters.pick(u as u32), Some((index, probability)));
             }
-            assert_eq!(Some((place, emitters.probability(*id))), emitters.pick(first as u32));
+            assert_eq!(Some((index, emitters.probability(*id))), emitters.pick(first as u32));
             first = last + 1;
         }
         assert_eq!(first, 1 << 32);

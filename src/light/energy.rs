@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::parallel;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// How many entries a table has. Entry k is of the cosine μ = (k/255)⁴: the finer, the flatter the view, since
 /// lobes of roughness 0.02 change where μ is about 0.0004.
@@ -39,8 +39,8 @@ pub enum Lobe {
 
 impl Lobe {
     /// The lobes of a material, in the order of their tables: from outside, then from inside.
-    fn of(finish: &Finish) -> Vec<Self> {
-        match finish.material {
+    fn of(surface: &SurfaceProperties) -> Vec<Self> {
+        match surface.material {
             Material::Lambert { specular, roughness } if specular > 0.0 => {
                 vec![Self::Reflection { roughness }]
             }
@@ -71,18 +71,18 @@ pub struct EnergyTables {
 }
 
 impl EnergyTables {
-    /// The tables of materials, in the order of a list of finishes.
+    /// The tables of materials, in the order of a list of surfaces.
     #[must_use]
-    pub fn of(finishes: &[Finish]) -> Self {
-        let mut places = std::collections::HashMap::new();
+    pub fn of(surfaces: &[SurfaceProperties]) -> Self {
+        let mut indices = std::collections::HashMap::new();
         let mut lobes: Vec<Lobe> = Vec::new();
-        let starts = finishes.iter().map(|finish| {
-            let of_finish = Lobe::of(finish);
-            let key: Vec<_> = of_finish.iter().map(|lobe| lobe.bits()).collect();
+        let starts = surfaces.iter().map(|surface| {
+            let of_surface = Lobe::of(surface);
+            let key: Vec<_> = of_surface.iter().map(|lobe| lobe.bits()).collect();
             let start = (lobes.len() * ENTRIES) as u32;
             (!key.is_empty()).then(|| {
-                *places.entry(key).or_insert_with(|| {
-                    lobes.extend(of_finish);
+                *indices.entry(key).or_insert_with(|| {
+                    lobes.extend(of_surface);
                     start
                 })
             })
@@ -120,9 +120,9 @@ pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
 pub fn lookup(table: &[f32], cosine: f64) -> f64 {
     let last = ENTRIES - 1;
     let x = cosine.clamp(0.0, 1.0).sqrt().sqrt() * last as f64;
-    let place = (x.floor() as usize).min(last - 1);
-    let [low, high] = [place, place + 1].map(|i| table.get(i).copied().map_or(1.0, f64::from));
-    low + (x - place as f64) * (high - low)
+    let entry = (x.floor() as usize).min(last - 1);
+    let [low, high] = [entry, entry + 1].map(|i| table.get(i).copied().map_or(1.0, f64::from));
+    low + (x - entry as f64) * (high - low)
 }
 
 /// Points of the half of the unit disk with x > 0, evenly: a Fibonacci lattice in r² and angle. Of the quadratures
@@ -295,15 +295,15 @@ mod tests {
 
     #[test]
     fn materials_share_tables() {
-        let finish = |material| Finish { material, opacity: 1.0 };
+        let surface = |material| SurfaceProperties { material, opacity: 1.0 };
         let glass = Material::Dielectric { ior: 1.5, roughness: 0.3, attenuation_distance: None };
         let tables = EnergyTables::of(&[
-            finish(Material::default()),
-            finish(Material::Conductor { roughness: 0.3 }),
-            finish(glass),
-            finish(Material::Lambert { specular: 0.1, roughness: 0.3 }),
-            finish(Material::Emissive { strength: 1.0 }),
-            finish(glass),
+            surface(Material::default()),
+            surface(Material::Conductor { roughness: 0.3 }),
+            surface(glass),
+            surface(Material::Lambert { specular: 0.1, roughness: 0.3 }),
+            surface(Material::Emissive { strength: 1.0 }),
+            surface(glass),
         ]);
         assert_eq!(tables.starts(), [None, Some(0), Some(256), Some(0), None, Some(256)]);
         assert_eq!(tables.entries().len(), 3 * 256);

@@ -11,7 +11,7 @@ use crate::image::color::LinearRgb;
 pub struct Light {
     /// What it is.
     pub kind: LightKind,
-    /// In which frame its place or direction is.
+    /// In which frame its position or direction is.
     pub frame: LightFrame,
 }
 
@@ -91,7 +91,7 @@ impl Light {
             LightFrame::World => v,
             LightFrame::Camera => v.x * axes[0] + v.y * axes[1] + v.z * axes[2],
         };
-        let placed = |v: DVec3| match self.frame {
+        let in_world = |v: DVec3| match self.frame {
             LightFrame::World => v,
             LightFrame::Camera => vectors.origin + turned(v),
         };
@@ -102,10 +102,10 @@ impl Light {
                 LightKind::Directional { toward, strength, angular_radius }
             }
             LightKind::Point { position, intensity } => {
-                LightKind::Point { position: placed(position), intensity }
+                LightKind::Point { position: in_world(position), intensity }
             }
             LightKind::Sphere { center, radius, radiance } => {
-                LightKind::Sphere { center: placed(center), radius, radiance }
+                LightKind::Sphere { center: in_world(center), radius, radiance }
             }
         })
     }

@@ -235,7 +235,7 @@ mod tests {
         let refused = raw.read(&[], &Options::default().with_frame(1)).unwrap_err().to_string();
         assert!(refused.starts_with("frame concerns trajectories ("), "{refused}");
         assert!(raw.read(&[], &Options::default().with_radius(1.0)).is_err());
-        assert!(raw.read(&[], &Options::default()).unwrap().points.is_empty());
+        assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
     #[cfg(all(feature = "npy", feature = "pdb", feature = "xyz"))]

@@ -1,8 +1,8 @@
 //! What a file of spheres holds.
 
 use crate::image::color::LinearRgb;
-use crate::scene::points::Points;
 use crate::scene::sphere::Sphere;
+use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors, Scene, SceneError};
 
 /// The spheres of one frame of a file, and what else the file says of each.
@@ -11,7 +11,7 @@ use crate::scene::{Appearance, Colors, Scene, SceneError};
 pub struct Loaded {
     /// Centres and radii, in the order of the file. Not checked:
     /// [`Scene::from_parts`](crate::Scene::from_parts) does that.
-    pub points: Points,
+    pub spheres: SphereArray,
     /// The colour of each sphere, if the file or the elements of its atoms give one.
     pub colors: Option<Vec<LinearRgb>>,
     /// Named values of each sphere, in the order of the file.
@@ -55,9 +55,9 @@ pub struct Labels {
 impl Loaded {
     /// Spheres without anything else.
     #[must_use]
-    pub fn new(points: Points) -> Self {
+    pub fn new(spheres: SphereArray) -> Self {
         Self {
-            points,
+            spheres,
             colors: None,
             columns: Vec::new(),
             cell: None,
@@ -82,13 +82,13 @@ impl Loaded {
     }
 
     /// The spheres one by one; `color` is that of spheres whose file gives none.
-    pub fn spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
+    pub fn colored_spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let color_of = move |index: usize| {
             self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color)
         };
         let colored =
             move |(index, sphere): (usize, Sphere)| Sphere { color: color_of(index), ..sphere };
-        self.points.spheres(color).enumerate().map(colored)
+        self.spheres.with_color(color).enumerate().map(colored)
     }
 
     /// The spheres as a scene; `color` is that of spheres whose file gives none.
@@ -97,6 +97,6 @@ impl Loaded {
     /// The first sphere that is out of range.
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         let colors = self.colors.map_or(Colors::One(color), |colors| Colors::distinct(&colors));
-        Scene::from_parts(self.points, Appearance::new(colors))
+        Scene::from_parts(self.spheres, Appearance::new(colors))
     }
 }

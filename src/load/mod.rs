@@ -9,7 +9,7 @@
 //!
 //! let water = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 //! let loaded = load::from_bytes(water.as_bytes(), "water.xyz", &Options::default())?;
-//! assert_eq!(loaded.points.len(), 3);
+//! assert_eq!(loaded.spheres.len(), 3);
 //! assert_eq!(loaded.labels("species").unwrap().names, ["O", "H"]);
 //! # }
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -7,7 +7,7 @@ use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
 use super::npy::{self, SpheresError};
-use crate::scene::points::Points;
+use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 
 /// What an array with spheres may be called beside others; the first that is there is taken.
@@ -61,7 +61,7 @@ pub enum NpzError {
 ///
 /// # Errors
 /// If there is no such array, it is not whole, or it is no list of spheres.
-pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<Points, NpzError> {
+pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, NpzError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let (name, entry) = entry_with_spheres(&archive)?;
     let contents = contents(&archive, entry.wayfinder, entry.method);
@@ -98,16 +98,16 @@ fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry
     }
     // Of two of one name the later one holds, as for NumPy.
     let named = |wanted: &&str| entries.iter().rposition(|(name, _)| name == wanted);
-    let place = match (entries.len(), NAMES.iter().find_map(named)) {
+    let index = match (entries.len(), NAMES.iter().find_map(named)) {
         (0, _) => return Err(NpzError::Empty),
-        (_, Some(place)) => place,
+        (_, Some(index)) => index,
         (1, None) => 0,
         _ => {
             let names = entries.into_iter().map(|(name, _)| name).collect();
             return Err(NpzError::Ambiguous { names });
         }
     };
-    let (name, entry) = entries.swap_remove(place);
+    let (name, entry) = entries.swap_remove(index);
     let entry = Entry { wayfinder: entry.wayfinder(), method: entry.compression_method() };
     Ok((shortened(&one_line(&name)), entry))
 }

@@ -59,7 +59,7 @@ mod tests {
         for name in ["a.xyz", "a.XYZ", "a", "a.txt"] {
             let loaded = from_bytes(xyz, name, &Options::default()).unwrap();
             assert_eq!(
-                (loaded.points.len(), loaded.colors.map(|c| c.len())),
+                (loaded.spheres.len(), loaded.colors.map(|c| c.len())),
                 (1, Some(1)),
                 "{name}"
             );

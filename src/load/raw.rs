@@ -1,7 +1,7 @@
 //! Reads spheres from nothing but numbers: little-endian f32, x, y, z, radius, sphere after sphere.
 
 use super::numbers::{Layout, rows};
-use crate::scene::points::Points;
+use crate::scene::sphere_array::SphereArray;
 
 /// Bytes of a sphere.
 const SPHERE: usize = 16;
@@ -31,12 +31,12 @@ pub enum RawError {
 ///
 /// # Errors
 /// If part of a sphere is left over.
-pub fn read_spheres(bytes: &[u8]) -> Result<Points, RawError> {
+pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, RawError> {
     if !bytes.len().is_multiple_of(SPHERE) {
         return Err(RawError::LeftOver { bytes: bytes.len() });
     }
     let count = bytes.len() / SPHERE;
     let layout = Layout { rows: count, columns: 4, by_column: false };
     let spheres = rows(bytes, layout, f32::from_le_bytes, 0.0);
-    spheres.map(Points::F32).map_err(|_| RawError::Memory { count })
+    spheres.map(SphereArray::F32).map_err(|_| RawError::Memory { count })
 }

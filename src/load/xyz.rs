@@ -12,13 +12,13 @@ use super::error::LoadError;
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use crate::image::color::LinearRgb;
-use crate::scene::points::Points;
 use crate::scene::sphere::{Sphere, SphereError};
+use crate::scene::sphere_array::SphereArray;
 use crate::text::shortened;
 
 /// The atoms of one frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct Atoms {
     /// The centre and radius of each atom, in the order of the file.
     pub spheres: Vec<[f64; 4]>,
     /// The colour of each atom.
@@ -140,7 +140,7 @@ fn after_frame(previous: &Option<DeclaredFrame>) -> String {
 ///
 /// # Errors
 /// If the text is no XYZ, or has no such frame.
-pub fn read(bytes: &[u8], frame: usize) -> Result<Frame, XyzError> {
+pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
     // Some editors put a byte order mark before UTF-8.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = Lines { rest: bytes, line: 0 };
@@ -172,9 +172,9 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 
 /// Reads one frame, with the colours of its elements.
 pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    let Frame { spheres, colors, species, unknown_species } =
+    let Atoms { spheres, colors, species, unknown_species } =
         read(bytes, options.frame.unwrap_or_default())?;
-    let mut loaded = Loaded::new(Points::F64(spheres));
+    let mut loaded = Loaded::new(SphereArray::F64(spheres));
     loaded.colors = Some(colors);
     loaded
         .columns
@@ -240,7 +240,7 @@ fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzErro
     Ok(())
 }
 
-fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzError> {
+fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzError> {
     // In whatever encoding; what matters of it is ASCII.
     let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
     let columns = Columns::from_comment(&comment)
@@ -256,19 +256,19 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         let values = text.split_whitespace().collect();
         let atom = Atom { frame, line: lines.line, values };
         let species = atom.text(columns.species, "species")?;
-        let (index, look) = match last {
+        let (index, appearance) = match last {
             Some((name, found)) if name == species => found,
             _ => *known.entry(species).or_insert_with(|| {
-                let look = appearance(species);
-                if !look.is_element {
+                let appearance = appearance(species);
+                if !appearance.is_element {
                     unknown_species.push(shortened(species));
                 }
                 names.push(shortened(species));
                 // No more than spheres, which are fewer than 2³².
-                (names.len() as u32 - 1, look)
+                (names.len() as u32 - 1, appearance)
             }),
         };
-        last = Some((species, (index, look)));
+        last = Some((species, (index, appearance)));
         let center = [
             atom.number(columns.position, "x coordinate")?,
             atom.number(columns.position + 1, "y coordinate")?,
@@ -276,11 +276,11 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         ];
         let radius = match columns.radius {
             Some(column) => atom.number(column, "radius")?,
-            None => look.radius,
+            None => appearance.radius,
         };
         let color = match columns.color {
             Some(column) => atom.color(column)?,
-            None => look.color,
+            None => appearance.color,
         };
         let sphere = Sphere::new(center, radius, color);
         let out_of_range = |error| XyzError::Sphere { line: atom.line, atom: found, error };
@@ -291,7 +291,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Frame, XyzE
         species_indices.push(index);
     }
     let species = Labels { names, indices: species_indices };
-    Ok(Frame { spheres, colors, species, unknown_species })
+    Ok(Atoms { spheres, colors, species, unknown_species })
 }
 
 /// Where an atom's line has what, counted in columns from 0.

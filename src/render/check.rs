@@ -288,14 +288,14 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
 }
 
 fn check_materials(appearance: &SceneAppearance) -> Result<(), SettingsError> {
-    appearance.finishes().iter().try_for_each(|finish| finish.check().map(drop))?;
+    appearance.surfaces().iter().try_for_each(|surface| surface.check().map(drop))?;
     // Then nothing is too bright either, because strengths have a bound.
     if !appearance.may_exceed_one() {
         return Ok(());
     }
     (0..appearance.sphere_count() as u32).try_for_each(|id| {
         let (color, what) = (appearance.color_of(id), || format!("sphere {id}"));
-        match appearance.finish_of(id).material {
+        match appearance.surface_of(id).material {
             Material::Emissive { strength } => check_brightness(color.to_array(), strength, what),
             _ => check_albedo(color, what),
         }

@@ -65,14 +65,14 @@ impl Shading {
 
 /// How primary rays become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PrimaryLook {
+pub struct PrimarySettings {
     /// How surfaces are coloured.
     pub shading: Shading,
     /// The colour where no sphere is hit: the background, or black where the picture is transparent.
     pub background: LinearRgb,
 }
 
-impl Default for PrimaryLook {
+impl Default for PrimarySettings {
     /// That of [`RenderSettings::default`](super::RenderSettings::default): headlight over white.
     fn default() -> Self {
         Self { shading: Shading::default(), background: LinearRgb::WHITE }

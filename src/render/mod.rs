@@ -26,7 +26,7 @@ mod studio;
 #[cfg(feature = "scene-file")]
 pub(crate) use check::BRIGHTEST;
 pub use check::SettingsError;
-pub use integrator::{Integrator, LightSampling, PathTracing, PrimaryLook, Shading};
+pub use integrator::{Integrator, LightSampling, PathTracing, PrimarySettings, Shading};
 pub use notes::SettingsNote;
 pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
@@ -114,7 +114,7 @@ impl RenderSettings {
     #[must_use]
     pub fn by_primary_rays(&self) -> Self {
         let Self { background, is_transparent, .. } = *self;
-        let shading = self.primary().map(|look| look.shading).unwrap_or_default();
+        let shading = self.primary().map(|primary| primary.shading).unwrap_or_default();
         Self {
             integrator: Integrator::Primary(shading),
             background,
@@ -125,12 +125,12 @@ impl RenderSettings {
 
     /// How primary rays become colours; `None` if the picture is lit.
     #[must_use]
-    pub fn primary(&self) -> Option<PrimaryLook> {
+    pub fn primary(&self) -> Option<PrimarySettings> {
         match self.integrator {
             Integrator::Primary(shading) => {
                 let background =
                     if self.is_transparent { LinearRgb::BLACK } else { self.background };
-                Some(PrimaryLook { shading, background })
+                Some(PrimarySettings { shading, background })
             }
             Integrator::Studio(_) | Integrator::Path(_) => None,
         }

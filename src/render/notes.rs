@@ -6,7 +6,7 @@ use super::{Integrator, RenderSettings};
 use crate::image::color::LinearRgb;
 use crate::light::{LightKind, SkyLight};
 use crate::scene::Scene;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// Something about settings and a scene that may not be what was meant, and what to do about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,12 +42,13 @@ impl RenderSettings {
     /// What somebody who renders a scene with these settings should know although it is no error.
     #[must_use]
     pub fn notes(&self, scene: &Scene) -> Vec<SettingsNote> {
-        let any =
-            |is_special: fn(&Finish) -> bool| scene.appearance().finishes().iter().any(is_special);
+        let any = |is_special: fn(&SurfaceProperties) -> bool| {
+            scene.appearance().surfaces().iter().any(is_special)
+        };
         let is_translucent = || !scene.checked_appearance().is_opaque();
         let needs_paths = || {
-            any(|finish| {
-                matches!(finish.material, Material::Conductor { .. } | Material::Dielectric { .. })
+            any(|surface| {
+                matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. })
             })
         };
         let notes = [
@@ -80,13 +81,13 @@ impl RenderSettings {
                 environment.has_light() && *strength > 0.0
             }
         };
-        let shines = |finish: &Finish| match finish.material {
+        let shines = |surface: &SurfaceProperties| match surface.material {
             Material::Emissive { strength } => strength > 0.0,
             _ => false,
         };
-        let is_lamp = |id: u32| shines(&scene.finish(id)) && !is_black(&scene.color(id));
+        let is_lamp = |id: u32| shines(&scene.surface(id)) && !is_black(&scene.color(id));
         let has_lamp = || {
-            scene.appearance().finishes().iter().any(shines) && (0..scene.len() as u32).any(is_lamp)
+            scene.appearance().surfaces().iter().any(shines) && (0..scene.len() as u32).any(is_lamp)
         };
         !is_lit && !from_around && !has_lamp()
     }

@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::color_map::ColorMap;
 use crate::image::color::LinearRgb;
-use crate::scene::material::Finish;
+use crate::scene::material::SurfaceProperties;
 
 /// The colours of a scene's spheres, in input order.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,11 +14,11 @@ pub enum Colors {
     Palette {
         /// The colours.
         palette: Vec<LinearRgb>,
-        /// Of every sphere, the place of its colour in the palette.
+        /// Of every sphere, the index of its colour in the palette.
         indices: Vec<u32>,
     },
     /// Every sphere has its own: 4 bytes a sphere, of red, green and blue in sRGB, and of alpha, which is not encoded
-    /// and multiplies the opacity of the sphere's finish. Colours are not premultiplied by it.
+    /// and multiplies the opacity of the sphere's surface. Colours are not premultiplied by it.
     Rgba8(Vec<[u8; 4]>),
     /// Every sphere has a number, and numbers have colours: 4 bytes a sphere.
     Scalars {
@@ -29,24 +29,24 @@ pub enum Colors {
     },
 }
 
-/// What spheres look like: colours, finishes, and which sphere has which.
+/// What spheres look like: colours, surface properties, and which sphere has which.
 ///
 /// ```
-/// use pinhole::{Appearance, Finish, Points, Scene};
+/// use pinhole::{Appearance, SurfaceProperties, SphereArray, Scene};
 ///
 /// // Four bytes a sphere, of which the last is opacity.
 /// let colors = vec![[255, 0, 0, 255], [0, 0, 255, 128]];
 /// let spheres = vec![[0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]];
-/// let scene = Scene::from_parts(Points::F32(spheres), Appearance::from(colors))?;
+/// let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors))?;
 /// assert_eq!(scene.color(1).to_srgb8(), [0, 0, 255]);
-/// assert_eq!(scene.finish(1).opacity, 128.0 / 255.0);
+/// assert_eq!(scene.surface(1).opacity, 128.0 / 255.0);
 /// # Ok::<(), pinhole::scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Appearance {
     pub(super) colors: Colors,
-    pub(super) finishes: Vec<Finish>,
-    pub(super) finish_indices: Option<Vec<u32>>,
+    pub(super) surfaces: Vec<SurfaceProperties>,
+    pub(super) surface_indices: Option<Vec<u32>>,
 }
 
 impl From<LinearRgb> for Appearance {
@@ -71,23 +71,27 @@ impl Appearance {
     /// Of matt, opaque spheres; what is given is not copied.
     #[must_use]
     pub fn new(colors: Colors) -> Self {
-        Self { colors, finishes: vec![Finish::default()], finish_indices: None }
+        Self { colors, surfaces: vec![SurfaceProperties::default()], surface_indices: None }
     }
 
-    /// The same colours on spheres that all have one finish.
+    /// The same colours on spheres that all have the same surface properties.
     #[must_use]
-    pub fn with_finish(self, finish: Finish) -> Self {
-        self.with(vec![finish], None)
+    pub fn with_surface(self, surface: SurfaceProperties) -> Self {
+        self.with(vec![surface], None)
     }
 
-    /// The same colours on spheres of some finishes: a list of them, and for every sphere the place of its own in it.
+    /// The same colours on spheres with several surface properties: a list of them, and for every sphere an index into it.
     #[must_use]
-    pub fn with_finishes(self, finishes: Vec<Finish>, indices: Vec<u32>) -> Self {
-        self.with(finishes, Some(indices))
+    pub fn with_surfaces(self, surfaces: Vec<SurfaceProperties>, indices: Vec<u32>) -> Self {
+        self.with(surfaces, Some(indices))
     }
 
-    pub(super) fn with(self, finishes: Vec<Finish>, finish_indices: Option<Vec<u32>>) -> Self {
-        Self { finishes, finish_indices, ..self }
+    pub(super) fn with(
+        self,
+        surfaces: Vec<SurfaceProperties>,
+        surface_indices: Option<Vec<u32>>,
+    ) -> Self {
+        Self { surfaces, surface_indices, ..self }
     }
 
     /// Which colours spheres have.
@@ -96,22 +100,22 @@ impl Appearance {
         &self.colors
     }
 
-    /// The finishes that spheres have; opacities are without the alpha of colours.
+    /// The surface properties that occur; opacities are without the alpha of colours.
     #[must_use]
-    pub fn finishes(&self) -> &[Finish] {
-        &self.finishes
+    pub fn surfaces(&self) -> &[SurfaceProperties] {
+        &self.surfaces
     }
 
-    /// Of every sphere, the place of its finish among them; `None` if all have the first.
+    /// For every sphere, the index of its surface properties; `None` if all have the first.
     #[must_use]
-    pub fn finish_indices(&self) -> Option<&[u32]> {
-        self.finish_indices.as_deref()
+    pub fn surface_indices(&self) -> Option<&[u32]> {
+        self.surface_indices.as_deref()
     }
 
     /// Whether it is one of so many spheres.
     ///
     /// # Errors
-    /// The first sphere whose colour or finish is missing, is none of those that there are, or is of the number NaN;
+    /// The first sphere whose colour or surface properties are missing, is none of those that there are, or is of the number NaN;
     /// that there are more of them than spheres.
     pub fn check(&self, count: usize) -> Result<(), SceneError> {
         let all = |what, found| match found {
@@ -122,7 +126,7 @@ impl Appearance {
             Colors::One(_) => {}
             Colors::Palette { palette, indices } => {
                 let colors = palette.len();
-                if let Some(index) = indices.iter().position(|place| *place as usize >= colors) {
+                if let Some(index) = indices.iter().position(|index| *index as usize >= colors) {
                     return Err(SceneError::Color { index, colors });
                 }
                 all("color", indices.len())?;
@@ -135,13 +139,15 @@ impl Appearance {
                 all("color", values.len())?;
             }
         }
-        let finishes = self.finishes.len();
-        match &self.finish_indices {
-            None if finishes == 0 && count > 0 => Err(SceneError::Finish { index: 0, finishes }),
+        let surfaces = self.surfaces.len();
+        match &self.surface_indices {
+            None if surfaces == 0 && count > 0 => {
+                Err(SceneError::SurfaceProperties { index: 0, surfaces })
+            }
             None => Ok(()),
-            Some(indices) => match indices.iter().position(|place| *place as usize >= finishes) {
-                Some(index) => Err(SceneError::Finish { index, finishes }),
-                None => all("finish", indices.len()),
+            Some(indices) => match indices.iter().position(|index| *index as usize >= surfaces) {
+                Some(index) => Err(SceneError::SurfaceProperties { index, surfaces }),
+                None => all("surface index", indices.len()),
             },
         }
     }
@@ -150,17 +156,17 @@ impl Appearance {
     /// have one colour.
     #[must_use]
     pub fn color(&self, id: u32) -> Option<LinearRgb> {
-        let place = id as usize;
+        let index = id as usize;
         match &self.colors {
             Colors::One(color) => Some(*color),
             Colors::Palette { palette, indices } => {
-                palette.get(*indices.get(place)? as usize).copied()
+                palette.get(*indices.get(index)? as usize).copied()
             }
             Colors::Rgba8(colors) => {
-                let [r, g, b, _] = *colors.get(place)?;
+                let [r, g, b, _] = *colors.get(index)?;
                 Some(LinearRgb::from_srgb8([r, g, b]))
             }
-            Colors::Scalars { values, map } => values.get(place).map(|value| map.color(*value)),
+            Colors::Scalars { values, map } => values.get(index).map(|value| map.color(*value)),
         }
     }
 

@@ -4,10 +4,10 @@ use std::ops::{Deref, Range};
 use std::sync::OnceLock;
 
 use super::appearance::{Appearance, Colors};
-use super::surfaces::{Surface, Surfaces};
+use super::material_table::{MaterialRow, MaterialTable};
 use super::update::NewColors;
 use crate::image::color::LinearRgb;
-use crate::scene::material::Finish;
+use crate::scene::material::SurfaceProperties;
 
 /// The appearance of so many spheres, which has been checked. What follows from it is found out when it is first asked
 /// for.
@@ -15,7 +15,7 @@ use crate::scene::material::Finish;
 pub(crate) struct SceneAppearance {
     appearance: Appearance,
     count: usize,
-    surfaces: OnceLock<Surfaces>,
+    material_table: OnceLock<MaterialTable>,
     is_opaque: OnceLock<bool>,
 }
 
@@ -29,7 +29,7 @@ impl Deref for SceneAppearance {
 
 impl SceneAppearance {
     pub(crate) fn new(appearance: Appearance, count: usize) -> Self {
-        Self { appearance, count, surfaces: OnceLock::new(), is_opaque: OnceLock::new() }
+        Self { appearance, count, material_table: OnceLock::new(), is_opaque: OnceLock::new() }
     }
 
     /// Gives some spheres other colours, which have been checked and are of the same kind.
@@ -44,7 +44,7 @@ impl SceneAppearance {
             }
             _ => {}
         }
-        (self.surfaces, self.is_opaque) = (OnceLock::new(), OnceLock::new());
+        (self.material_table, self.is_opaque) = (OnceLock::new(), OnceLock::new());
     }
 
     /// The appearance alone.
@@ -62,15 +62,16 @@ impl SceneAppearance {
         self.color(id).unwrap_or(LinearRgb::BLACK)
     }
 
-    /// The place of a sphere's finish.
-    pub(crate) fn finish_index(&self, id: u32) -> u32 {
-        self.finish_indices().map_or(0, |indices| indices[id as usize])
+    /// The index of a sphere's surface properties.
+    pub(crate) fn surface_index(&self, id: u32) -> u32 {
+        self.surface_indices().map_or(0, |indices| indices[id as usize])
     }
 
-    /// The finish of a sphere that there is, with the alpha of its colour.
-    pub(crate) fn finish_of(&self, id: u32) -> Finish {
-        let Finish { material, opacity } = self.finishes()[self.finish_index(id) as usize];
-        Finish { material, opacity: opacity * self.alpha(id) }
+    /// The surface properties of a sphere of this scene, with the alpha of its colour.
+    pub(crate) fn surface_of(&self, id: u32) -> SurfaceProperties {
+        let SurfaceProperties { material, opacity } =
+            self.surfaces()[self.surface_index(id) as usize];
+        SurfaceProperties { material, opacity: opacity * self.alpha(id) }
     }
 
     /// Whether nothing is seen through any sphere.
@@ -80,21 +81,21 @@ impl SceneAppearance {
                 Colors::Rgba8(colors) => colors.iter().any(|[_, _, _, alpha]| *alpha < u8::MAX),
                 Colors::One(_) | Colors::Palette { .. } | Colors::Scalars { .. } => false,
             };
-            !has_alpha && self.finishes().iter().all(|finish| finish.opacity >= 1.0)
+            !has_alpha && self.surfaces().iter().all(|surface| surface.opacity >= 1.0)
         })
     }
 
-    fn all_surfaces(&self) -> &Surfaces {
-        self.surfaces.get_or_init(|| Surfaces::of(self))
+    fn material_table(&self) -> &MaterialTable {
+        self.material_table.get_or_init(|| MaterialTable::of(self))
     }
 
     /// The rows of a table of all materials.
-    pub(crate) fn surfaces(&self) -> &[Surface] {
-        self.all_surfaces().rows()
+    pub(crate) fn material_rows(&self) -> &[MaterialRow] {
+        self.material_table().rows()
     }
 
     /// The row of a sphere's material among them.
-    pub(crate) fn surface_index(&self, id: u32) -> u32 {
-        self.all_surfaces().index(id).unwrap_or_else(|| self.finish_index(id))
+    pub(crate) fn material_row(&self, id: u32) -> u32 {
+        self.material_table().index(id).unwrap_or_else(|| self.surface_index(id))
     }
 }

@@ -1,4 +1,4 @@
-//! Spheres in the place of another.
+//! Spheres that are equal to one before them.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -50,15 +50,15 @@ fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
     const BITS_PER_SPHERE: usize = 16;
     let words = (spheres.len() * BITS_PER_SPHERE / 64).next_power_of_two();
     let clear = || -> Vec<AtomicU64> { (0..words).map(|_| AtomicU64::new(0)).collect() };
-    // Spheres that are equal have the same place.
-    let place = |sphere: &[f32; 4]| {
+    // Equal spheres have the same bit.
+    let bit_of = |sphere: &[f32; 4]| {
         let hash = hash(sphere);
         ((hash >> 6) as usize & (words - 1), 1 << (hash & 63))
     };
     let (seen, seen_twice) = (clear(), clear());
     map_chunks(spheres, |_, spheres| {
         for sphere in spheres {
-            let (word, bit) = place(sphere);
+            let (word, bit) = bit_of(sphere);
             if seen[word].fetch_or(bit, Ordering::Relaxed) & bit != 0 {
                 seen_twice[word].fetch_or(bit, Ordering::Relaxed);
             }
@@ -68,7 +68,7 @@ fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
         (first as u32..)
             .zip(spheres)
             .filter(|(_, sphere)| {
-                let (word, bit) = place(sphere);
+                let (word, bit) = bit_of(sphere);
                 seen_twice[word].load(Ordering::Relaxed) & bit != 0
             })
             .map(|(id, _)| id)

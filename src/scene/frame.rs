@@ -25,10 +25,10 @@ pub(super) fn bounds_of_checked<T: Sync>(
     }
     let of_chunk = |first: usize, chunk: &[T]| {
         let mut bounds: Option<Bounds> = None;
-        for (place, item) in chunk.iter().enumerate() {
+        for (offset, item) in chunk.iter().enumerate() {
             let sphere @ [x, y, z, radius] = parts(item);
             sphere::check(sphere)
-                .map_err(|error| SceneError::Sphere { index: first + place, error })?;
+                .map_err(|error| SceneError::Sphere { index: first + offset, error })?;
             let of_sphere = Bounds::of_sphere(DVec3::new(x, y, z), radius);
             bounds = Some(bounds.map_or(of_sphere, |bounds| bounds.union(of_sphere)));
         }

@@ -44,14 +44,14 @@ impl Default for Material {
 
 /// A material, and how much of what is behind it a surface hides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finish {
+pub struct SurfaceProperties {
     /// What the surface does with light.
     pub material: Material,
     /// Of each surface crossing, so that a ray through a sphere meets it twice: 0 (clear) to 1.
     pub opacity: f32,
 }
 
-impl Default for Finish {
+impl Default for SurfaceProperties {
     fn default() -> Self {
         Self { material: Material::default(), opacity: 1.0 }
     }
@@ -60,7 +60,7 @@ impl Default for Finish {
 /// The smallest roughness that is not smooth.
 pub const MIN_ROUGHNESS: f32 = 0.02;
 
-impl Finish {
+impl SurfaceProperties {
     /// Whether every parameter is in its range.
     ///
     /// # Errors
@@ -97,7 +97,7 @@ impl Finish {
         Ok(())
     }
 
-    /// As bits, to tell finishes apart.
+    /// As bits, to tell them apart.
     pub(crate) fn bits(&self) -> [u32; 5] {
         let [kind, a, b, c] = match self.material {
             Material::Lambert { specular, roughness } => [0.0, specular, roughness, 0.0],

@@ -10,9 +10,9 @@ use crate::geometry::bounds::Bounds;
 use crate::geometry::math::MAX_LENGTH;
 use crate::image::color::LinearRgb;
 use crate::parallel;
-use crate::scene::material::Finish;
-use crate::scene::points::Points;
+use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::{Sphere, SphereError};
+use crate::scene::sphere_array::SphereArray;
 use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
 
 mod appearance;
@@ -21,9 +21,9 @@ mod color_map;
 mod duplicates;
 mod frame;
 pub mod material;
-pub mod points;
+mod material_table;
 pub mod sphere;
-mod surfaces;
+pub mod sphere_array;
 mod update;
 
 #[cfg(feature = "gpu")]
@@ -80,13 +80,13 @@ pub enum SceneError {
         /// How many colours there are.
         colors: usize,
     },
-    /// A sphere's finish is none of those that there are.
-    #[error("sphere {index} has no finish; there are {finishes}")]
-    Finish {
+    /// The index of a sphere's surface properties is out of range.
+    #[error("the surface index of sphere {index} is out of range; there are {surfaces} surfaces")]
+    SurfaceProperties {
         /// Index in input order.
         index: usize,
-        /// How many finishes there are.
-        finishes: usize,
+        /// How many surface properties there are.
+        surfaces: usize,
     },
     /// A sphere has the number NaN, for which a colour map has no colour.
     #[error("sphere {index} has the number NaN, which has no color")]
@@ -132,10 +132,10 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::new`]; as [`Appearance::check`].
-    pub fn from_parts(points: Points, appearance: Appearance) -> Result<Self, SceneError> {
+    pub fn from_parts(points: SphereArray, appearance: Appearance) -> Result<Self, SceneError> {
         let count = points.len();
         let (origin, spheres, bounds) = match points {
-            Points::F32(mut spheres) => {
+            SphereArray::F32(mut spheres) => {
                 let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
                 let origin = bounds.map_or(DVec3::ZERO, frame_origin);
                 if origin != DVec3::ZERO {
@@ -143,7 +143,7 @@ impl Scene {
                 }
                 (origin, spheres, bounds)
             }
-            Points::F64(spheres) => {
+            SphereArray::F64(spheres) => {
                 let bounds = bounds_of_checked(&spheres, |s| *s)?;
                 let origin = bounds.map_or(DVec3::ZERO, frame_origin);
                 (origin, narrowed(&spheres, |s| *s, origin)?, bounds)
@@ -159,7 +159,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::new`].
     pub fn from_f32(spheres: Vec<[f32; 4]>, color: LinearRgb) -> Result<Self, SceneError> {
-        Self::from_parts(Points::F32(spheres), color.into())
+        Self::from_parts(SphereArray::F32(spheres), color.into())
     }
 
     /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
@@ -184,10 +184,10 @@ impl Scene {
         Self { origin, spheres, appearance, bounds }
     }
 
-    /// The same spheres, all of one finish.
+    /// The same spheres, all with the same surface properties.
     #[must_use]
-    pub fn with_finish(mut self, finish: Finish) -> Self {
-        let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_finish(finish);
+    pub fn with_surface(mut self, surface: SurfaceProperties) -> Self {
+        let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_surface(surface);
         self.appearance = Arc::new(SceneAppearance::new(appearance, self.spheres.len()));
         self
     }
@@ -207,7 +207,7 @@ impl Scene {
     /// Indices of the opaque spheres, in their order.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque_ids(&self) -> impl Iterator<Item = u32> {
-        (0..self.len() as u32).filter(|id| self.finish(*id).opacity >= 1.0)
+        (0..self.len() as u32).filter(|id| self.surface(*id).opacity >= 1.0)
     }
 
     /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
@@ -263,15 +263,15 @@ impl Scene {
         self.appearance.color_of(id)
     }
 
-    /// The finish of a sphere, by its index in input order. Its opacity is that of the finish times the alpha of the
+    /// The surface properties of a sphere, by its index in input order. The opacity is theirs times the alpha of the
     /// sphere's colour.
     ///
     /// # Panics
     /// If there is no such sphere.
     #[must_use]
-    pub fn finish(&self, id: u32) -> Finish {
+    pub fn surface(&self, id: u32) -> SurfaceProperties {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
-        self.appearance.finish_of(id)
+        self.appearance.surface_of(id)
     }
 
     /// The box of all spheres in the world, or `None` if there are none.
@@ -299,7 +299,7 @@ impl Scene {
     }
 }
 
-impl Points {
+impl SphereArray {
     /// A scene of these spheres, all of one colour.
     ///
     /// # Errors
@@ -309,17 +309,17 @@ impl Points {
     }
 }
 
-/// Every colour and every finish once, in the order of first use, and the places of each sphere's.
+/// Every colour and all surface properties once, in the order of first use, and their indices for each sphere.
 fn appearance_of(spheres: &[Sphere]) -> Appearance {
     let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
-    let (finishes, finish_indices) =
-        distinct(spheres, |sphere| (sphere.finish, sphere.finish.bits()));
-    let finishes = if finishes.is_empty() { vec![Finish::default()] } else { finishes };
-    Appearance::new(colors).with(finishes, finish_indices)
+    let (surfaces, surface_indices) =
+        distinct(spheres, |sphere| (sphere.surface, sphere.surface.bits()));
+    let surfaces = if surfaces.is_empty() { vec![SurfaceProperties::default()] } else { surfaces };
+    Appearance::new(colors).with(surfaces, surface_indices)
 }
 
 impl Colors {
-    /// Every colour once, in the order of first use, and the place of each sphere's.
+    /// Every colour once, in the order of first use, and the index of each sphere's.
     pub(crate) fn distinct(colors: &[LinearRgb]) -> Self {
         Self::of_palette(distinct(colors, |color| keyed(*color)))
     }
@@ -337,18 +337,18 @@ fn keyed(color: LinearRgb) -> (LinearRgb, [u32; 3]) {
     (color, color.to_array().map(f32::to_bits))
 }
 
-/// Everything that spheres have, once, and of each sphere the place of its own; `None` if there is but one.
+/// Everything that spheres have, once, and for each sphere an index into it; `None` if there is but one.
 fn distinct<S, T, K: Eq + std::hash::Hash>(
     spheres: &[S],
     of: impl Fn(&S) -> (T, K),
 ) -> (Vec<T>, Option<Vec<u32>>) {
     let mut all = Vec::new();
-    let mut places = HashMap::new();
+    let mut indices = HashMap::new();
     let indices: Vec<u32> = spheres
         .iter()
         .map(|sphere| {
             let (one, key) = of(sphere);
-            *places.entry(key).or_insert_with(|| {
+            *indices.entry(key).or_insert_with(|| {
                 all.push(one);
                 // No more than spheres, which are fewer than 2³².
                 all.len() as u32 - 1

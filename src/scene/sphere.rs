@@ -2,7 +2,7 @@
 
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::image::color::LinearRgb;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// A sphere in world space, as a caller gives it. [`crate::Scene`] checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Sphere {
     /// Surface colour.
     pub color: LinearRgb,
     /// What the surface does with light; lit pictures show it.
-    pub finish: Finish,
+    pub surface: SurfaceProperties,
 }
 
 /// What is wrong with a sphere.
@@ -44,20 +44,20 @@ impl Sphere {
     /// A matt, opaque sphere.
     #[must_use]
     pub fn new(center: [f64; 3], radius: f64, color: LinearRgb) -> Self {
-        Self { center, radius, color, finish: Finish::default() }
+        Self { center, radius, color, surface: SurfaceProperties::default() }
     }
 
     /// The sphere of another material.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
-        self.finish.material = material;
+        self.surface.material = material;
         self
     }
 
     /// The sphere with another opacity.
     #[must_use]
     pub fn with_opacity(mut self, opacity: f32) -> Self {
-        self.finish.opacity = opacity;
+        self.surface.opacity = opacity;
         self
     }
 

@@ -117,10 +117,10 @@ impl Centers<'_> {
         }
     }
 
-    fn get(&self, place: usize) -> [f64; 3] {
+    fn get(&self, offset: usize) -> [f64; 3] {
         match self {
-            Self::F32(centers) => centers[place].map(f64::from),
-            Self::F64(centers) => centers[place],
+            Self::F32(centers) => centers[offset].map(f64::from),
+            Self::F64(centers) => centers[offset],
         }
     }
 }
@@ -187,17 +187,17 @@ impl SceneUpdate<'_> {
     }
 
     /// A sphere in the scene's frame, after the update.
-    fn sphere(&self, scene: &Scene, range: &Range<usize>, place: usize) -> Updated {
-        let index = range.start + place;
+    fn sphere(&self, scene: &Scene, range: &Range<usize>, offset: usize) -> Updated {
+        let index = range.start + offset;
         let [x, y, z, radius] = scene.spheres[index];
-        let radius = self.radii.map_or(radius, |radii| radii[place]);
+        let radius = self.radii.map_or(radius, |radii| radii[offset]);
         match self.centers {
             None => {
                 let center = scene.origin + glam::Vec3::new(x, y, z).as_dvec3();
                 Updated { index, center: center.to_array(), in_frame: [x, y, z, radius] }
             }
             Some(centers) => {
-                let center @ [x, y, z] = centers.get(place);
+                let center @ [x, y, z] = centers.get(offset);
                 let in_frame = frame::moved([x, y, z, f64::from(radius)], scene.origin);
                 Updated { index, center, in_frame }
             }
@@ -206,11 +206,11 @@ impl SceneUpdate<'_> {
 
     fn check_colors(&self, scene: &Scene, first: usize) -> Result<(), UpdateError> {
         let Some(new) = &self.colors else { return Ok(()) };
-        let at = |place: Option<usize>| place.map(|place| first + place);
+        let at = |offset: Option<usize>| offset.map(|offset| first + offset);
         let wanted = match (new, scene.appearance().colors()) {
-            (NewColors::Palette(places), Colors::Palette { palette, .. }) => {
+            (NewColors::Palette(indices), Colors::Palette { palette, .. }) => {
                 let colors = palette.len();
-                return match at(places.iter().position(|place| *place as usize >= colors)) {
+                return match at(indices.iter().position(|index| *index as usize >= colors)) {
                     Some(index) => Err(SceneError::Color { index, colors }.into()),
                     None => Ok(()),
                 };
@@ -265,14 +265,14 @@ impl Scene {
     pub fn apply(&mut self, update: &SceneUpdate<'_>) -> Result<(), UpdateError> {
         let range = update.check_range(self)?;
         if update.changes_shape() {
-            for place in 0..range.len() {
-                update.sphere(self, &range, place).check(self.origin)?;
+            for offset in 0..range.len() {
+                update.sphere(self, &range, offset).check(self.origin)?;
             }
         }
         update.check_colors(self, range.start)?;
         if update.changes_shape() {
-            for place in 0..range.len() {
-                let Updated { index, in_frame, .. } = update.sphere(self, &range, place);
+            for offset in 0..range.len() {
+                let Updated { index, in_frame, .. } = update.sphere(self, &range, offset);
                 self.spheres[index] = in_frame;
             }
             self.bounds = frame::bounds_in_frame(self.origin, &self.spheres);

@@ -6,11 +6,11 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::materials::Materials;
-use super::place::{Keys, Lines, Number, Placed, SceneFileError, span};
+use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
-use crate::scene::material::Finish;
+use crate::scene::material::SurfaceProperties;
 
 /// A reference to a file with spheres.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Data {
     /// The colour of all, for data that has none.
     pub color: Option<LinearRgb>,
     /// What all surfaces do with light.
-    pub finish: Finish,
+    pub surface: SurfaceProperties,
     /// What atoms of one species, or with one value of another column, look like.
     pub elements: Vec<Element>,
     /// The columns whose values name `elements`. A sphere looks as the first of them says for which there is an element;
@@ -46,7 +46,7 @@ pub struct Element {
     /// The colour.
     pub color: Option<LinearRgb>,
     /// What the surface does with light.
-    pub finish: Finish,
+    pub surface: SurfaceProperties,
 }
 
 /// A table `[elements.NAME]`.
@@ -78,46 +78,47 @@ impl DataKeys {
         self,
         materials: &Materials,
         lines: &Lines<'_>,
-    ) -> Result<Option<Placed<Data>>, SceneFileError> {
+    ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
         let Some(file) = self.file else {
             let orphans = [
-                ("frame", span(&self.frame)),
-                ("radius", span(&self.radius)),
-                ("radius_scale", span(&self.radius_scale)),
-                ("color", span(&self.color)),
-                ("material", span(&self.material)),
-                ("opacity", span(&self.opacity)),
+                ("frame", range_of(&self.frame)),
+                ("radius", range_of(&self.radius)),
+                ("radius_scale", range_of(&self.radius_scale)),
+                ("color", range_of(&self.color)),
+                ("material", range_of(&self.material)),
+                ("opacity", range_of(&self.opacity)),
                 ("elements", self.elements.values().next().map(Spanned::span)),
-                ("elements_by", span(&self.elements_by)),
-                ("leave_out", span(&self.leave_out)),
+                ("elements_by", range_of(&self.elements_by)),
+                ("leave_out", range_of(&self.leave_out)),
             ];
             let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
                 Some((key, start)) => Err(lines
-                    .place(start)
+                    .span(start)
                     .error(format!("`{key}` concerns `data`, which is not given"))),
                 None => Ok(None),
             };
         };
-        let finish = materials.over(Finish::default(), self.material, self.opacity, lines)?;
+        let surface =
+            materials.over(SurfaceProperties::default(), self.material, self.opacity, lines)?;
         let elements = self.elements.into_iter().map(|(name, table)| {
             let ElementTable { material, opacity, color, radius } = table.into_inner().0;
             Ok(Element {
                 name,
                 radius: positive("radius", radius, lines)?,
                 color: color.map(|color| color.0),
-                finish: materials.over(finish, material, opacity, lines)?,
+                surface: materials.over(surface, material, opacity, lines)?,
             })
         });
-        Ok(Some(Placed {
-            place: lines.place(file.span().start),
+        Ok(Some(WithSpan {
+            span: lines.span(file.span().start),
             value: Data {
                 file: file.into_inner(),
                 frame: self.frame.map(Spanned::into_inner),
                 radius: positive("radius", self.radius, lines)?,
                 radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
                 color: self.color.map(|color| color.into_inner().0),
-                finish,
+                surface,
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
@@ -131,6 +132,6 @@ fn positive(
     value: Option<Number>,
     lines: &Lines<'_>,
 ) -> Result<Option<f64>, SceneFileError> {
-    let keys = Keys { lines, numbers: vec![(key, value)], table: super::place::Place::START };
+    let keys = Keys { lines, numbers: vec![(key, value)], table: super::span::Span::START };
     keys.within(key, [f64::from_bits(1), f64::MAX], "finite and greater than 0")
 }

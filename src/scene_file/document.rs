@@ -12,13 +12,13 @@ use super::lighting::{
 };
 use super::materials::{MaterialTable, Materials};
 use super::output::OutputTable;
-use super::place::{Lines, Number, Placed, SceneFileError};
+use super::span::{Lines, Number, SceneFileError, WithSpan};
 use super::value::ColorValue;
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
 use crate::render::Shading;
-use crate::scene::material::Finish;
+use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 
 /// All tables and keys at the top.
@@ -86,9 +86,9 @@ impl FilmTable {
         table: Spanned<Table<Self>>,
         lines: &Lines<'_>,
     ) -> Result<Film, SceneFileError> {
-        let place = lines.place(table.span().start);
+        let span = lines.span(table.span().start);
         let Self { width, height, y } = table.into_inner().0;
-        let film = Film::new(width, height).map_err(|error| place.error(error))?;
+        let film = Film::new(width, height).map_err(|error| span.error(error))?;
         Ok(film.with_y_axis(y))
     }
 }
@@ -110,11 +110,11 @@ impl SphereTable {
         table: Spanned<Table<Self>>,
         materials: &Materials,
         lines: &Lines<'_>,
-    ) -> Result<Placed<Sphere>, SceneFileError> {
-        let place = lines.place(table.span().start);
+    ) -> Result<WithSpan<Sphere>, SceneFileError> {
+        let span = lines.span(table.span().start);
         let Self { center, radius, color, material, opacity } = table.into_inner().0;
         let mut sphere = Sphere::new(center, radius, color.0);
-        sphere.finish = materials.over(Finish::default(), material, opacity, lines)?;
-        Ok(Placed { value: sphere, place })
+        sphere.surface = materials.over(SurfaceProperties::default(), material, opacity, lines)?;
+        Ok(WithSpan { value: sphere, span })
     }
 }

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::place::{Keys, Lines, Number, SceneFileError, refuse_foreign, span};
+use super::span::{Keys, Lines, Number, SceneFileError, range_of, refuse_foreign};
 use super::words::unknown;
 use crate::exact::Table;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::text::{one_line, shortened};
 
 /// What a material does with light, by name.
@@ -45,22 +45,26 @@ pub(super) struct MaterialTable {
 }
 
 impl MaterialTable {
-    fn finish(&self, lines: &Lines<'_>, start: usize) -> Result<Finish, SceneFileError> {
+    fn surface(
+        &self,
+        lines: &Lines<'_>,
+        start: usize,
+    ) -> Result<SurfaceProperties, SceneFileError> {
         let kind = self.kind;
         let is_one = |kinds: &[Kind]| kinds.contains(&kind);
         refuse_foreign(
             lines,
             kind.name(),
             &[
-                ("specular", span(&self.specular), is_one(&[Kind::Lambert])),
-                ("roughness", span(&self.roughness), !is_one(&[Kind::Emissive])),
-                ("ior", span(&self.ior), is_one(&[Kind::Dielectric])),
+                ("specular", range_of(&self.specular), is_one(&[Kind::Lambert])),
+                ("roughness", range_of(&self.roughness), !is_one(&[Kind::Emissive])),
+                ("ior", range_of(&self.ior), is_one(&[Kind::Dielectric])),
                 (
                     "attenuation_distance",
-                    span(&self.attenuation_distance),
+                    range_of(&self.attenuation_distance),
                     is_one(&[Kind::Dielectric]),
                 ),
-                ("strength", span(&self.strength), is_one(&[Kind::Emissive])),
+                ("strength", range_of(&self.strength), is_one(&[Kind::Emissive])),
             ],
         )?;
         let or = |number: &Option<Number>, default: f32| {
@@ -82,7 +86,7 @@ impl MaterialTable {
             },
             Kind::Emissive => Material::Emissive { strength: or(&self.strength, 1.0) },
         };
-        let finish = Finish { material, opacity: or(&self.opacity, 1.0) };
+        let surface = SurfaceProperties { material, opacity: or(&self.opacity, 1.0) };
         let numbers = vec![
             ("specular", self.specular.clone()),
             ("roughness", self.roughness.clone()),
@@ -91,38 +95,38 @@ impl MaterialTable {
             ("strength", self.strength.clone()),
             ("opacity", self.opacity.clone()),
         ];
-        let keys = Keys { lines, numbers, table: lines.place(start) };
-        finish.check().map(|()| finish).map_err(|error| keys.refused(&error))
+        let keys = Keys { lines, numbers, table: lines.span(start) };
+        surface.check().map(|()| surface).map_err(|error| keys.refused(&error))
     }
 }
 
 /// The materials of a file, by name.
-pub(super) struct Materials(BTreeMap<String, Finish>);
+pub(super) struct Materials(BTreeMap<String, SurfaceProperties>);
 
 impl Materials {
     pub(super) fn new(
         tables: BTreeMap<String, Spanned<Table<MaterialTable>>>,
         lines: &Lines<'_>,
     ) -> Result<Self, SceneFileError> {
-        let finishes = tables.into_iter().map(|(name, table)| {
+        let surfaces = tables.into_iter().map(|(name, table)| {
             let start = table.span().start;
-            Ok((name, table.into_inner().0.finish(lines, start)?))
+            Ok((name, table.into_inner().0.surface(lines, start)?))
         });
-        Ok(Self(finishes.collect::<Result<_, _>>()?))
+        Ok(Self(surfaces.collect::<Result<_, _>>()?))
     }
 
-    /// What the two keys make of a finish.
+    /// What the two keys make of a surface.
     pub(super) fn over(
         &self,
-        base: Finish,
+        base: SurfaceProperties,
         material: Option<Spanned<String>>,
         opacity: Option<Number>,
         lines: &Lines<'_>,
-    ) -> Result<Finish, SceneFileError> {
-        let mut finish = base;
+    ) -> Result<SurfaceProperties, SceneFileError> {
+        let mut surface = base;
         if let Some(name) = material {
             let known = self.0.get(name.get_ref());
-            finish = *known.ok_or_else(|| {
+            surface = *known.ok_or_else(|| {
                 let names: Vec<&str> = self.0.keys().map(String::as_str).collect();
                 let message = if names.is_empty() {
                     format!(
@@ -132,15 +136,15 @@ impl Materials {
                 } else {
                     one_line(&unknown("material", name.get_ref(), &names))
                 };
-                lines.place(name.span().start).error(message)
+                lines.span(name.span().start).error(message)
             })?;
         }
         if let Some(opacity) = opacity {
-            finish.opacity = *opacity.get_ref() as f32;
-            let place = lines.place(opacity.span().start);
-            let keys = Keys { lines, numbers: vec![("opacity", Some(opacity))], table: place };
-            finish.check().map_err(|error| keys.refused(&error))?;
+            surface.opacity = *opacity.get_ref() as f32;
+            let span = lines.span(opacity.span().start);
+            let keys = Keys { lines, numbers: vec![("opacity", Some(opacity))], table: span };
+            surface.check().map_err(|error| keys.refused(&error))?;
         }
-        Ok(finish)
+        Ok(surface)
     }
 }

@@ -3,26 +3,26 @@
 //! `examples/*.toml` show every part with comments.
 
 mod data;
+mod data_spheres;
 mod document;
-mod dress;
 mod lighting;
 mod materials;
 mod output;
-mod place;
+mod span;
 mod value;
 mod words;
 
 pub use data::{Data, Element};
-pub use dress::{DataError, DataSpheres};
+pub use data_spheres::{DataError, DataSpheres};
 pub use lighting::IntegratorKind;
-pub use place::SceneFileError;
+pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
 
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
 use materials::Materials;
-use place::{Lines, Place, Placed};
+use span::{Lines, Span, WithSpan};
 use toml::Spanned;
 use words::explain;
 
@@ -31,8 +31,8 @@ use crate::camera::{Camera, CameraParameters};
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::render::Shading;
-use crate::scene::points::Points;
 use crate::scene::sphere::Sphere;
+use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Scene, SceneError};
 
 /// What a scene file says.
@@ -46,9 +46,9 @@ pub struct SceneFile {
     /// Of primary rays.
     shading: Shading,
     lighting: SceneLighting,
-    data: Option<Placed<Data>>,
-    camera: Placed<CameraParameters>,
-    spheres: Vec<Placed<Sphere>>,
+    data: Option<WithSpan<Data>>,
+    camera: WithSpan<CameraParameters>,
+    spheres: Vec<WithSpan<Sphere>>,
 }
 
 impl SceneFile {
@@ -60,10 +60,10 @@ impl SceneFile {
         let lines = Lines::of(text);
         let document: Document = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
-            lines.place(start).error(explain(error.message()))
+            lines.span(start).error(explain(error.message()))
         })?;
         let materials = Materials::new(document.materials, &lines)?;
-        let has_looks = document.material.is_some() || document.opacity.is_some();
+        let has_lighting = document.material.is_some() || document.opacity.is_some();
         let data = DataKeys {
             file: document.data,
             frame: document.frame,
@@ -91,7 +91,7 @@ impl SceneFile {
             sky: document.sky,
             sun: document.sun,
             ground: document.ground,
-            has_materials: has_looks || has_finish(&spheres, data.as_ref()),
+            has_materials: has_lighting || has_surface(&spheres, data.as_ref()),
         }
         .read(&lines)?;
         Ok(Self {
@@ -101,7 +101,7 @@ impl SceneFile {
             encoding: document.output.0.encoding(&lines)?,
             lighting,
             data,
-            camera: lines.placed(document.camera),
+            camera: lines.spanned(document.camera),
             spheres,
         })
     }
@@ -113,39 +113,39 @@ impl SceneFile {
     pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
         let own = self.spheres.iter().map(|sphere| sphere.value);
         let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
-        Scene::new(&spheres).map_err(|error| self.placed(&error))
+        Scene::new(&spheres).map_err(|error| self.spanned(&error))
     }
 
     /// As [`SceneFile::scene`], with data that has no colours; where the file has no spheres of its own,
-    /// without a copy. They get the finish that the file says.
+    /// without a copy. They get the surface properties that the file states.
     ///
     /// # Errors
     /// As [`SceneFile::scene`].
-    pub fn scene_with_points(
+    pub fn scene_with_array(
         &self,
-        data: Points,
+        data: SphereArray,
         color: LinearRgb,
     ) -> Result<Scene, SceneFileError> {
-        let finish = self.data().map(|data| data.finish).unwrap_or_default();
+        let surface = self.data().map(|data| data.surface).unwrap_or_default();
         if self.spheres.is_empty() {
-            let scene = data.scene(color).map_err(|error| self.placed(&error))?;
-            return Ok(scene.with_finish(finish));
+            let scene = data.scene(color).map_err(|error| self.spanned(&error))?;
+            return Ok(scene.with_surface(surface));
         }
-        let dressed = data.spheres(color).map(|sphere| Sphere { finish, ..sphere });
-        self.scene(&dressed.collect::<Vec<_>>())
+        let colored = data.with_color(color).map(|sphere| Sphere { surface, ..sphere });
+        self.scene(&colored.collect::<Vec<_>>())
     }
 
-    fn placed(&self, error: &SceneError) -> SceneFileError {
+    fn spanned(&self, error: &SceneError) -> SceneFileError {
         let &SceneError::Sphere { index, error: fault } = error else {
-            return Place::START.error(error);
+            return Span::START.error(error);
         };
         match (self.spheres.get(index), &self.data) {
-            (Some(sphere), _) => sphere.place.error(error),
+            (Some(sphere), _) => sphere.span.error(error),
             (None, Some(data)) => {
                 let in_data = index - self.spheres.len();
-                data.place.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
+                data.span.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
             }
-            (None, None) => Place::START.error(error),
+            (None, None) => Span::START.error(error),
         }
     }
 
@@ -164,7 +164,7 @@ impl SceneFile {
         self.camera
             .value
             .camera(film.aspect(), &scene.bounds_to_frame())
-            .map_err(|error| self.camera.place.error(error))
+            .map_err(|error| self.camera.span.error(error))
     }
 
     /// The cameras of the left and of the right eye, if the camera has two.
@@ -179,16 +179,16 @@ impl SceneFile {
         self.camera
             .value
             .stereo_pair(film.aspect(), &scene.bounds_to_frame())
-            .map_err(|error| self.camera.place.error(error))
+            .map_err(|error| self.camera.span.error(error))
     }
 }
 
 /// Whether any sphere is to be more than matt and opaque.
-fn has_finish(spheres: &[Placed<Sphere>], data: Option<&Placed<Data>>) -> bool {
-    let matt = crate::scene::material::Finish::default();
+fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> bool {
+    let matt = crate::scene::material::SurfaceProperties::default();
     let of_data = data.iter().flat_map(|data| {
-        let elements = data.value.elements.iter().map(|element| element.finish);
-        elements.chain([data.value.finish])
+        let elements = data.value.elements.iter().map(|element| element.surface);
+        elements.chain([data.value.surface])
     });
-    spheres.iter().map(|sphere| sphere.value.finish).chain(of_data).any(|finish| finish != matt)
+    spheres.iter().map(|sphere| sphere.value.surface).chain(of_data).any(|surface| surface != matt)
 }

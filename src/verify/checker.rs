@@ -24,7 +24,7 @@ pub struct Checker<'a> {
 
 /// What was found in some pixels.
 #[derive(Default)]
-struct Part {
+struct JudgedPixels {
     verdicts: Vec<Verdict>,
     violations: Vec<Violation>,
     rendered_otherwise: usize,
@@ -94,8 +94,9 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> Part {
-    let mut part = Part { verdicts: Vec::with_capacity(range.len()), ..Part::default() };
+fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> JudgedPixels {
+    let mut part =
+        JudgedPixels { verdicts: Vec::with_capacity(range.len()), ..JudgedPixels::default() };
     let mut legal = LegalHits::default();
     for index in range {
         // A film's sides are u32.

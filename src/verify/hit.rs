@@ -21,30 +21,30 @@ pub struct LegalHits {
 pub struct LegalHit {
     /// Index in input order.
     pub id: u32,
-    /// Distances to its near wall.
+    /// Distances to its near side.
     pub near: Option<Interval>,
-    /// Distances to its far wall, if the ray may start inside.
+    /// Distances to its far side, if the ray may start inside.
     pub far: Option<Interval>,
     pub(super) sphere: [u32; 4],
 }
 
 impl LegalHit {
-    fn walls(&self) -> impl Iterator<Item = Interval> {
+    fn crossings(&self) -> impl Iterator<Item = Interval> {
         [self.near, self.far].into_iter().flatten()
     }
 
     /// The interval in which a distance lies.
     #[must_use]
-    pub fn wall_at(&self, t: f64) -> Option<Interval> {
-        self.walls().find(|wall| wall.contains(t))
+    pub fn crossing_at(&self, t: f64) -> Option<Interval> {
+        self.crossings().find(|crossing| crossing.contains(t))
     }
 
     pub(super) fn lowest(&self) -> f64 {
-        self.walls().map(|wall| wall.low).fold(f64::INFINITY, f64::min)
+        self.crossings().map(|crossing| crossing.low).fold(f64::INFINITY, f64::min)
     }
 
     pub(super) fn highest(&self) -> f64 {
-        self.walls().map(|wall| wall.high).fold(0.0, f64::max)
+        self.crossings().map(|crossing| crossing.high).fold(0.0, f64::max)
     }
 }
 
@@ -64,7 +64,7 @@ impl LegalHits {
     /// Whether the answer may be that this sphere is hit, at this distance.
     #[must_use]
     pub fn allows(&self, id: u32, t: f64) -> bool {
-        t <= self.limit && self.of(id).is_some_and(|hit| hit.wall_at(t).is_some())
+        t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())
     }
 
     /// Only a miss; keeps the memory.

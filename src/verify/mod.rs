@@ -61,7 +61,7 @@ pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use paths::{
     PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation,
-    RecordedSample, RecordedSurface, StageCounts, UploadedLook, UploadedSky,
+    RecordedSample, RecordedSurface, StageCounts, UploadedLighting, UploadedSky,
 };
 pub use recording::{
     NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,

@@ -98,8 +98,8 @@ impl PixelCheck<'_> {
         if !legal.allows(id, t.into()) {
             return Err(illegal(legal));
         }
-        let wall = legal.of(id).and_then(|hit| hit.wall_at(t.into()));
-        let depth = wall.map_or(0.0, |wall| wall.fraction(t.into()));
+        let wall = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
+        let depth = wall.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
         let normal = self.check_hit(&layers, &entered, &line, depths, id)?;
         Ok(Judged { verdict, depth, normal })
@@ -124,7 +124,7 @@ impl PixelCheck<'_> {
             let (found, exact) = (layers.normal, [0.0; 3]);
             return Err(ViolationKind::Normal { found, exact, error: 0.0 });
         }
-        let background = self.recording.look.background.to_array();
+        let background = self.recording.primary.background.to_array();
         check_color(layers.color, background.map(exactly))
     }
 
@@ -162,12 +162,12 @@ impl PixelCheck<'_> {
         let fraction = normals.fraction(normal);
         let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
         if !(fraction <= 1.0 && is_unit) {
-            let (exact, error) = normals.walls().next().unwrap_or_default();
+            let (exact, error) = normals.crossings().next().unwrap_or_default();
             let (found, exact) = (layers.normal, exact.to_array());
             return Err(ViolationKind::Normal { found, exact, error });
         }
         let color = scene.color(id).to_array();
-        let shading = self.recording.look.shading;
+        let shading = self.recording.primary.shading;
         check_color(layers.color, legal_color(shading, color, normal, direction))?;
         Ok(fraction)
     }

@@ -3,7 +3,7 @@
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraKind, CameraVectors};
 use crate::image::Image;
-use crate::render::PrimaryLook;
+use crate::render::PrimarySettings;
 
 /// The picture of a scene as a device rendered it, the rays and hits that it got there by, and the numbers
 /// that it was given. Beside the scene, this is all that the checker needs.
@@ -16,7 +16,7 @@ pub struct Recording {
     /// The picture's size.
     pub film: Film,
     /// How hits and misses become colours.
-    pub look: PrimaryLook,
+    pub primary: PrimarySettings,
     /// Of every pixel, as in [`Image`].
     pub pixels: Vec<TracedPixel>,
     /// All layers.

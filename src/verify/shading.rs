@@ -41,7 +41,7 @@ impl LegalNormals {
     }
 
     /// The exact ones, and by how much each may be missed.
-    pub(super) fn walls(&self) -> impl Iterator<Item = (DVec3, f64)> {
+    pub(super) fn crossings(&self) -> impl Iterator<Item = (DVec3, f64)> {
         self.walls.into_iter().flatten()
     }
 }

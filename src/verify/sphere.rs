@@ -47,9 +47,9 @@ pub(super) struct SphereTest {
 /// What the test may answer.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Roots {
-    /// Distances to the near wall.
+    /// Distances to the near side.
     pub(super) near: Option<Interval>,
-    /// Distances to the far wall, from inside.
+    /// Distances to the far side, from inside.
     pub(super) far: Option<Interval>,
     pub(super) may_miss: bool,
 }

@@ -154,7 +154,7 @@ fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a
     names
         .into_iter()
         .enumerate()
-        .map(|(place, name)| (name, Samples::Components(values, place)))
+        .map(|(index, name)| (name, Samples::Components(values, index)))
         .collect()
 }
 
@@ -202,7 +202,7 @@ impl SamplesWriter for Channel<'_> {
         let _ = match self.samples {
             Samples::One => line.write_samples(|_| 1.0_f32),
             Samples::Numbers(values) => line.write_samples(|i| values[start + i]),
-            Samples::Components(values, place) => line.write_samples(|i| values[start + i][place]),
+            Samples::Components(values, index) => line.write_samples(|i| values[start + i][index]),
             Samples::Counts(values) => line.write_samples(|i| values[start + i]),
         };
     }

@@ -98,8 +98,8 @@ fn samples<const RGB: usize, const A: usize>(
     let size = RGB + if alpha.is_some() { A } else { 0 };
     let mut bytes = vec![0; size * color.len()];
     let chunks = bytes.chunks_mut(size * CHUNK).zip(color.chunks(CHUNK)).enumerate();
-    for_each(chunks.collect(), |(place, (bytes, color))| {
-        let start = place * CHUNK;
+    for_each(chunks.collect(), |(index, (bytes, color))| {
+        let start = index * CHUNK;
         let (mut before, mut encoded) = ([0; 3], of_color([0.0; 3]));
         for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
             let alpha = alpha.map(|alpha| alpha[start + index]);

@@ -6,8 +6,8 @@ use pinhole::render::SettingsError;
 use pinhole::scene::SceneError;
 use pinhole::verify::run_file;
 use pinhole::{
-    Appearance, ColorMap, Colors, Film, Finish, Image, LayerSet, LinearRgb, Material, Points,
-    Radii, RenderSettings, Scene, View, cpu,
+    Appearance, ColorMap, Colors, Film, Image, LayerSet, LinearRgb, Material, Radii,
+    RenderSettings, Scene, SphereArray, SurfaceProperties, View, cpu,
 };
 
 use crate::run_file::made;
@@ -35,7 +35,7 @@ fn every_kind_shows_what_spheres_one_by_one_show() {
         assert_eq!(Emitters::of(&kind.scene), Emitters::of(&kind.expected), "{}", kind.name);
         for id in 0..kind.scene.len() as u32 {
             assert_eq!(kind.scene.color(id), kind.expected.color(id), "{}", kind.name);
-            assert_eq!(kind.scene.finish(id), kind.expected.finish(id), "{}", kind.name);
+            assert_eq!(kind.scene.surface(id), kind.expected.surface(id), "{}", kind.name);
         }
         assert!(pictures(&kind.scene) == pictures(&kind.expected), "{}", kind.name);
     }
@@ -66,7 +66,7 @@ fn nothing_is_copied() {
     let spheres = vec![[0.5, 0.25, 0.0, 0.5]; 1000];
     let colors = vec![[1, 2, 3, 4]; 1000];
     let places = (spheres.as_ptr(), colors.as_ptr());
-    let scene = Scene::from_parts(Points::F32(spheres), Appearance::from(colors)).unwrap();
+    let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors)).unwrap();
     let Colors::Rgba8(colors) = scene.appearance().colors() else { unreachable!("it is RGBA8") };
     assert_eq!((scene.spheres().as_ptr(), colors.as_ptr()), places);
     assert_eq!(size_of_val(&colors[..]), 4 * scene.len());
@@ -75,22 +75,22 @@ fn nothing_is_copied() {
 #[test]
 fn centers_and_radii_may_stand_apart() {
     let centers = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
-    let narrow = Points::from_f32(&centers.map(|c| c.map(|x| x as f32)), Radii::All(0.5));
-    assert_eq!(narrow, Ok(Points::F32(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.5]])));
-    let wide = Points::from_f64(&centers, Radii::Each(&[0.5, 0.75]));
-    assert_eq!(wide, Ok(Points::F64(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.75]])));
+    let narrow = SphereArray::from_f32(&centers.map(|c| c.map(|x| x as f32)), Radii::All(0.5));
+    assert_eq!(narrow, Ok(SphereArray::F32(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.5]])));
+    let wide = SphereArray::from_f64(&centers, Radii::Each(&[0.5, 0.75]));
+    assert_eq!(wide, Ok(SphereArray::F64(vec![[1.0, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.75]])));
     for (radii, words) in [
         (&[0.5][..], "position 1 has no radius: there are 1 radii for 2 positions"),
         (&[0.5; 3], "radius 2 has no position: there are 3 radii for 2 positions"),
     ] {
-        let refused = Points::from_f64(&centers, Radii::Each(radii)).unwrap_err();
+        let refused = SphereArray::from_f64(&centers, Radii::Each(radii)).unwrap_err();
         assert_eq!(refused.to_string(), words);
     }
 }
 
 fn refused(appearance: Appearance) -> SceneError {
     let spheres = (0..3).map(|i| [i as f32, 0.0, 0.0, 0.4]).collect();
-    Scene::from_parts(Points::F32(spheres), appearance).unwrap_err()
+    Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap_err()
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn what_does_not_fit_is_named_by_index() {
     let map = ColorMap::new(vec![gray(0.1), gray(0.2)], [0.0, 1.0]).unwrap();
     let scalars = |values| Appearance::new(Colors::Scalars { values, map: map.clone() });
     let rgba = |count| Appearance::from(vec![[0; 4]; count]);
-    let finishes = |indices| rgba(3).with_finishes(vec![Finish::default(); 2], indices);
+    let surfaces = |indices| rgba(3).with_surfaces(vec![SurfaceProperties::default(); 2], indices);
     for (appearance, words) in [
         (palette(vec![0, 2, 1]), "sphere 1 has no color; the palette has 2"),
         (palette(vec![0, 1]), "sphere 2 has no color: there are 2 for 3 spheres"),
@@ -109,9 +109,15 @@ fn what_does_not_fit_is_named_by_index() {
         (rgba(4), "color 3 has no sphere: there are 4 for 3 spheres"),
         (scalars(vec![0.0, 0.0, f32::NAN]), "sphere 2 has the number NaN, which has no color"),
         (scalars(vec![0.0]), "sphere 1 has no color: there are 1 for 3 spheres"),
-        (finishes(vec![0, 1, 2]), "sphere 2 has no finish; there are 2"),
-        (finishes(vec![0; 4]), "finish 3 has no sphere: there are 4 for 3 spheres"),
-        (rgba(3).with_finishes(vec![], vec![0; 3]), "sphere 0 has no finish; there are 0"),
+        (
+            surfaces(vec![0, 1, 2]),
+            "the surface index of sphere 2 is out of range; there are 2 surfaces",
+        ),
+        (surfaces(vec![0; 4]), "surface index 3 has no sphere: there are 4 for 3 spheres"),
+        (
+            rgba(3).with_surfaces(vec![], vec![0; 3]),
+            "the surface index of sphere 0 is out of range; there are 0 surfaces",
+        ),
     ] {
         assert_eq!(refused(appearance).to_string(), words);
     }
@@ -121,14 +127,14 @@ fn what_does_not_fit_is_named_by_index() {
 #[test]
 fn what_creates_light_is_named_by_index() {
     let palette = [0.5, 7.0].map(|level| LinearRgb::new([level; 3]).unwrap());
-    let lamp = Finish { material: Material::Emissive { strength: 2.0 }, opacity: 1.0 };
-    let check = |colors: [u32; 3], finishes: [u32; 3]| {
+    let lamp = SurfaceProperties { material: Material::Emissive { strength: 2.0 }, opacity: 1.0 };
+    let check = |colors: [u32; 3], surfaces: [u32; 3]| {
         let colors = Colors::Palette { palette: palette.to_vec(), indices: colors.to_vec() };
-        let appearance =
-            Appearance::new(colors).with_finishes(vec![Finish::default(), lamp], finishes.to_vec());
+        let appearance = Appearance::new(colors)
+            .with_surfaces(vec![SurfaceProperties::default(), lamp], surfaces.to_vec());
         let spheres = (0..3).map(|i| [i as f32, 0.0, 0.0, 0.4]).collect();
         RenderSettings::studio()
-            .check(&Scene::from_parts(Points::F32(spheres), appearance).unwrap())
+            .check(&Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap())
     };
     assert_eq!(check([0, 1, 0], [0, 1, 0]), Ok(()));
     assert_eq!(check([0, 0, 0], [0, 0, 1]), Ok(()));

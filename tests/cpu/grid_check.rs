@@ -273,17 +273,17 @@ const DAMAGES: &[Damage] = &[
             let other = (0..ids.len()).find(|place| ids[*place] != ids[0]).unwrap();
             ids.swap(0, other);
         },
-        |error| matches!(error, GridError::Sphere { place: 0 }),
+        |error| matches!(error, GridError::Sphere { shape_index: 0 }),
     ),
     (
         "an id that does not exist",
         |built| built.of.ids[3] = u32::MAX,
-        |error| matches!(error, GridError::Sphere { place: 3 }),
+        |error| matches!(error, GridError::Sphere { shape_index: 3 }),
     ),
     (
         "a sphere that moved",
         |built| built.of.spheres[5][1] += 0.5,
-        |error| matches!(error, GridError::Sphere { place: 5 }),
+        |error| matches!(error, GridError::Sphere { shape_index: 5 }),
     ),
     (
         "an id too few",

@@ -216,7 +216,7 @@ impl LegalDevice {
     /// A picture of headlight-lit spheres. `made` is a recording of the same view: of it only what the device is
     /// given is used.
     pub(crate) fn record(&mut self, scene: &Scene, made: &Recording) -> Recording {
-        let Recording { camera, uploaded, film, look, .. } = made;
+        let Recording { camera, uploaded, film, primary, .. } = made;
         let mut layers = Vec::new();
         let mut pixels = Vec::new();
         for j in 0..film.height() {
@@ -234,7 +234,7 @@ impl LegalDevice {
                 }
                 pixels.push(TracedPixel { ray: Some(ray), t, id });
                 layers.push(if id == NO_ID {
-                    Pixel::miss(look.background.to_array())
+                    Pixel::miss(primary.background.to_array())
                 } else {
                     // Another kernel makes the ray anew.
                     let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);

@@ -9,7 +9,7 @@ use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
 use pinhole::verify::{
     Checker, NO_HIT, PathRecording, PathState, RecordedSample, RecordedSurface, TracedRay,
-    UploadedLook,
+    UploadedLighting,
 };
 use pinhole::{Film, LinearRgb, Scene, Sphere};
 
@@ -47,34 +47,34 @@ fn lighting() -> RenderSettings {
 
 fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
     let made = given(scene, camera, film);
-    let lighting = lighting();
-    let filter = lighting.sampling.filter.offset_table();
-    let SkyLight::Gradient { zenith, horizon, nadir } = &lighting.sky.light else {
+    let settings = lighting();
+    let filter = settings.sampling.filter.offset_table();
+    let SkyLight::Gradient { zenith, horizon, nadir } = &settings.sky.light else {
         unreachable!("it is one")
     };
-    let look = UploadedLook {
+    let lighting = UploadedLighting {
         flags: 2,
         zenith: zenith.to_array(),
         horizon: horizon.to_array(),
         nadir: nadir.to_array(),
         roulette_from: 1,
         light_sampling: 2,
-        seed: lighting.sampling.seed,
+        seed: settings.sampling.seed,
         filter_table: filter.to_vec(),
-        ..UploadedLook::default()
+        ..UploadedLighting::default()
     };
     // The ground's material, and those of the spheres, which are matt and opaque.
     let material = [[0, 0, (0.3_f32 * 0.3).to_bits(), 0], [0, 0, 0, 1_f32.to_bits()]];
-    let tables = (0..=scene.appearance().finishes().len()).flat_map(|_| material).collect();
+    let tables = (0..=scene.appearance().surfaces().len()).flat_map(|_| material).collect();
     PathRecording {
         camera: made.camera,
         uploaded: made.uploaded,
         film,
         origin: [0, 0],
         size: [film.width(), film.height()],
-        settings: lighting,
+        settings,
         max_depth: DEPTH,
-        look,
+        lighting,
         tables,
         sky: None,
         samples: Vec::new(),
@@ -88,7 +88,7 @@ struct Path {
     flags: u32,
     direction: [f32; 3],
     density: f32,
-    /// Which sphere it leaves, and how far its far wall is.
+    /// Which sphere it leaves, and how far its far side is.
     left: (u32, f32),
     through: [f32; 4],
     radiance: [f32; 4],
@@ -133,7 +133,7 @@ const SCATTERED: u32 = 64;
 impl LegalDevice {
     /// `start` of shaders/start.wgsl.
     fn start(&mut self, made: &PathRecording, pixel: [u32; 2], seed: u32) -> Path {
-        let table = &made.look.filter_table;
+        let table = &made.lighting.filter_table;
         let u = pair(seed, 0, 0);
         let side = [made.film.width(), made.film.height()];
         let [x, y] = [0, 1].map(|axis| {
@@ -218,12 +218,12 @@ impl LegalDevice {
         let mut next = *path;
         let d = path.direction;
         if hit.id == NO_ID {
-            let look = &made.look;
-            let end = if d[1] >= 0.0 { look.zenith } else { look.nadir };
+            let lighting = &made.lighting;
+            let end = if d[1] >= 0.0 { lighting.zenith } else { lighting.nadir };
             let along = d[1].abs();
             let level = self.add(1.0, -along);
-            let light =
-                self.vector(|this, k| this.dot(&mut [(look.horizon[k], level), (end[k], along)]));
+            let light = self
+                .vector(|this, k| this.dot(&mut [(lighting.horizon[k], level), (end[k], along)]));
             let [r, g, b] =
                 self.vector(|this, k| this.mul_add(path.through[k], light[k], path.radiance[k]));
             next.radiance = [r, g, b, path.radiance[3]];
@@ -235,9 +235,9 @@ impl LegalDevice {
         let ray = TracedRay { origin, direction: d, distance: hit.distance };
         let triangle = self.triangle(&ray, sphere);
         let middle = self.middle_of(sphere, origin, d);
-        let is_far_wall = path.flags & INSIDE != 0 && hit.id == path.left.0;
-        let half = if is_far_wall { middle.abs() } else { triangle.from_foot.abs() };
-        let from_foot = if is_far_wall || hit.t > middle { half } else { -half };
+        let is_far_side = path.flags & INSIDE != 0 && hit.id == path.left.0;
+        let half = if is_far_side { middle.abs() } else { triangle.from_foot.abs() };
+        let from_foot = if is_far_side || hit.t > middle { half } else { -half };
         let outward = self.vector(|this, k| this.mul_add(from_foot, d[k], -triangle.foot[k]));
         let outward = self.unit_vector(outward);
         let is_back = self.dot(&mut [0, 1, 2].map(|k| (outward[k], d[k]))) > 0.0;
@@ -281,8 +281,8 @@ impl LegalDevice {
         next
     }
 
-    /// `deposit` of shaders/deposit.wgsl.
-    fn deposit(&mut self, path: &Path) -> [[u32; 4]; 2] {
+    /// `accumulate` of shaders/accumulate.wgsl.
+    fn accumulate(&mut self, path: &Path) -> [[u32; 4]; 2] {
         let [r, g, b, _] = path.radiance;
         let light = self.dot(&mut [(r, 0.2126), (g, 0.7152), (b, 0.0722)]);
         let square = self.mul(light, light);
@@ -295,7 +295,7 @@ impl LegalDevice {
         let pixels: Vec<[u32; 2]> =
             (0..height).flat_map(|j| (0..width).map(move |i| [i, j])).collect();
         let seeds: Vec<u32> =
-            pixels.iter().map(|pixel| pixel_seed(*pixel, made.look.seed)).collect();
+            pixels.iter().map(|pixel| pixel_seed(*pixel, made.lighting.seed)).collect();
         let nothing = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         let mut paths: Vec<Path> = pixels
             .iter()
@@ -323,7 +323,7 @@ impl LegalDevice {
                 open: vec![0; paths.len()],
             });
         }
-        recorded.sums = paths.iter().map(|path| self.deposit(path)).collect();
+        recorded.sums = paths.iter().map(|path| self.accumulate(path)).collect();
         recorded
     }
 }

@@ -1,6 +1,6 @@
 //! Arrays of spheres: .npy, .npz and raw; good files, bad files, and files that are noise.
 
-use pinhole::Points;
+use pinhole::SphereArray;
 use pinhole::load::npy::{SpheresError, read_spheres};
 use pinhole::load::{npz, raw};
 use pinhole::write;
@@ -27,8 +27,8 @@ fn message(file: &[u8], radius: Option<f64>) -> String {
 fn both_precisions_both_byte_orders_both_layouts() {
     let by_column: Vec<f32> =
         (0..4).flat_map(|column| ROWS.iter().map(move |row| row[column])).collect();
-    let wide = Points::F64(ROWS.map(|row| row.map(f64::from)).to_vec());
-    let narrow = Points::F32(ROWS.to_vec());
+    let wide = SphereArray::F64(ROWS.map(|row| row.map(f64::from)).to_vec());
+    let narrow = SphereArray::F32(ROWS.to_vec());
     for (by_columns, numbers) in [(false, ROWS.as_flattened()), (true, &by_column)] {
         for (dtype, data, expected) in [
             ("<f4", bytes(numbers, f32::to_le_bytes), &narrow),
@@ -47,7 +47,7 @@ fn both_precisions_both_byte_orders_both_layouts() {
         let data = bytes(&part, f32::to_le_bytes);
         let points = read_spheres(&npy("<f4", by_columns, "(2, 3)", &data), Some(0.75)).unwrap();
         let expected = ROWS.map(|[x, y, z, _]| [x, y, z, 0.75]);
-        assert_eq!(points, Points::F32(expected.to_vec()));
+        assert_eq!(points, SphereArray::F32(expected.to_vec()));
     }
 }
 
@@ -63,12 +63,12 @@ fn what_is_written_is_read() {
     for spheres in [&ROWS[..], &[]] {
         let mut file = Vec::new();
         write_spheres(spheres, &mut file).unwrap();
-        assert_eq!(read_spheres(&file, None), Ok(Points::F32(spheres.to_vec())));
+        assert_eq!(read_spheres(&file, None), Ok(SphereArray::F32(spheres.to_vec())));
         assert_eq!(npyz::NpyFile::new(&file[..]).unwrap().shape(), [spheres.len() as u64, 4]);
         let mut file = Vec::new();
         write::raw::write_spheres(spheres, &mut file).unwrap();
         assert_eq!(file.len(), spheres.len() * 16);
-        assert_eq!(raw::read_spheres(&file), Ok(Points::F32(spheres.to_vec())));
+        assert_eq!(raw::read_spheres(&file), Ok(SphereArray::F32(spheres.to_vec())));
     }
 }
 
@@ -78,7 +78,7 @@ fn long_arrays() {
     let spheres: Vec<[f32; 4]> = (0..200_001).map(|i| [0.0, 1.0, 2.0, i as f32]).collect();
     let mut file = Vec::new();
     write_spheres(&spheres, &mut file).unwrap();
-    assert_eq!(read_spheres(&file, None), Ok(Points::F32(spheres)));
+    assert_eq!(read_spheres(&file, None), Ok(SphereArray::F32(spheres)));
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn archives() {
         for names in [&["arr_0.npy"][..], &["spheres.npy", "b.npy"], &["a.txt", "positions.npy"]] {
             let entries: Vec<_> = names.iter().map(|name| (*name, &file[..])).collect();
             let points = npz::read_spheres(&zip(&entries, deflated), None);
-            assert_eq!(points, Ok(Points::F32(ROWS.to_vec())), "{names:?} {deflated}");
+            assert_eq!(points, Ok(SphereArray::F32(ROWS.to_vec())), "{names:?} {deflated}");
         }
     }
     let error = |archive: &[u8]| npz::read_spheres(archive, None).unwrap_err().to_string();

@@ -64,7 +64,7 @@ fn layers_of_one_sphere() {
 }
 
 #[test]
-fn from_inside_the_far_wall_is_seen() {
+fn from_inside_the_far_side_is_seen() {
     let scene = Scene::new(&[Sphere::new([0.0; 3], 3.0, LinearRgb::WHITE)]).unwrap();
     let pose = Pose::looking_at([0.0, 0.0, 1.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();

@@ -38,7 +38,7 @@ pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording 
             scene_max: [1e3; 3],
         },
         film,
-        look: settings.primary().unwrap(),
+        primary: settings.primary().unwrap(),
         pixels: pixels.collect(),
         image,
         rendered: Rendered::None,

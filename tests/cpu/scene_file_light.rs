@@ -7,7 +7,7 @@ use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
 use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::{DataSpheres, IntegratorKind, SceneFile};
-use pinhole::{Finish, Material, PixelFilter, Points, Scene};
+use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
 
 const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
 
@@ -48,8 +48,8 @@ fn studio(text: &str) -> Studio {
     lighting(text).studio_parameters().unwrap().clone()
 }
 
-fn first_finish(text: &str) -> Finish {
-    scene(&parse(text)).finish(0)
+fn first_surface(text: &str) -> SurfaceProperties {
+    scene(&parse(text)).surface(0)
 }
 
 #[test]
@@ -118,12 +118,12 @@ fn what_is_left_out_is_as_without_a_file() {
 #[test]
 fn materials_by_name_and_opacity_over_them() {
     let sphere = |material: &str, keys: &str| {
-        first_finish(&format!(
+        first_surface(&format!(
             "[materials.'it is']\n{material}\n{SPHERE}material = 'it is'\n{keys}"
         ))
     };
-    let of = |material| Finish { material, opacity: 1.0 };
-    assert_eq!(sphere("kind = 'lambert'", ""), Finish::default());
+    let of = |material| SurfaceProperties { material, opacity: 1.0 };
+    assert_eq!(sphere("kind = 'lambert'", ""), SurfaceProperties::default());
     assert_eq!(
         sphere("kind = 'lambert'\nspecular = 0.5\nroughness = 0.1", ""),
         of(Material::Lambert { specular: 0.5, roughness: 0.1 })
@@ -144,7 +144,7 @@ fn materials_by_name_and_opacity_over_them() {
 
 /// Four atoms O, H, C1, O in two chains, one of which is water.
 fn molecule() -> Loaded {
-    let mut loaded = Loaded::new(Points::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
+    let mut loaded = Loaded::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1.0]; 4]));
     loaded.colors = Some(vec![LinearRgb::WHITE; 4]);
     let column = |name: &str, names: &[&str], indices: [u32; 4]| {
         let names = names.iter().map(|name| (*name).to_owned()).collect();
@@ -190,7 +190,8 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
         assert_eq!(apply(text).unwrap_err().to_string(), wanted);
     }
     let plain = parse("data = 'a.npy'\nleave_out = { chain = ['A'] }\n");
-    let refused = plain.data().unwrap().apply(Loaded::new(Points::F32(Vec::new()))).unwrap_err();
+    let refused =
+        plain.data().unwrap().apply(Loaded::new(SphereArray::F32(Vec::new()))).unwrap_err();
     assert_eq!(
         refused.to_string(),
         "`leave_out` concerns atoms (.xyz, .extxyz, .pdb, .ent); drop it"
@@ -208,25 +209,26 @@ fn data_has_the_look_of_all_or_of_its_species() {
     let (atoms, notes) = data.apply(molecule()).unwrap();
     assert_eq!(notes, ["`[elements.X]`: there is no such atom in a.xyz"]);
     let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
-    let metal = Finish { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
+    let metal =
+        SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
     let radii: Vec<f64> = atoms.iter().map(|atom| atom.radius).collect();
     assert_eq!(radii, [3.0, 1.0, 1.0, 3.0]);
     assert_eq!(atoms[0].color, LinearRgb::from_srgb8([255, 0, 0]));
-    assert_eq!((atoms[1].color, atoms[1].finish), (LinearRgb::WHITE, metal));
-    assert_eq!(atoms[0].finish, metal);
-    assert!(matches!(atoms[2].finish.material, Material::Dielectric { .. }));
-    assert_eq!(atoms[2].finish.opacity, 0.75);
+    assert_eq!((atoms[1].color, atoms[1].surface), (LinearRgb::WHITE, metal));
+    assert_eq!(atoms[0].surface, metal);
+    assert!(matches!(atoms[2].surface.material, Material::Dielectric { .. }));
+    assert_eq!(atoms[2].surface.opacity, 0.75);
 }
 
 #[test]
 fn arrays_have_the_look_of_all() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
-        let points = Points::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
-        let scene = file.scene_with_points(points, LinearRgb::WHITE).unwrap();
+        let points = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
+        let scene = file.scene_with_array(points, LinearRgb::WHITE).unwrap();
         let last = scene.len() as u32 - 1;
-        assert_eq!(scene.finish(last).opacity, 0.5);
-        assert_eq!(scene.finish(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });
+        assert_eq!(scene.surface(last).opacity, 0.5);
+        assert_eq!(scene.surface(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });
     }
 }
 

@@ -26,7 +26,7 @@ fn dot(a: &[Exact; 3], b: &[Exact; 3]) -> Exact {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// The ray's parameter at the first point of a sphere in front of its origin, from inside at the far wall.
+/// The ray's parameter at the first point of a sphere in front of its origin, from inside at the far side.
 fn exact_hit(origin: &[Exact; 3], direction: &[Exact; 3], sphere: [f32; 4]) -> Option<Exact> {
     let [x, y, z, radius] = sphere.map(exact);
     let l = [&x - &origin[0], &y - &origin[1], &z - &origin[2]];

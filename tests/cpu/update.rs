@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use pinhole::scene::{Centers, NewColors, SceneUpdate, UpdateError};
-use pinhole::{Appearance, Colors, LinearRgb, Points, Scene};
+use pinhole::{Appearance, Colors, LinearRgb, Scene, SphereArray};
 
 use crate::support::appearances::kinds;
 
@@ -14,7 +14,7 @@ fn parts(scene: &Scene) -> (Vec<[f32; 4]>, Appearance, String) {
 
 /// The same scene, made of its numbers.
 fn fresh(scene: &Scene) -> Scene {
-    let spheres = Points::F32(scene.spheres().to_vec());
+    let spheres = SphereArray::F32(scene.spheres().to_vec());
     Scene::from_parts(spheres, scene.appearance().clone()).unwrap()
 }
 
@@ -85,7 +85,7 @@ fn centers_are_in_the_world() {
 fn what_is_refused_is_named_and_changes_nothing() {
     let palette = vec![LinearRgb::WHITE; 3];
     let colors = Colors::Palette { palette, indices: vec![0; 10] };
-    let spheres = Points::F32(vec![[0.0, 0.0, 0.0, 0.5]; 10]);
+    let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 0.5]; 10]);
     let mut scene = Scene::from_parts(spheres, Appearance::new(colors)).unwrap();
     let before = parts(&scene);
     let centers = [[1.0_f32; 3]; 4];

@@ -1,7 +1,7 @@
 //! The checker by itself: it accuses no device that does what WGSL lets it do, and overlooks nothing that is
 //! planted in a recording.
 
-use pinhole::render::PrimaryLook;
+use pinhole::render::PrimarySettings;
 use std::f64::consts::TAU;
 
 use pinhole::camera::film::YAxis;
@@ -55,7 +55,7 @@ pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording
             scene_max: narrow(high),
         },
         film,
-        look: PrimaryLook::default(),
+        primary: PrimarySettings::default(),
         pixels: Vec::new(),
         image: Image::new(0, 0, LayerSet::DATA).unwrap(),
         rendered: Rendered::None,

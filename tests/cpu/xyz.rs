@@ -15,7 +15,7 @@ struct Atoms {
 }
 
 fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
-    let xyz::Frame { spheres, colors, species, unknown_species } = xyz::read(bytes, frame)?;
+    let xyz::Atoms { spheres, colors, species, unknown_species } = xyz::read(bytes, frame)?;
     assert_eq!((spheres.len(), spheres.len()), (colors.len(), species.indices.len()));
     let sphere = |(&[x, y, z, radius], color): (&[f64; 4], &LinearRgb)| {
         Sphere::new([x, y, z], radius, *color)

@@ -193,21 +193,21 @@ fn ask_environment(
     questions: &[[u32; 4]],
 ) -> Vec<[f64; 4]> {
     let source = "
-struct Look { environment_size: vec2u, environment_rotation: vec2f, samples: u32 }
-@group(0) @binding(2) var<storage, read> look: Look;
+struct Lighting { environment_size: vec2u, environment_rotation: vec2f, samples: u32 }
+@group(0) @binding(2) var<storage, read> lighting: Lighting;
 fn answer(q: vec4u) -> vec4u {
     let sampled = sample_environment(q.xy);
     let d = bitcast<vec3f>(q.xyz);
     let found = vec4f(environment_radiance(d), environment_density(d));
-    return bitcast<vec4u>(select(found, vec4f(sampled.direction, sampled.density), look.samples != 0u));
+    return bitcast<vec4u>(select(found, vec4f(sampled.direction, sampled.density), lighting.samples != 0u));
 }";
     let [cosine, sine] = rotation.map(f32::to_bits);
-    let look = [map.width(), map.height(), cosine, sine, u32::from(samples), 0];
+    let lighting = [map.width(), map.height(), cosine, sine, u32::from(samples), 0];
     let texels: Vec<u32> =
         map.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.0].map(f32::to_bits)).collect();
     let shares: Vec<u32> =
         map.rows().iter().chain(map.columns()).map(|share| share.to_bits()).collect();
-    let tables = [(0, 2, &look[..]), (3, 0, &texels), (3, 1, &shares[..])];
+    let tables = [(0, 2, &lighting[..]), (3, 0, &texels), (3, 1, &shares[..])];
     let parts = [ENVIRONMENT, TURNS, INVERSE, FENCE, RUNTIME_ZERO, source];
     let answers = compute::answers(headless, &parts, &tables, questions);
     answers.into_iter().map(numbers).collect()

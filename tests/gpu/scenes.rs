@@ -114,7 +114,7 @@ fn inside_looking_out() -> View {
     view(&spheres, pinhole([6.0, 2.0, -1.0], [12.0, 4.0, -2.0], 90.0, 1.0), (64, 64), headlight())
 }
 
-/// The eye lies exactly on the wall, also in f32: the near wall is behind, or not at all.
+/// The eye lies exactly on the wall, also in f32: the near side is behind, or not at all.
 fn on_the_wall(look_at: [f64; 3]) -> View {
     let camera = pinhole([2.0, 0.0, 0.0], look_at, 90.0, 1.0);
     view(&[sphere([0.0; 3], 2.0)], camera, (64, 64), headlight())

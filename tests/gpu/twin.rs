@@ -8,7 +8,7 @@ use pinhole::camera::film::YAxis;
 use pinhole::glam::{UVec2, Vec2, Vec3};
 use pinhole::gpu::Decision;
 use pinhole::image::NO_ID;
-use pinhole::render::PrimaryLook;
+use pinhole::render::PrimarySettings;
 use pinhole::verify::{Recording, TracedRay, UploadedView};
 use pinhole::{Film, LayerSet, LinearRgb, Shading};
 
@@ -106,8 +106,8 @@ fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
 }
 
 /// `surface_color` of shaders/shading.wgsl.
-fn color(look: &PrimaryLook, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
-    if look.shading == Shading::Flat {
+fn color(primary: &PrimarySettings, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
+    if primary.shading == Shading::Flat {
         return of.to_array();
     }
     let cosine = Vec3::from(normal).dot(Vec3::from(ray.direction)).abs();
@@ -140,7 +140,7 @@ fn check(view: &View) -> Result<(), Failed> {
 }
 
 fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> bool {
-    let Recording { camera, uploaded, film, look, pixels, image, rendered: _ } = recording;
+    let Recording { camera, uploaded, film, primary, pixels, image, rendered: _ } = recording;
     let index = (pixel.y * film.width() + pixel.x) as usize;
     let (id, depth) = (image.id().unwrap()[index], image.depth().unwrap()[index]);
     let traced = &pixels[index];
@@ -160,7 +160,7 @@ fn is_same(view: &View, accel: &Accel, recording: &Recording, pixel: UVec2) -> b
         && (traced.id, id) == (nearest.id, nearest.id)
         && traced.t.to_bits() == nearest.t.to_bits()
         && depth.to_bits() == (ray.distance + nearest.t).to_bits()
-        && bits(image.color()[index]) == bits(color(look, view.scene.color(id), normal, &ray))
+        && bits(image.color()[index]) == bits(color(primary, view.scene.color(id), normal, &ray))
 }
 
 fn bits(v: [f32; 3]) -> [u32; 3] {

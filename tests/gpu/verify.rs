@@ -187,7 +187,7 @@ const INPUT_FAULTS: &[(&str, Spoil)] = &[
     ("another_shading", |view, record, _| {
         let asked = view.settings.primary().unwrap();
         view.settings.integrator = Integrator::Primary(Shading::Flat);
-        Recording { look: asked, ..record(view) }
+        Recording { primary: asked, ..record(view) }
     }),
     ("y_the_other_way_round", |view, record, _| {
         let asked = view.film;

@@ -3,7 +3,7 @@
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
 };
-use pinhole::{Appearance, Film, LinearRgb, Points, Scene, Shading, Sphere};
+use pinhole::{Appearance, Film, LinearRgb, Scene, Shading, Sphere, SphereArray};
 
 use crate::support::spheres;
 use crate::support::{View, shaded};
@@ -52,7 +52,7 @@ pub(crate) fn own_colors() -> View {
     let view = balls();
     let colors = (0..view.scene.len()).map(|i| [i as u8, (i / 2) as u8, (i / 3) as u8, 255]);
     let appearance = Appearance::from(colors.collect::<Vec<_>>());
-    let spheres = Points::F32(view.scene.spheres().to_vec());
+    let spheres = SphereArray::F32(view.scene.spheres().to_vec());
     View { scene: Scene::from_parts(spheres, appearance).unwrap(), ..view }
 }
 

@@ -3,7 +3,8 @@
 use pinhole::render::Sampling;
 use pinhole::scene::material::Material;
 use pinhole::{
-    Appearance, ColorMap, Colors, Finish, LinearRgb, Points, RenderSettings, Scene, Sphere,
+    Appearance, ColorMap, Colors, LinearRgb, RenderSettings, Scene, Sphere, SphereArray,
+    SurfaceProperties,
 };
 
 /// How many spheres each has.
@@ -27,19 +28,19 @@ pub(crate) fn settings() -> [RenderSettings; 3] {
     ]
 }
 
-/// Every kind of colours, with one finish and with several.
+/// Every kind of colours, with one surface and with several.
 pub(crate) fn kinds() -> Vec<Kind> {
     let mut kinds = Vec::new();
     for (name, colors) in colors() {
         let appearance = || Appearance::new(colors.clone());
         let indices = (0..COUNT).map(|id| id * 7 % 5).collect();
-        for (finish, appearance) in [
-            ("of_the_usual_finish", appearance()),
-            ("of_one_finish", appearance().with_finish(finishes()[1])),
-            ("of_tinted_glass", appearance().with_finish(finishes()[3])),
-            ("of_several_finishes", appearance().with_finishes(finishes(), indices)),
+        for (surface, appearance) in [
+            ("of_the_usual_surface", appearance()),
+            ("of_one_surface", appearance().with_surface(surfaces()[1])),
+            ("of_tinted_glass", appearance().with_surface(surfaces()[3])),
+            ("of_several_surfaces", appearance().with_surfaces(surfaces(), indices)),
         ] {
-            kinds.push(kind(format!("{name}_{finish}"), appearance));
+            kinds.push(kind(format!("{name}_{surface}"), appearance));
         }
     }
     kinds
@@ -55,16 +56,20 @@ fn kind(name: String, appearance: Appearance) -> Kind {
                 f64::from(*radius),
                 appearance.color(id).unwrap(),
             );
-            let place = appearance.finish_indices().map_or(0, |indices| indices[id as usize]);
-            sphere.finish = appearance.finishes()[place as usize];
+            let place = appearance.surface_indices().map_or(0, |indices| indices[id as usize]);
+            sphere.surface = appearance.surfaces()[place as usize];
             if let Colors::Rgba8(colors) = appearance.colors() {
-                sphere.finish.opacity *= f32::from(colors[id as usize][3]) / 255.0;
+                sphere.surface.opacity *= f32::from(colors[id as usize][3]) / 255.0;
             }
             sphere
         })
         .collect();
     let expected = Scene::new(&one_by_one).unwrap();
-    Kind { name, scene: Scene::from_parts(Points::F32(spheres), appearance).unwrap(), expected }
+    Kind {
+        name,
+        scene: Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap(),
+        expected,
+    }
 }
 
 fn spheres() -> Vec<[f32; 4]> {
@@ -93,11 +98,11 @@ fn colors() -> Vec<(&'static str, Colors)> {
     ]
 }
 
-fn finishes() -> Vec<Finish> {
-    let opaque = |material| Finish { material, opacity: 1.0 };
+fn surfaces() -> Vec<SurfaceProperties> {
+    let opaque = |material| SurfaceProperties { material, opacity: 1.0 };
     vec![
         opaque(Material::Lambert { specular: 0.3, roughness: 0.2 }),
-        Finish { material: Material::default(), opacity: 0.6 },
+        SurfaceProperties { material: Material::default(), opacity: 0.6 },
         opaque(Material::Conductor { roughness: 0.3 }),
         opaque(Material::Dielectric { ior: 1.4, roughness: 0.0, attenuation_distance: Some(0.7) }),
         opaque(Material::Emissive { strength: 2.0 }),

@@ -13,8 +13,8 @@ use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
 use pinhole::{
-    Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, Points, RenderSettings,
-    Scene, Sphere,
+    Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene,
+    Sphere, SphereArray,
 };
 
 /// A scene, how it is lit and seen, and what there is in it, in words.
@@ -136,11 +136,11 @@ impl Random {
                 Colors::Scalars { values, map }
             }
         };
-        let finishes = spheres.iter().map(|sphere| sphere.finish).collect();
+        let surfaces = spheres.iter().map(|sphere| sphere.surface).collect();
         let appearance =
-            Appearance::new(colors).with_finishes(finishes, (0..count as u32).collect());
+            Appearance::new(colors).with_surfaces(surfaces, (0..count as u32).collect());
         let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
-        Scene::from_parts(Points::F64(points.collect()), appearance).unwrap()
+        Scene::from_parts(SphereArray::F64(points.collect()), appearance).unwrap()
     }
 
     fn spheres(&mut self) -> Vec<Sphere> {
@@ -160,7 +160,7 @@ impl Random {
                 self.color(1.0),
             );
             if !spheres.is_empty() && self.chance(coincident) {
-                // In the place of another: the same, of another finish, in it, or around it.
+                // In the place of another: the same, of another surface, in it, or around it.
                 let other = spheres[self.0.usize(0..spheres.len())];
                 match self.0.u32(0..4) {
                     0 => {

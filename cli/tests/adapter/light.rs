@@ -1,4 +1,4 @@
-//! Lit pictures of the program on an adapter: patience, signals, plans.
+//! Lit pictures of the program on an adapter: when to stop, signals, plans.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -30,7 +30,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
             scene_max: [11.0; 3],
         },
         film,
-        look: settings.primary().unwrap(),
+        primary: settings.primary().unwrap(),
         pixels: vec![TracedPixel { ray: None, t: 1e30, id: u32::MAX }; (width * height) as usize],
         image: cpu::render(&scene, &View::new(&camera, film), &settings, LayerSet::DATA).unwrap(),
         rendered: Rendered::None,
@@ -58,7 +58,7 @@ fn folder() -> Folder {
     std::fs::write(folder.path("one"), bytes(&nothing([1, 1]))).unwrap();
     // White, where black was asked for.
     let mut wrong = nothing([30, 20]);
-    wrong.recording.look.background = LinearRgb::BLACK;
+    wrong.recording.primary.background = LinearRgb::BLACK;
     std::fs::write(folder.path("wrong"), bytes(&wrong)).unwrap();
     let mut other_view = nothing([3, 2]);
     other_view.recording.uploaded.right[0] *= 1.5;

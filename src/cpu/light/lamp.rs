@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::maps::{Frame, cone, cone_of_sphere, versine};
-use super::stage::rgb;
+use super::context::rgb;
+use super::maps::{TangentFrame, cone, cone_of_sphere, versine};
 use crate::light::LightKind;
 
 /// Light that arrives at a point.
@@ -24,7 +24,7 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
         LightKind::Head { .. } => None,
         LightKind::Directional { toward, strength, angular_radius } => {
             let direction = if angular_radius > 0.0 {
-                Frame::around(toward).to_scene(cone(u, versine(angular_radius)))
+                TangentFrame::around(toward).to_scene(cone(u, versine(angular_radius)))
             } else {
                 toward
             };
@@ -47,13 +47,15 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
             let to_center = center - point;
             let distance = to_center.length();
             let (direction, k, is_outside) = match cone_of_sphere(radius, distance) {
-                Some(k) => (Frame::around(to_center / distance).to_scene(cone(u, k)), k, true),
+                Some(k) => {
+                    (TangentFrame::around(to_center / distance).to_scene(cone(u, k)), k, true)
+                }
                 None => (cone(u, 2.0), 2.0, false),
             };
             Some(Arrival {
                 direction,
                 strength: rgb(radiance) * (2.0 * k),
-                distance: wall(to_center, radius, direction, is_outside),
+                distance: distance_to_sphere(to_center, radius, direction, is_outside),
             })
         }
     }
@@ -86,9 +88,14 @@ fn sun_factor(angular_radius: f64) -> f64 {
     }
 }
 
-/// The distance to a sphere's near wall, or to its far wall from inside, in a direction that meets it: where rounding
+/// The distance to a sphere's near side, or to its far side from inside, in a direction that meets it: where rounding
 /// says that it does not, to the foot point.
-pub(super) fn wall(to_center: DVec3, radius: f64, direction: DVec3, is_outside: bool) -> f64 {
+pub(super) fn distance_to_sphere(
+    to_center: DVec3,
+    radius: f64,
+    direction: DVec3,
+    is_outside: bool,
+) -> f64 {
     let b = to_center.dot(direction);
     let foot = to_center - b * direction;
     let half_chord = (radius * radius - foot.length_squared()).max(0.0).sqrt();

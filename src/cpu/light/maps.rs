@@ -15,9 +15,9 @@ pub(super) fn disk(u: [u32; 2]) -> DVec2 {
 /// T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani and R. Villemin, "Building an Orthonormal
 /// Basis, Revisited", JCGT 6(1), 2017.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame([DVec3; 3]);
+pub(super) struct TangentFrame([DVec3; 3]);
 
-impl Frame {
+impl TangentFrame {
     pub(super) fn around(n: DVec3) -> Self {
         let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
         let a = -1.0 / (s + n.z);
@@ -79,8 +79,8 @@ mod tests {
     fn frames_are_right_handed_and_turn_back() {
         for u in grid() {
             let n = cone(u, 2.0);
-            let frame = Frame::around(n);
-            let Frame([x, y, z]) = frame;
+            let frame = TangentFrame::around(n);
+            let TangentFrame([x, y, z]) = frame;
             assert!((x.cross(y) - z).length() < 1e-14, "{n}");
             assert!((x.length() - 1.0).abs() < 1e-14 && (y.length() - 1.0).abs() < 1e-14, "{n}");
             let v = DVec3::new(0.1, -0.7, 0.3);

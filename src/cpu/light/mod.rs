@@ -5,34 +5,34 @@
 
 use glam::DVec3;
 
+use self::context::{LightingContext, luminance};
 use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
-use self::stage::{Stage, luminance};
 use self::studio::follow as follow_in_studio;
 use super::{denoise, for_each_pixel, primary_pixel, render_primary};
 use crate::camera::View;
 use crate::geometry::math::wide;
 use crate::image::outline;
 use crate::image::{Averages, Image, ImageTooLarge, LayerSet, NO_ID, Pixel};
-use crate::render::{Integrator, PrimaryLook, RenderSettings, SettingsError};
+use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
 use crate::scene::Scene;
 
 mod bsdf;
-mod flight;
+mod context;
 mod lamp;
 mod maps;
 mod path;
 mod sample;
 mod source;
-mod stage;
 mod studio;
+mod surface_ray;
 
 pub use sample::Sample;
 
 /// A picture that is ready to be rendered, as a whole or sample by sample.
 #[derive(Debug)]
 pub struct SampledPicture<'a> {
-    stage: Stage<'a>,
+    context: LightingContext<'a>,
     view: View<'a>,
     lens: Lens<'a>,
 }
@@ -50,7 +50,7 @@ impl<'a> SampledPicture<'a> {
         settings.check(scene)?;
         let offsets = settings.sampling.filter.offset_table();
         Ok(Self {
-            stage: Stage::new(scene, view.camera, settings),
+            context: LightingContext::new(scene, view.camera, settings),
             view: *view,
             lens: Lens::new(view, offsets, scene.origin()),
         })
@@ -59,29 +59,27 @@ impl<'a> SampledPicture<'a> {
     /// One sample of a pixel, which is column and row. By primary rays, all samples of a pixel are the same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
-        let RenderSettings { integrator, sampling, is_transparent, .. } = self.stage.settings;
+        let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
         let address = Address::new(pixel, sample, sampling.seed);
-        let flight = || self.lens.flight(pixel, address);
+        let surface_ray = || self.lens.surface_ray(pixel, address);
         let found = match integrator {
             Integrator::Primary(_) => Some(self.primary(pixel)),
-            Integrator::Studio(studio) => {
-                flight().map(|flight| follow_in_studio(&self.stage, studio, flight, address))
-            }
-            Integrator::Path(tracing) => {
-                flight().map(|flight| follow_path(&self.stage, tracing, flight, address))
-            }
+            Integrator::Studio(studio) => surface_ray()
+                .map(|surface_ray| follow_in_studio(&self.context, studio, surface_ray, address)),
+            Integrator::Path(tracing) => surface_ray()
+                .map(|surface_ray| follow_path(&self.context, tracing, surface_ray, address)),
         };
         let nothing = || {
-            let color = if *is_transparent { DVec3::ZERO } else { self.stage.background() };
+            let color = if *is_transparent { DVec3::ZERO } else { self.context.background() };
             Found { color, ..Found::default() }
         };
         found.unwrap_or_else(nothing).into()
     }
 
     fn primary(&self, pixel: [u32; 2]) -> Found {
-        let look = self.stage.settings.primary().unwrap_or_default();
+        let primary = self.context.settings.primary().unwrap_or_default();
         let Pixel { color, albedo, id, .. } =
-            primary_pixel(self.stage.scene, &self.view, &look, pixel);
+            primary_pixel(self.context.scene, &self.view, &primary, pixel);
         let alpha = if id == NO_ID { 0.0 } else { 1.0 };
         Found { color: wide(color), alpha, albedo: wide(albedo) }
     }
@@ -91,9 +89,9 @@ impl<'a> SampledPicture<'a> {
     /// # Errors
     /// If the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
-        let settings = self.stage.settings;
-        if let Some(look) = settings.primary() {
-            return render_primary(self.stage.scene, &self.view, &look, layers);
+        let settings = self.context.settings;
+        if let Some(primary) = settings.primary() {
+            return render_primary(self.context.scene, &self.view, &primary, layers);
         }
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
@@ -113,7 +111,7 @@ impl<'a> SampledPicture<'a> {
     }
 
     fn averages(&self, pixel: [u32; 2]) -> Averages {
-        let count = self.stage.settings.sampling.samples;
+        let count = self.context.settings.sampling.samples;
         let (mut color, mut albedo) = (DVec3::ZERO, DVec3::ZERO);
         let (mut alpha, mut light, mut square) = (0.0, 0.0, 0.0);
         for sample in 0..count {
@@ -138,7 +136,7 @@ impl<'a> SampledPicture<'a> {
 
     /// What the ray through the pixel's centre says, without light.
     fn data(&self, pixel: [u32; 2]) -> Pixel {
-        primary_pixel(self.stage.scene, &self.view, &PrimaryLook::default(), pixel)
+        primary_pixel(self.context.scene, &self.view, &PrimarySettings::default(), pixel)
     }
 }
 

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::flight::{Flight, Hiding, Meeting, Surface, is_occluded, nearest};
-use super::maps::Frame;
+use super::context::{LightingContext, rgb};
+use super::maps::TangentFrame;
 use super::sample::{Address, Found};
 use super::source::{Sought, SoughtLight};
-use super::stage::{Stage, rgb};
+use super::surface_ray::{Hiding, Interaction, Surface, SurfaceRay, is_occluded, nearest};
 use crate::camera::sampling::unit;
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
@@ -37,16 +37,16 @@ enum Origin {
 
 /// What a ray from the camera brings.
 pub(super) fn follow(
-    stage: &Stage<'_>,
+    context: &LightingContext<'_>,
     tracing: &PathTracing,
-    flight: Flight,
+    surface_ray: SurfaceRay,
     address: Address,
 ) -> Found {
     let mut path = Path {
-        stage,
+        context,
         tracing,
         address,
-        flight,
+        surface_ray,
         found: Found::default(),
         throughput: DVec3::ONE,
         absorption: DVec3::ZERO,
@@ -62,10 +62,10 @@ pub(super) fn follow(
 }
 
 struct Path<'a> {
-    stage: &'a Stage<'a>,
+    context: &'a LightingContext<'a>,
     tracing: &'a PathTracing,
     address: Address,
-    flight: Flight,
+    surface_ray: SurfaceRay,
     found: Found,
     throughput: DVec3,
     /// Of what the ray goes through, per length.
@@ -81,40 +81,40 @@ impl Path<'_> {
 
     /// Goes on to surface number `v` and beyond; `None` at the end.
     fn step(&mut self, v: u32) -> Option<()> {
-        let stage = self.stage;
-        let Some(meeting) = nearest(stage, &self.flight) else {
+        let context = self.context;
+        let Some(interaction) = nearest(context, &self.surface_ray) else {
             self.miss();
             return None;
         };
-        self.throughput *= (-self.absorption * meeting.distance).exp();
+        self.throughput *= (-self.absorption * interaction.distance).exp();
         let [choice, pass] = self.pair(v, Purpose::Choice).map(unit);
-        if pass >= stage.opacity(meeting.surface) {
-            self.pass(&meeting);
+        if pass >= context.opacity(interaction.surface) {
+            self.pass(&interaction);
             return Some(());
         }
         if !self.has_scattered {
             self.found.alpha = 1.0;
-            self.found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
+            self.found.albedo = context.color(interaction.surface).min(DVec3::ONE);
         }
-        if let Some(emission) = stage.emission(meeting.surface) {
-            let Surface::Sphere(id) = meeting.surface else { return None };
-            let weight = self.weight(|point| self.stage.density_at_emitter(point, id));
+        if let Some(emission) = context.emission(interaction.surface) {
+            let Surface::Sphere(id) = interaction.surface else { return None };
+            let weight = self.weight(|point| self.context.density_at_emitter(point, id));
             self.found.color += self.throughput * emission * weight;
             return None;
         }
         if v == self.tracing.max_depth {
             return None;
         }
-        let frame = Frame::around(meeting.normal);
-        let out = frame.to_local(-self.flight.ray.direction);
-        let bsdf = Bsdf::of(stage, &meeting, out)?;
+        let frame = TangentFrame::around(interaction.normal);
+        let out = frame.to_local(-self.surface_ray.ray.direction);
+        let bsdf = Bsdf::of(context, &interaction, out)?;
         if bsdf.seeks_light() {
             if !self.has_scattered {
                 self.light_from_the_eye(&bsdf, out);
             }
-            self.seek_light(v, &meeting, &frame, &bsdf);
+            self.seek_light(v, &interaction, &frame, &bsdf);
         }
-        self.scatter(v, &meeting, &frame, &bsdf, choice)?;
+        self.scatter(v, &interaction, &frame, &bsdf, choice)?;
         if v >= self.tracing.roulette_from {
             let chance = self.throughput.max_element().min(0.95);
             if unit(self.pair(v, Purpose::Roulette)[0]) >= chance {
@@ -138,16 +138,16 @@ impl Path<'_> {
     }
 
     fn miss(&mut self) {
-        let Self { stage, has_scattered, .. } = *self;
-        let is_background = !has_scattered && !stage.settings.sky.is_visible;
-        let radiance = if !has_scattered && stage.settings.is_transparent {
+        let Self { context, has_scattered, .. } = *self;
+        let is_background = !has_scattered && !context.settings.sky.is_visible;
+        let radiance = if !has_scattered && context.settings.is_transparent {
             DVec3::ZERO
         } else if is_background {
-            stage.background()
+            context.background()
         } else {
-            let direction = self.flight.ray.direction;
-            let (sky, density) = stage.sky(direction);
-            let suns = stage.sources.suns(direction);
+            let direction = self.surface_ray.ray.direction;
+            let (sky, density) = context.sky(direction);
+            let suns = context.sources.suns(direction);
             sky * self.weight(|_| density)
                 + suns.map(|(sun, density)| sun * self.weight(|_| Some(density))).sum::<DVec3>()
         };
@@ -155,21 +155,21 @@ impl Path<'_> {
     }
 
     /// Goes through a surface as if it were not there.
-    fn pass(&mut self, meeting: &Meeting) {
-        self.flight.ray.origin = meeting.point;
-        self.flight.start = meeting.other_side();
+    fn pass(&mut self, interaction: &Interaction) {
+        self.surface_ray.ray.origin = interaction.point;
+        self.surface_ray.start = interaction.other_side();
         self.origin = Origin::Only;
-        if !meeting.is_outside && self.dielectric(meeting).is_some() {
+        if !interaction.is_outside && self.dielectric(interaction).is_some() {
             self.absorption = DVec3::ZERO;
         }
     }
 
     /// The absorption within a sphere, if it is glass.
-    fn dielectric(&self, meeting: &Meeting) -> Option<DVec3> {
-        let Surface::Sphere(id) = meeting.surface else { return None };
-        match self.stage.scene.finish(id).material {
+    fn dielectric(&self, interaction: &Interaction) -> Option<DVec3> {
+        let Surface::Sphere(id) = interaction.surface else { return None };
+        match self.context.scene.surface(id).material {
             Material::Dielectric { attenuation_distance, .. } => {
-                let color = self.stage.color(meeting.surface).max(DVec3::splat(1e-4));
+                let color = self.context.color(interaction.surface).max(DVec3::splat(1e-4));
                 Some(attenuation_distance.map_or(DVec3::ZERO, |d| -color.ln() / f64::from(d)))
             }
             _ => None,
@@ -178,7 +178,7 @@ impl Path<'_> {
 
     fn light_from_the_eye(&mut self, bsdf: &Bsdf, out: DVec3) {
         let Some(response) = bsdf.response(out) else { return };
-        for light in &self.stage.lights {
+        for light in &self.context.lights {
             if let LightKind::Head { strength } = light {
                 let light = PI * rgb(*strength) * response.value * out.z;
                 self.found.color += self.throughput * light;
@@ -186,9 +186,9 @@ impl Path<'_> {
         }
     }
 
-    fn seek_light(&mut self, v: u32, meeting: &Meeting, frame: &Frame, bsdf: &Bsdf) {
+    fn seek_light(&mut self, v: u32, interaction: &Interaction, frame: &TangentFrame, bsdf: &Bsdf) {
         let (choice, u) = (self.pair(v, Purpose::Source), self.pair(v, Purpose::Light));
-        let Some(sought) = self.stage.seek(meeting.point, choice, u) else { return };
+        let Some(sought) = self.context.seek(interaction.point, choice, u) else { return };
         let Sought { direction, distance, sphere, light } = sought;
         let into = frame.to_local(direction);
         let Some(response) = bsdf.response(into) else { return };
@@ -200,9 +200,10 @@ impl Path<'_> {
             },
         };
         let light = self.throughput * light * response.value * into.z;
-        let ray = Ray { origin: meeting.point, direction };
-        let flight = Flight { ray, start: meeting.this_side() };
-        if light != DVec3::ZERO && !is_occluded(self.stage, &flight, distance, Hiding::All, sphere)
+        let ray = Ray { origin: interaction.point, direction };
+        let surface_ray = SurfaceRay { ray, start: interaction.this_side() };
+        if light != DVec3::ZERO
+            && !is_occluded(self.context, &surface_ray, distance, Hiding::All, sphere)
         {
             self.found.color += light;
         }
@@ -211,8 +212,8 @@ impl Path<'_> {
     fn scatter(
         &mut self,
         v: u32,
-        meeting: &Meeting,
-        frame: &Frame,
+        interaction: &Interaction,
+        frame: &TangentFrame,
         bsdf: &Bsdf,
         choice: f64,
     ) -> Option<()> {
@@ -222,13 +223,13 @@ impl Path<'_> {
             return None;
         }
         let crosses = scattered.direction.z < 0.0;
-        if let Some(absorption) = self.dielectric(meeting).filter(|_| crosses) {
-            self.absorption = if meeting.is_outside { absorption } else { DVec3::ZERO };
+        if let Some(absorption) = self.dielectric(interaction).filter(|_| crosses) {
+            self.absorption = if interaction.is_outside { absorption } else { DVec3::ZERO };
         }
-        let point = meeting.point;
+        let point = interaction.point;
         let ray = Ray { origin: point, direction: frame.to_scene(scattered.direction) };
-        let start = if crosses { meeting.other_side() } else { meeting.this_side() };
-        self.flight = Flight { ray, start };
+        let start = if crosses { interaction.other_side() } else { interaction.this_side() };
+        self.surface_ray = SurfaceRay { ray, start };
         self.origin =
             scattered.density.map_or(Origin::Only, |density| Origin::Scattered { point, density });
         self.has_scattered = true;

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::flight::{Flight, Start};
+use super::surface_ray::{Start, SurfaceRay};
 use crate::camera::View;
 use crate::camera::filter;
 use crate::camera::sampling::{self, pixel_seed};
@@ -72,7 +72,7 @@ impl<'a> Lens<'a> {
     }
 
     /// The ray of a sample, in the scene's frame; `None` where the camera sees nothing.
-    pub(super) fn flight(&self, pixel: [u32; 2], address: Address) -> Option<Flight> {
+    pub(super) fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
         let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
         let [column, row] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
         let View { camera, film } = self.view;
@@ -87,6 +87,6 @@ impl<'a> Lens<'a> {
             camera.ray_in_world(location)
         };
         let ray = Ray { origin: ray.origin - self.origin, ..ray };
-        Some(Flight { ray, start: Start::Free })
+        Some(SurfaceRay { ray, start: Start::Free })
     }
 }

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::flight::Surface;
+use super::context::{LightingContext, rgb};
 use super::lamp::{self, Arrival};
-use super::maps::{Frame, cone, cone_density, cone_of_sphere, versine};
-use super::stage::{Stage, rgb};
+use super::maps::{TangentFrame, cone, cone_density, cone_of_sphere, versine};
+use super::surface_ray::Surface;
 use crate::camera::sampling::unit;
 use crate::light::LightKind;
 use crate::render::LightSampling;
@@ -104,20 +104,20 @@ impl Sources {
     }
 }
 
-impl Stage<'_> {
+impl LightingContext<'_> {
     /// Light from a source of chance, seen from a point.
     pub(super) fn seek(&self, point: DVec3, choice: [u32; 2], u: [u32; 2]) -> Option<Sought> {
         let sources = &self.sources;
         let last = sources.sought.len().checked_sub(1)?;
-        let place = ((unit(choice[0]) * sources.count()) as usize).min(last);
-        match sources.sought[place] {
+        let index = ((unit(choice[0]) * sources.count()) as usize).min(last);
+        match sources.sought[index] {
             Source::Lamp(lamp) => {
                 let Arrival { direction, strength, distance } = lamp::arrival(&lamp, point, u)?;
                 let light = SoughtLight::Lamp(strength * sources.count());
                 Some(Sought { direction, distance, sphere: None, light })
             }
             Source::Sun(sun) => Some(Sought {
-                direction: Frame::around(sun.toward).to_scene(cone(u, sun.k)),
+                direction: TangentFrame::around(sun.toward).to_scene(cone(u, sun.k)),
                 distance: f64::INFINITY,
                 sphere: None,
                 light: SoughtLight::Radiance(sun.radiance, sources.density_at_sun(sun.k)),
@@ -138,20 +138,20 @@ impl Stage<'_> {
     }
 
     fn seek_emitter(&self, point: DVec3, choice: u32, u: [u32; 2]) -> Option<Sought> {
-        let (place, _) = self.emitters.pick(choice)?;
-        let id = self.emitters.ids()[place];
+        let (index, _) = self.emitters.pick(choice)?;
+        let id = self.emitters.ids()[index];
         let (center, radius) = self.sphere(id);
         let to_center = center - point;
         let distance = to_center.length();
         let k = cone_of_sphere(radius, distance)?;
-        let direction = Frame::around(to_center / distance).to_scene(cone(u, k));
+        let direction = TangentFrame::around(to_center / distance).to_scene(cone(u, k));
         let surface = Surface::Sphere(id);
         // The wall that is nearer, as often as it is there; chance finds what shines through it.
         let radiance = self.emission(surface)? * self.opacity(surface);
         let density = self.density_at_emitter(point, id)?;
         Some(Sought {
             direction,
-            distance: lamp::wall(to_center, radius, direction, true),
+            distance: lamp::distance_to_sphere(to_center, radius, direction, true),
             sphere: Some(id),
             light: SoughtLight::Radiance(radiance, density),
         })

@@ -5,32 +5,38 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::bsdf::Bsdf;
-use super::flight::{Flight, Hiding, Meeting, Surface, is_occluded, nearest};
+use super::context::{LightingContext, Plane, luminance, rgb};
 use super::lamp;
-use super::maps::{self, Frame};
+use super::maps::{self, TangentFrame};
 use super::sample::{Address, Found};
-use super::stage::{Plane, Stage, luminance, rgb};
+use super::surface_ray::{Hiding, Interaction, Surface, SurfaceRay, is_occluded, nearest};
 use crate::geometry::ray::Ray;
 use crate::light::LightKind;
 use crate::render::Studio;
 
 /// What a ray from the camera brings.
 pub(super) fn follow(
-    stage: &Stage<'_>,
+    context: &LightingContext<'_>,
     studio: &Studio,
-    mut flight: Flight,
+    mut surface_ray: SurfaceRay,
     address: Address,
 ) -> Found {
     let mut found = Found::default();
     let mut clear = 1.0;
     let mut way = 0.0;
     for m in 0..studio.max_surfaces {
-        let Some(meeting) = nearest(stage, &flight) else { break };
-        way += meeting.distance;
-        let view =
-            SeenSurface { stage, studio, meeting, direction: flight.ray.direction, address, m };
-        if let Some(plane) = stage.ground.filter(|g| g.is_shadow_catcher)
-            && meeting.surface == Surface::Ground
+        let Some(interaction) = nearest(context, &surface_ray) else { break };
+        way += interaction.distance;
+        let view = SeenSurface {
+            context,
+            studio,
+            interaction,
+            direction: surface_ray.ray.direction,
+            address,
+            m,
+        };
+        if let Some(plane) = context.ground.filter(|g| g.is_shadow_catcher)
+            && interaction.surface == Surface::Ground
         {
             let shadow = view.shadow(&plane);
             found.alpha += clear * shadow;
@@ -38,9 +44,9 @@ pub(super) fn follow(
             break;
         }
         if m == 0 {
-            found.albedo = stage.color(meeting.surface).min(DVec3::ONE);
+            found.albedo = context.color(interaction.surface).min(DVec3::ONE);
         }
-        let opacity = stage.opacity(meeting.surface);
+        let opacity = context.opacity(interaction.surface);
         let weight = clear * opacity;
         clear *= 1.0 - opacity;
         found.alpha += weight;
@@ -51,20 +57,20 @@ pub(super) fn follow(
         if clear == 0.0 {
             break;
         }
-        let ray = Ray { origin: meeting.point, ..flight.ray };
-        flight = Flight { ray, start: meeting.other_side() };
+        let ray = Ray { origin: interaction.point, ..surface_ray.ray };
+        surface_ray = SurfaceRay { ray, start: interaction.other_side() };
     }
-    if !stage.settings.is_transparent {
-        found.color += clear * stage.background();
+    if !context.settings.is_transparent {
+        found.color += clear * context.background();
     }
     found
 }
 
 /// A surface that is seen.
 struct SeenSurface<'a> {
-    stage: &'a Stage<'a>,
+    context: &'a LightingContext<'a>,
     studio: &'a Studio,
-    meeting: Meeting,
+    interaction: Interaction,
     /// Of the ray that sees it.
     direction: DVec3,
     address: Address,
@@ -74,16 +80,16 @@ struct SeenSurface<'a> {
 
 impl SeenSurface<'_> {
     fn color(&self) -> DVec3 {
-        let Self { stage, studio, meeting, .. } = self;
-        if let Some(emission) = stage.emission(meeting.surface) {
+        let Self { context, studio, interaction, .. } = self;
+        if let Some(emission) = context.emission(interaction.surface) {
             return emission;
         }
         let ambient = rgb(studio.ambient) * (1.0 - self.ambient_occlusion());
-        let frame = Frame::around(meeting.normal);
+        let frame = TangentFrame::around(interaction.normal);
         let out = frame.to_local(-self.direction);
-        let mut color = stage.color(meeting.surface) * ambient;
-        let Some(bsdf) = Bsdf::in_studio(stage, meeting, out) else { return color };
-        for (l, light) in stage.lights.iter().enumerate() {
+        let mut color = context.color(interaction.surface) * ambient;
+        let Some(bsdf) = Bsdf::in_studio(context, interaction, out) else { return color };
+        for (l, light) in context.lights.iter().enumerate() {
             if let LightKind::Head { strength } = light {
                 if let Some(response) = bsdf.response(out) {
                     color += PI * rgb(*strength) * response.value * out.z;
@@ -91,7 +97,7 @@ impl SeenSurface<'_> {
                 continue;
             }
             let u = self.address.pair(2 + 4096 * self.m + l as u32);
-            let Some(arrival) = lamp::arrival(light, meeting.point, u) else { continue };
+            let Some(arrival) = lamp::arrival(light, interaction.point, u) else { continue };
             let into = frame.to_local(arrival.direction);
             let Some(response) = bsdf.response(into) else { continue };
             let light = PI * arrival.strength * response.value * into.z;
@@ -105,7 +111,7 @@ impl SeenSurface<'_> {
     /// The share of ambient light that does not arrive.
     fn ambient_occlusion(&self) -> f64 {
         let Some(occlusion) = &self.studio.occlusion else { return 0.0 };
-        let frame = Frame::around(self.meeting.normal);
+        let frame = TangentFrame::around(self.interaction.normal);
         let count = occlusion.samples;
         let t_max = occlusion.radius.unwrap_or(f64::INFINITY);
         let is_hidden = |j: &u32| {
@@ -121,17 +127,17 @@ impl SeenSurface<'_> {
     }
 
     fn is_hidden(&self, direction: DVec3, t_max: f64) -> bool {
-        let ray = Ray { origin: self.meeting.point, direction };
-        let flight = Flight { ray, start: self.meeting.this_side() };
-        is_occluded(self.stage, &flight, t_max, Hiding::Opaque, None)
+        let ray = Ray { origin: self.interaction.point, direction };
+        let surface_ray = SurfaceRay { ray, start: self.interaction.this_side() };
+        is_occluded(self.context, &surface_ray, t_max, Hiding::Opaque, None)
     }
 
     /// The share of light that is missing on the ground: of each light as much as its middle could send.
     fn shadow(&self, plane: &Plane) -> f64 {
         let mut whole = luminance(rgb(self.studio.ambient));
         let mut missing = whole * self.ambient_occlusion();
-        for (l, light) in self.stage.lights.iter().enumerate() {
-            let point = self.meeting.point;
+        for (l, light) in self.context.lights.iter().enumerate() {
+            let point = self.interaction.point;
             let Some(middle) = lamp::arrival_of_middle(light, point) else { continue };
             let cosine = middle.direction.dot(plane.normal).max(0.0);
             let weight = luminance(middle.strength) * cosine;

@@ -2,19 +2,19 @@
 
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
-use super::look::Lit;
+use super::lighting::LightingData;
 use super::passes::LitPasses;
-use super::records::{Look, QUEUE_HEAD, Stage};
+use super::records::{DispatchParameters, QUEUE_HEAD};
 use super::sizes::LitSizes;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::readback::ReadableBuffer;
-use crate::gpu::records::Frame;
+use crate::gpu::records::FrameParameters;
 use crate::gpu::scene_buffers::part;
 use crate::gpu::tiles::Tile;
 use crate::light::environment::Environment;
 
 /// How many dispatches one submission has at most.
-pub(in crate::gpu) const MOST_STAGES: usize = 1024;
+pub(in crate::gpu) const MOST_DISPATCHES: usize = 1024;
 
 /// Which workgroups of a tile a dispatch may have, and what box its rays are moved to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,26 +22,26 @@ pub(in crate::gpu) enum Area {
     /// All of the tile.
     Whole,
     /// Where the scene may be seen.
-    Seen,
+    Visible,
     /// The same for what casts shadows.
     Occluders,
 }
 
 /// Records of a tile, by [`Area`].
-pub(in crate::gpu) type Frames = [Frame; 3];
+pub(in crate::gpu) type Frames = [FrameParameters; 3];
 
 /// A lit picture in progress. Per picture.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitFrame {
     pub(in crate::gpu) sizes: LitSizes,
-    stages: Buffer,
-    stage_stride: usize,
+    parameters: Buffer,
+    parameter_stride: usize,
     pub(super) queue: Buffer,
     pub(super) groups_needed: Buffer,
     /// The state of all paths, slot by slot.
     pub(in crate::gpu) paths: Buffer,
     variations: Buffer,
-    pub(super) look: BindGroup,
+    pub(super) lighting: BindGroup,
     pub(super) sky: Option<BindGroup>,
     pub(in crate::gpu) tiles: Vec<LitTile>,
     /// Whether an invocation gave up.
@@ -77,24 +77,27 @@ impl LitFrame {
         queue: &Queue,
         passes: &LitPasses,
         sizes: LitSizes,
-        lit: &Lit,
+        lighting: &LightingData,
         tiles: impl Iterator<Item = (Tile, Frames)>,
     ) -> Result<Self, GpuError> {
         let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
-        let stage_stride = size_of::<Stage>().next_multiple_of(alignment);
+        let parameter_stride = size_of::<DispatchParameters>().next_multiple_of(alignment);
         check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
-        check_storage_size(device, "the tables of lights and materials", lit.table_bytes())?;
-        if let Some(environment) = &lit.sky {
+        check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
+        if let Some(environment) = &lighting.sky {
             let bytes = 16 * environment.texels().len() as u64;
             check_storage_size(device, "the image of the sky", bytes)?;
         }
         let make = Make { device, queue };
         scoped(device, || {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let stages =
-                make.buffer("pinhole stages", MOST_STAGES * stage_stride, BufferUsages::UNIFORM);
+            let parameters = make.buffer(
+                "pinhole parameters",
+                MOST_DISPATCHES * parameter_stride,
+                BufferUsages::UNIFORM,
+            );
             let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
             let paths = of_paths("pinhole paths", sizes.path_bytes());
             let lists = of_paths("pinhole lists of paths", sizes.queue_bytes());
@@ -104,7 +107,7 @@ impl LitFrame {
                 make.buffer("pinhole groups needed", sizes.groups_bytes() as usize, needed);
             let shared = Shared {
                 passes,
-                stages: &stages,
+                parameters: &parameters,
                 lists: &lists,
                 paths: &paths,
                 groups_needed: &groups_needed,
@@ -115,8 +118,8 @@ impl LitFrame {
             let layouts = &passes.layouts;
             Self {
                 sizes,
-                look: make.look(&layouts.look, lit),
-                sky: lit.sky.as_deref().map(|sky| make.sky(&layouts.sky, sky)),
+                lighting: make.lighting(&layouts.lighting, lighting),
+                sky: lighting.sky.as_deref().map(|sky| make.sky(&layouts.sky, sky)),
                 tiles,
                 spent_back: ReadableBuffer::new(device, "pinhole spent read-back", 4),
                 film_back: ReadableBuffer::new(
@@ -129,8 +132,8 @@ impl LitFrame {
                     "pinhole variations read-back",
                     variations.size(),
                 ),
-                stages,
-                stage_stride,
+                parameters,
+                parameter_stride,
                 queue: lists,
                 groups_needed,
                 paths,
@@ -139,19 +142,23 @@ impl LitFrame {
         })
     }
 
-    /// Queues what the next submission's dispatches do; at most [`MOST_STAGES`].
-    pub(in crate::gpu) fn queue_stages(&self, queue: &Queue, stages: &[Stage]) {
-        let mut bytes = vec![0_u8; stages.len() * self.stage_stride];
-        for (target, stage) in bytes.chunks_mut(self.stage_stride).zip(stages) {
-            target[..size_of::<Stage>()].copy_from_slice(bytemuck::bytes_of(stage));
+    /// Queues what the next submission's dispatches do; at most [`MOST_DISPATCHES`].
+    pub(in crate::gpu) fn queue_parameters(
+        &self,
+        queue: &Queue,
+        parameters: &[DispatchParameters],
+    ) {
+        let mut bytes = vec![0_u8; parameters.len() * self.parameter_stride];
+        for (target, dispatch) in bytes.chunks_mut(self.parameter_stride).zip(parameters) {
+            target[..size_of::<DispatchParameters>()].copy_from_slice(bytemuck::bytes_of(dispatch));
         }
-        queue.write_buffer(&self.stages, 0, &bytes);
+        queue.write_buffer(&self.parameters, 0, &bytes);
     }
 
     /// Where the record of a dispatch lies, counted from the first of a submission.
-    pub(super) fn stage_offset(&self, number: usize) -> u32 {
-        // No more than MOST_STAGES of them, so it fits.
-        (number * self.stage_stride) as u32
+    pub(super) fn parameter_offset(&self, number: usize) -> u32 {
+        // No more than MOST_DISPATCHES of them, so it fits.
+        (number * self.parameter_stride) as u32
     }
 
     /// Records that lists are empty.
@@ -198,7 +205,7 @@ struct Make<'a> {
 /// What all tiles share.
 struct Shared<'a> {
     passes: &'a LitPasses,
-    stages: &'a Buffer,
+    parameters: &'a Buffer,
     lists: &'a Buffer,
     paths: &'a Buffer,
     groups_needed: &'a Buffer,
@@ -240,10 +247,10 @@ impl Make<'_> {
 
     fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
         let alignment = self.device.limits().min_uniform_buffer_offset_alignment as usize;
-        let stride = size_of::<Frame>().next_multiple_of(alignment);
+        let stride = size_of::<FrameParameters>().next_multiple_of(alignment);
         let mut bytes = vec![0_u8; frames.len() * stride];
         for (target, frame) in bytes.chunks_mut(stride).zip(&frames) {
-            target[..size_of::<Frame>()].copy_from_slice(bytemuck::bytes_of(frame));
+            target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
         }
         let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
@@ -251,10 +258,10 @@ impl Make<'_> {
         let film = self.buffer("pinhole sums", sizes.film_bytes() as usize, usage);
         let common = |area: usize| -> Vec<Entry<'_>> {
             vec![
-                (0, part(&records, area * stride, size_of::<Frame>())),
+                (0, part(&records, area * stride, size_of::<FrameParameters>())),
                 whole(2, shared.lists),
                 whole(3, shared.paths),
-                (4, part(shared.stages, 0, size_of::<Stage>())),
+                (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
             ]
         };
         let layouts = &shared.passes.layouts;
@@ -273,12 +280,12 @@ impl Make<'_> {
         }
     }
 
-    fn look(&self, layout: &BindGroupLayout, lit: &Lit) -> BindGroup {
-        let look: &Look = &lit.look;
-        let look = self.filled("pinhole look", bytemuck::bytes_of(look), BufferUsages::UNIFORM);
-        let tables = bytemuck::cast_slice(&lit.tables);
+    fn lighting(&self, layout: &BindGroupLayout, lighting: &LightingData) -> BindGroup {
+        let record = bytemuck::bytes_of(&lighting.parameters);
+        let record = self.filled("pinhole lighting", record, BufferUsages::UNIFORM);
+        let tables = bytemuck::cast_slice(&lighting.tables);
         let tables = self.filled("pinhole tables", tables, BufferUsages::STORAGE);
-        self.group("pinhole look", layout, &[whole(0, &look), whole(1, &tables)])
+        self.group("pinhole lighting", layout, &[whole(0, &record), whole(1, &tables)])
     }
 
     fn sky(&self, layout: &BindGroupLayout, environment: &Environment) -> BindGroup {

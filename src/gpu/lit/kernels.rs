@@ -2,14 +2,14 @@
 
 use crate::accel::Structure;
 use crate::camera::CameraKind;
-use crate::gpu::shaders::{Kernel, Part, Turn, camera_parts, part, structure_parts};
-use crate::gpu::shape_ids::LeftBy;
+use crate::gpu::shaders::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
+use crate::gpu::shape_ids::ExcludeBy;
 
 /// What of a lighting decides which kernels it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) enum Mode {
     Studio,
-    Path(Surfaces, Sources, SkyKind),
+    Path(Materials, Sources, SkyKind),
 }
 
 impl Mode {
@@ -20,13 +20,13 @@ impl Mode {
 
     /// Whether something may absorb light on the way.
     pub(in crate::gpu) fn has_medium(self) -> bool {
-        matches!(self, Self::Path(Surfaces::Any, ..))
+        matches!(self, Self::Path(Materials::Any, ..))
     }
 }
 
 /// Whether all surfaces are matt or emissive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum Surfaces {
+pub(in crate::gpu) enum Materials {
     Matt,
     Any,
 }
@@ -68,21 +68,21 @@ pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
         part!("path_address.wgsl"),
-        part!("look.wgsl"),
+        part!("lighting.wgsl"),
         part!("sampling.wgsl"),
         part!("filter.wgsl"),
         part!("film_sample.wgsl"),
     ]);
     parts.extend(camera_parts(camera));
     parts.extend(match mode {
-        Mode::Path(surfaces, sources, _) => [
+        Mode::Path(materials, sources, _) => [
             match sources {
                 Sources::None => part!("start_no_light.wgsl"),
                 Sources::Any => part!("start_light.wgsl"),
             },
-            match surfaces {
-                Surfaces::Matt => part!("start_no_medium.wgsl"),
-                Surfaces::Any => part!("start_medium.wgsl"),
+            match materials {
+                Materials::Matt => part!("start_no_medium.wgsl"),
+                Materials::Any => part!("start_medium.wgsl"),
             },
         ],
         Mode::Studio => [part!("start_no_light.wgsl"), part!("start_no_medium.wgsl")],
@@ -94,16 +94,16 @@ pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
 /// Finds the nearest sphere of every path's ray.
 pub(super) fn extend_kernel(
     structure: Structure,
-    left_by: LeftBy,
-    turn: Turn,
+    exclude_by: ExcludeBy,
+    brick_pass: BrickPass,
     schedule: Schedule,
 ) -> Kernel {
     let mut parts = base(schedule);
-    parts.extend(origin_parts(left_by));
+    parts.extend(origin_parts(exclude_by));
     parts.extend([part!("spend.wgsl"), part!("brick.wgsl")]);
-    parts.push(match turn {
-        Turn::First => part!("first_segment.wgsl"),
-        Turn::Later => part!("later_brick.wgsl"),
+    parts.push(match brick_pass {
+        BrickPass::First => part!("first_segment.wgsl"),
+        BrickPass::Later => part!("later_brick.wgsl"),
     });
     parts.extend(structure_parts(structure));
     parts.extend([part!("entry_path.wgsl"), part!("extend.wgsl")]);
@@ -111,19 +111,19 @@ pub(super) fn extend_kernel(
 }
 
 /// Finds whether anything is between paths' surfaces and lights.
-pub(super) fn occlude_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
+pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = base(Schedule::Queue);
     parts.extend([
         part!("spend.wgsl"),
         part!("brick.wgsl"),
-        part!("look.wgsl"),
+        part!("lighting.wgsl"),
         part!("emitter.wgsl"),
     ]);
-    parts.extend(match left_by {
-        LeftBy::Place => {
+    parts.extend(match exclude_by {
+        ExcludeBy::Index => {
             vec![part!("own_shape.wgsl"), part!("origin_place_and_light.wgsl")]
         }
-        LeftBy::Id => vec![part!("origin_id_and_light.wgsl")],
+        ExcludeBy::Id => vec![part!("origin_id_and_light.wgsl")],
     });
     parts.extend(structure_parts(structure));
     parts.push(part!("occlude.wgsl"));
@@ -131,36 +131,36 @@ pub(super) fn occlude_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
 }
 
 /// In a studio, finds whether a light is hidden.
-pub(super) fn shadow_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
-    let mut parts = hidden_light(structure, left_by);
+pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
+    let mut parts = hidden_light(structure, exclude_by);
     parts.extend([part!("lamp.wgsl"), part!("shadow.wgsl")]);
     Kernel { entry_point: "shadow", parts }
 }
 
 /// In a studio, finds whether something is near in a direction of ambient light.
-pub(super) fn ambient_kernel(structure: Structure, left_by: LeftBy) -> Kernel {
-    let mut parts = hidden_light(structure, left_by);
+pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
+    let mut parts = hidden_light(structure, exclude_by);
     parts.push(part!("ambient.wgsl"));
     Kernel { entry_point: "ambient", parts }
 }
 
 /// How rays that start on a shape are told apart from it.
-fn origin_parts(left_by: LeftBy) -> Vec<Part> {
-    match left_by {
-        LeftBy::Place => vec![part!("own_shape.wgsl"), part!("origin_place.wgsl")],
-        LeftBy::Id => vec![part!("origin_id.wgsl")],
+fn origin_parts(exclude_by: ExcludeBy) -> Vec<Part> {
+    match exclude_by {
+        ExcludeBy::Index => vec![part!("own_shape.wgsl"), part!("origin_place.wgsl")],
+        ExcludeBy::Id => vec![part!("origin_id.wgsl")],
     }
 }
 
-fn hidden_light(structure: Structure, left_by: LeftBy) -> Vec<Part> {
+fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     let mut parts = base(Schedule::Queue);
-    parts.extend(origin_parts(left_by));
+    parts.extend(origin_parts(exclude_by));
     parts.extend([
         part!("path_address.wgsl"),
         part!("spend.wgsl"),
         part!("brick.wgsl"),
         part!("trigonometry.wgsl"),
-        part!("look.wgsl"),
+        part!("lighting.wgsl"),
         part!("sampling.wgsl"),
         part!("disk.wgsl"),
         part!("warp.wgsl"),
@@ -205,7 +205,7 @@ pub(super) fn gather_kernel() -> Kernel {
 /// Scatters paths.
 pub(super) fn scatter_kernel(
     schedule: Schedule,
-    surfaces: Surfaces,
+    materials: Materials,
     sources: Sources,
     sky: SkyKind,
 ) -> Kernel {
@@ -225,11 +225,11 @@ pub(super) fn scatter_kernel(
         part!("bounce.wgsl"),
         part!("scatter.wgsl"),
     ]);
-    match surfaces {
-        Surfaces::Matt => {
+    match materials {
+        Materials::Matt => {
             parts.extend([part!("medium_none.wgsl"), part!("scatter_matt.wgsl")]);
         }
-        Surfaces::Any => parts.extend([
+        Materials::Any => parts.extend([
             part!("microfacet.wgsl"),
             part!("bsdf.wgsl"),
             part!("dielectric.wgsl"),
@@ -255,14 +255,14 @@ pub(super) fn scatter_kernel(
 }
 
 /// Adds samples to pixels.
-pub(super) fn deposit_kernel(mode: Mode) -> Kernel {
+pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.push(match mode {
         Mode::Path(_, Sources::Any, _) => part!("settle_light.wgsl"),
         Mode::Path(..) | Mode::Studio => part!("settle_plain.wgsl"),
     });
-    parts.extend([part!("film_sums.wgsl"), part!("deposit.wgsl")]);
-    Kernel { entry_point: "deposit", parts }
+    parts.extend([part!("film_sums.wgsl"), part!("accumulate.wgsl")]);
+    Kernel { entry_point: "accumulate", parts }
 }
 
 /// Says how many workgroups the next dispatches need.
@@ -298,7 +298,7 @@ fn base(schedule: Schedule) -> Vec<Part> {
         part!("enter.wgsl"),
         part!("sphere.wgsl"),
         part!("path_state.wgsl"),
-        part!("left.wgsl"),
+        part!("departure.wgsl"),
         part!("queue.wgsl"),
         part!("schedule.wgsl"),
         schedule.part(),
@@ -307,7 +307,7 @@ fn base(schedule: Schedule) -> Vec<Part> {
 
 fn shading(schedule: Schedule) -> Vec<Part> {
     let mut parts = base(schedule);
-    parts.extend([part!("path_address.wgsl"), part!("trigonometry.wgsl"), part!("look.wgsl")]);
+    parts.extend([part!("path_address.wgsl"), part!("trigonometry.wgsl"), part!("lighting.wgsl")]);
     parts
 }
 
@@ -328,30 +328,31 @@ fn studio_light() -> Vec<Part> {
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
     let mut modes = vec![Mode::Studio];
-    for surfaces in [Surfaces::Matt, Surfaces::Any] {
+    for materials in [Materials::Matt, Materials::Any] {
         for sources in [Sources::None, Sources::Any] {
             for sky in [SkyKind::Plain, SkyKind::Image] {
-                modes.push(Mode::Path(surfaces, sources, sky));
+                modes.push(Mode::Path(materials, sources, sky));
             }
         }
     }
     let mut kernels = vec![advance_kernel(), noise_kernel(), illuminate_kernel(), gather_kernel()];
     for &mode in &modes {
-        kernels.push(deposit_kernel(mode));
-        if let Mode::Path(surfaces, sources, sky) = mode {
-            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, surfaces, sources, sky)));
+        kernels.push(accumulate_kernel(mode));
+        if let Mode::Path(materials, sources, sky) = mode {
+            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, materials, sources, sky)));
         }
         let cameras = CameraKind::ALL.iter();
         kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
     }
-    for (&structure, left_by) in
-        Structure::ALL.iter().flat_map(|of| LeftBy::ALL.map(|left_by| (of, left_by)))
+    for (&structure, exclude_by) in
+        Structure::ALL.iter().flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
     {
-        for turn in [Turn::First, Turn::Later] {
-            kernels.extend(SCHEDULES.map(|by| extend_kernel(structure, left_by, turn, by)));
+        for brick_pass in [BrickPass::First, BrickPass::Later] {
+            kernels
+                .extend(SCHEDULES.map(|by| extend_kernel(structure, exclude_by, brick_pass, by)));
         }
         let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
-        kernels.extend(searches.map(|of| of(structure, left_by)));
+        kernels.extend(searches.map(|of| of(structure, exclude_by)));
     }
     kernels.extend(SCHEDULES.map(surface_kernel));
     kernels

@@ -11,7 +11,7 @@
 
 mod frame;
 mod kernels;
-mod look;
+mod lighting;
 mod pass;
 mod passes;
 mod plan;
@@ -21,18 +21,18 @@ mod round;
 mod sizes;
 pub(super) mod sums;
 
-use super::records::Frame;
+use super::records::FrameParameters;
 use super::scene_buffers::SceneBuffers;
-use super::seen::Seen;
 use super::tiles::{Groups, Tile};
+use super::visible_region::VisibleRegion;
 use crate::camera::View;
 use crate::render::RenderSettings;
 
-pub(super) use frame::{Frames, LitFrame, MOST_STAGES};
+pub(super) use frame::{Frames, LitFrame, MOST_DISPATCHES};
 pub(super) use kernels::Mode;
 #[cfg(test)]
 pub(super) use kernels::all_kernels;
-pub(super) use look::Lit;
+pub(super) use lighting::LightingData;
 pub(super) use passes::{AllLitPasses, LitKey, LitPasses};
 pub(super) use recorder::Recorder;
 pub(super) use round::{AT_ONCE, Moment, Round, Step};
@@ -48,23 +48,27 @@ pub(super) struct LitScene<'a> {
 
 impl LitScene<'_> {
     /// Which passes it needs.
-    pub(super) fn key(&self, view: &View<'_>, lit: &Lit) -> LitKey {
+    pub(super) fn key(&self, view: &View<'_>, lighting: &LightingData) -> LitKey {
         LitKey {
             camera: view.camera.kind(),
-            mode: lit.mode,
+            mode: lighting.mode,
             structure: self.all.structure(),
             occluders: self.occluders.structure(),
-            left_by: [self.all, self.occluders].map(SceneBuffers::left_by),
+            exclude_by: [self.all, self.occluders].map(SceneBuffers::exclude_by),
             several_bricks: self.all.bricks().len() > 1,
         }
     }
 
     /// Where the scene may be seen; `None` for everywhere.
-    pub(super) fn seen(&self, view: &View<'_>, settings: &RenderSettings) -> Option<Seen> {
+    pub(super) fn visible_region(
+        &self,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Option<VisibleRegion> {
         // Wherever there is ground there is something to be seen.
         settings.ground.is_none().then(|| {
             let around = settings.sampling.filter.radius();
-            Seen::of(view, self.all.space()).widened(around)
+            VisibleRegion::of(view, self.all.space()).widened(around)
         })
     }
 
@@ -72,14 +76,15 @@ impl LitScene<'_> {
     pub(super) fn frames(
         &self,
         view: &View<'_>,
-        seen: Option<Seen>,
+        region: Option<VisibleRegion>,
         tile: Tile,
         iteration_limit: u32,
     ) -> Frames {
         let all = Groups::of_size(tile.size);
-        let traced = seen.map_or(all, |seen| seen.groups_of(tile));
+        let traced = region.map_or(all, |region| region.groups_of(tile));
         let [scene, occluders] = [self.all, self.occluders].map(SceneBuffers::space);
-        [(scene, all), (scene, traced), (occluders, traced)]
-            .map(|(space, groups)| Frame::of_tile(view, space, tile, groups, iteration_limit))
+        [(scene, all), (scene, traced), (occluders, traced)].map(|(space, groups)| {
+            FrameParameters::of_tile(view, space, tile, groups, iteration_limit)
+        })
     }
 }

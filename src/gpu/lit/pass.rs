@@ -19,14 +19,14 @@ pub(in crate::gpu) struct Pass {
 /// What a pass is bound to.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Bound<'a> {
-    /// Group 0: the frame, the lists, the paths and the stage.
+    /// Group 0: the frame, the lists, the paths and what the dispatch does.
     pub(super) frame: &'a BindGroup,
-    /// Where the dispatch's stage lies among all.
-    pub(super) stage: u32,
+    /// The offset of the dispatch's parameters.
+    pub(super) dispatch: u32,
     /// Group 1: a brick.
     pub(super) brick: Option<&'a BindGroup>,
     /// Group 2: lights and materials.
-    pub(super) look: &'a BindGroup,
+    pub(super) lighting: &'a BindGroup,
     /// Group 3: an image of the sky.
     pub(super) sky: Option<&'a BindGroup>,
 }
@@ -63,10 +63,10 @@ impl Pass {
             timestamp_writes: None,
         });
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, bound.frame, &[bound.stage]);
+        pass.set_bind_group(0, bound.frame, &[bound.dispatch]);
         if let Some(brick) = bound.brick {
             pass.set_bind_group(1, brick, &[]);
-            pass.set_bind_group(2, bound.look, &[]);
+            pass.set_bind_group(2, bound.lighting, &[]);
             if let Some(sky) = bound.sky {
                 pass.set_bind_group(3, sky, &[]);
             }

@@ -7,7 +7,7 @@ use wgpu::{BindGroupLayout, BindingType, Device};
 
 use super::kernels::{self, Mode, Schedule, SkyKind};
 use super::pass::Pass;
-use super::records::{GROUPS_NEEDED, Look, QUEUE_HEAD, Stage};
+use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::edit::ShaderEdit;
@@ -15,8 +15,8 @@ use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::records;
 use crate::gpu::renderer_options::RendererOptions;
-use crate::gpu::shaders::{Kernel, Turn};
-use crate::gpu::shape_ids::LeftBy;
+use crate::gpu::shaders::{BrickPass, Kernel};
+use crate::gpu::shape_ids::ExcludeBy;
 
 /// What sets of passes differ in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ pub(in crate::gpu) struct LitKey {
     /// Of what casts shadows.
     pub(in crate::gpu) occluders: Structure,
     /// How rays are kept from what they start on: in all of the scene, and in what casts shadows.
-    pub(in crate::gpu) left_by: [LeftBy; 2],
+    pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
 }
@@ -38,7 +38,7 @@ pub(in crate::gpu) struct LitLayouts {
     pub(super) frame: BindGroupLayout,
     pub(super) advance: BindGroupLayout,
     pub(super) film: BindGroupLayout,
-    pub(super) look: BindGroupLayout,
+    pub(super) lighting: BindGroupLayout,
     pub(super) sky: BindGroupLayout,
 }
 
@@ -58,7 +58,7 @@ pub(in crate::gpu) struct LitPasses {
     pub(super) extend: (BySchedule, Option<BySchedule>),
     pub(super) shade: ShadePasses,
     pub(super) advance: Pass,
-    pub(super) deposit: Pass,
+    pub(super) accumulate: Pass,
     pub(super) noise: Pass,
 }
 
@@ -70,24 +70,27 @@ pub(super) enum ShadePasses {
 
 impl LitLayouts {
     fn new(device: &Device) -> Self {
-        let frame = uniform::<records::Frame>();
+        let frame = uniform::<records::FrameParameters>();
         let queue = storage_of(QUEUE_HEAD + 4);
         let paths = storage::<[f32; 4]>(false);
         let film = storage::<[f32; 4]>(false);
-        let stage = BindingType::Buffer {
+        let dispatch = BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: true,
-            min_binding_size: NonZeroU64::new(size_of::<Stage>() as u64),
+            min_binding_size: NonZeroU64::new(size_of::<DispatchParameters>() as u64),
         };
         let read = storage::<[f32; 4]>(true);
         let layout = |label, kinds: &[(u32, BindingType)]| layout_of(device, label, kinds);
-        let common = [(0, frame), (2, queue), (3, paths), (4, stage)];
+        let common = [(0, frame), (2, queue), (3, paths), (4, dispatch)];
         let with = |more: &[(u32, BindingType)]| [&common, more].concat();
         Self {
             frame: layout("pinhole frame", &common),
             advance: layout("pinhole advance", &with(&[(5, storage_of(GROUPS_NEEDED))])),
             film: layout("pinhole film", &with(&[(5, film), (6, storage::<[f32; 2]>(false))])),
-            look: layout("pinhole look", &[(0, uniform::<Look>()), (1, read)]),
+            lighting: layout(
+                "pinhole lighting",
+                &[(0, uniform::<LightingParameters>()), (1, read)],
+            ),
             sky: layout("pinhole sky", &[(0, read), (1, storage::<f32>(true))]),
         }
     }
@@ -126,43 +129,46 @@ impl LitPasses {
         };
         let brick = |index: usize| &scene.brick[index].1;
         let surfaces = &scene.surface;
-        let LitLayouts { frame, advance, film, look, sky } = &layouts;
-        let [left_by, light_left_by] = key.left_by;
-        let (occluders, lit_brick) = (key.occluders, [frame, brick(1), look]);
-        let extend = |turn| {
-            let kernel = |by| kernels::extend_kernel(key.structure, left_by, turn, by);
+        let LitLayouts { frame, advance, film, lighting, sky } = &layouts;
+        let [exclude_by, light_exclude_by] = key.exclude_by;
+        let (occluders, lit_brick) = (key.occluders, [frame, brick(1), lighting]);
+        let extend = |brick_pass| {
+            let kernel = |by| kernels::extend_kernel(key.structure, exclude_by, brick_pass, by);
             both(&kernel, &[frame, brick(0)])
         };
         let shade = match key.mode {
             Mode::Studio => ShadePasses::Studio {
-                surface: both(&kernels::surface_kernel, &[frame, surfaces, look])?,
-                shadow: build(kernels::shadow_kernel(occluders, light_left_by), &lit_brick)?,
-                illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, look])?,
-                ambient: build(kernels::ambient_kernel(occluders, light_left_by), &lit_brick)?,
-                gather: build(kernels::gather_kernel(), &[frame, surfaces, look])?,
+                surface: both(&kernels::surface_kernel, &[frame, surfaces, lighting])?,
+                shadow: build(kernels::shadow_kernel(occluders, light_exclude_by), &lit_brick)?,
+                illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, lighting])?,
+                ambient: build(kernels::ambient_kernel(occluders, light_exclude_by), &lit_brick)?,
+                gather: build(kernels::gather_kernel(), &[frame, surfaces, lighting])?,
             },
             Mode::Path(surface, sources, kind) => {
                 let kernel = |by| kernels::scatter_kernel(by, surface, sources, kind);
-                let mut groups = vec![frame, surfaces, look];
+                let mut groups = vec![frame, surfaces, lighting];
                 if kind == SkyKind::Image {
                     groups.push(sky);
                 }
                 ShadePasses::Path {
                     scatter: both(&kernel, &groups)?,
-                    occlude: build(kernels::occlude_kernel(occluders, light_left_by), &lit_brick)?,
+                    occlude: build(
+                        kernels::occlude_kernel(occluders, light_exclude_by),
+                        &lit_brick,
+                    )?,
                 }
             }
         };
         let start = kernels::start_kernel(key.camera, key.mode);
         Ok(Self {
-            start: build(start, &[frame, surfaces, look])?,
+            start: build(start, &[frame, surfaces, lighting])?,
             extend: (
-                extend(Turn::First)?,
-                key.several_bricks.then(|| extend(Turn::Later)).transpose()?,
+                extend(BrickPass::First)?,
+                key.several_bricks.then(|| extend(BrickPass::Later)).transpose()?,
             ),
             shade,
             advance: build(kernels::advance_kernel(), &[advance])?,
-            deposit: build(kernels::deposit_kernel(key.mode), &[film])?,
+            accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
             noise: build(kernels::noise_kernel(), &[film])?,
             layouts,
         })
@@ -186,7 +192,7 @@ pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
 
 #[cfg(test)]
 mod tests {
-    use super::super::kernels::{Sources, Surfaces};
+    use super::super::kernels::{Materials, Sources};
     use super::*;
     use crate::accel::ListLayout;
 
@@ -197,7 +203,7 @@ mod tests {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
         assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
         let mut modes = vec![Mode::Studio];
-        for surfaces in [Surfaces::Matt, Surfaces::Any] {
+        for surfaces in [Materials::Matt, Materials::Any] {
             for sources in [Sources::None, Sources::Any] {
                 for sky in [SkyKind::Plain, SkyKind::Image] {
                     modes.push(Mode::Path(surfaces, sources, sky));
@@ -209,10 +215,10 @@ mod tests {
                 // The structure with the most buffers.
                 let structure = Structure::NestedGrid(ListLayout::Referenced);
                 let (occluders, several_bricks) = (structure, true);
-                for left_by in LeftBy::ALL {
-                    let left_by = [left_by; 2];
+                for exclude_by in ExcludeBy::ALL {
+                    let exclude_by = [exclude_by; 2];
                     let key =
-                        LitKey { camera, mode, structure, occluders, left_by, several_bricks };
+                        LitKey { camera, mode, structure, occluders, exclude_by, several_bricks };
                     LitPasses::new(&device, key, &[]).unwrap();
                 }
             }

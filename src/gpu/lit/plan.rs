@@ -1,6 +1,6 @@
 //! What a lit picture will take of the device and of the host.
 
-use super::look::Lit;
+use super::lighting::LightingData;
 use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::gpu::plan::{
@@ -27,8 +27,8 @@ impl RenderPlan {
         let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
         scene_buffers.extend(shadows);
 
-        let lit = Lit::new(settings, &SceneSummary::of(scene), view.camera);
-        let sizes = LitSizes::new(limits, film, lit.mode, settings.sampling.samples);
+        let lighting = LightingData::new(settings, &SceneSummary::of(scene), view.camera);
+        let sizes = LitSizes::new(limits, film, lighting.mode, settings.sampling.samples);
         let tile_size = sizes.tile;
         let tile_count = tile_count(film, tile_size);
         let film_bytes = sizes.film_bytes();
@@ -42,9 +42,9 @@ impl RenderPlan {
                 bytes_per_binding: film_bytes,
             },
             PlannedBuffer::one("variations", 2 * sizes.variation_bytes()),
-            PlannedBuffer::one("tables", lit.table_bytes()),
+            PlannedBuffer::one("tables", lighting.table_bytes()),
         ];
-        let sky = lit.sky.as_ref().map_or(0, |sky| {
+        let sky = lighting.sky.as_ref().map_or(0, |sky| {
             let texels = 16 * sky.texels().len() as u64;
             let shares = 4 * (sky.rows().len() + sky.columns().len()) as u64;
             tile_buffers.push(PlannedBuffer::one("sky", texels));
@@ -178,10 +178,10 @@ mod tests {
         let at_most = |settings: &RenderSettings| {
             bytes(&planned(1.0, 512, settings, LayerSet::COLOR, GPU), "paths")
         };
-        let lit = RenderSettings::path();
+        let lighting = RenderSettings::path();
         let sky_alone = RenderSettings { lights: Vec::new(), ..RenderSettings::path() };
         assert_eq!(at_most(&RenderSettings::studio()), 160 << 19);
-        assert_eq!(at_most(&lit), 144 << 19);
+        assert_eq!(at_most(&lighting), 144 << 19);
         assert_eq!(at_most(&sky_alone), 112 << 19);
     }
 

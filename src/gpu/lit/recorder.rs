@@ -4,14 +4,14 @@ use wgpu::CommandEncoder;
 
 use super::frame::{Area, LitFrame, LitTile};
 use super::pass::{Bound, Extent, Pass};
-use super::records::{GROUPS_OF_ONE, PIXELS_PER_VARIATION, Stage};
+use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
 use super::round::{Step, Work};
 use crate::gpu::tiles::{Groups, WORKGROUP_SIDE};
 
 /// How many paths a workgroup works on.
 const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 
-/// Of one submission: what is recorded holds once [`Recorder::take_stages`] has been queued.
+/// Of one submission: what is recorded holds once [`Recorder::take_parameters`] has been queued.
 #[derive(Debug)]
 pub(in crate::gpu) struct Recorder<'a> {
     frame: &'a LitFrame,
@@ -20,22 +20,22 @@ pub(in crate::gpu) struct Recorder<'a> {
     advance: &'a Pass,
     /// Whether the device can be told by a buffer how many workgroups a dispatch has.
     is_indirect: bool,
-    stages: Vec<Stage>,
+    parameters: Vec<DispatchParameters>,
 }
 
 impl<'a> Recorder<'a> {
     pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
-        Self { frame, tile: 0, advance, is_indirect, stages: Vec::new() }
+        Self { frame, tile: 0, advance, is_indirect, parameters: Vec::new() }
     }
 
-    /// How many dispatches there are since the last [`Recorder::take_stages`].
+    /// How many dispatches there are since the last [`Recorder::take_parameters`].
     pub(in crate::gpu) fn dispatches(&self) -> usize {
-        self.stages.len()
+        self.parameters.len()
     }
 
     /// What the dispatches read, in their order.
-    pub(in crate::gpu) fn take_stages(&mut self) -> Vec<Stage> {
-        std::mem::take(&mut self.stages)
+    pub(in crate::gpu) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
+        std::mem::take(&mut self.parameters)
     }
 
     /// The most workgroups that a dispatch may have, in each of its [`Step::layers`].
@@ -47,7 +47,7 @@ impl<'a> Recorder<'a> {
             }
             Work::List(_) => {
                 // What goes on has met something where there is something to be seen.
-                let [x, y] = tile.frames[Area::Seen as usize].traced_size;
+                let [x, y] = tile.frames[Area::Visible as usize].traced_size;
                 Groups { first: [0, 0], size: [x * y * step.turns, 1] }
             }
             Work::Advance => Groups { first: [0, 0], size: [1, 1] },
@@ -69,7 +69,7 @@ impl<'a> Recorder<'a> {
             return;
         }
         let tile = &self.frame.tiles[self.tile];
-        let stage = Stage { first: groups.first, ..step.stage };
+        let dispatch = DispatchParameters { first: groups.first, ..step.dispatch };
         let [x, y] = groups.size;
         let (group, extent) = match step.work {
             Work::Pixels(area) => {
@@ -82,18 +82,18 @@ impl<'a> Recorder<'a> {
                     (false, _) => (group, Extent::Groups([x, y, 1])),
                     (true, None) => (group, Extent::Indirect(needed, 0)),
                     (true, Some(_)) => {
-                        let slice = Stage { count: x, is_new: 0, ..stage };
+                        let slice = DispatchParameters { count: x, is_new: 0, ..dispatch };
                         let extent = Extent::Groups([1, 1, 1]);
                         self.dispatch(encoder, self.advance, slice, &tile.advance, None, extent);
                         (group, Extent::Indirect(needed, GROUPS_OF_ONE))
                     }
                 }
             }
-            Work::Advance if !self.is_indirect && stage.is_new == 0 => return,
+            Work::Advance if !self.is_indirect && dispatch.is_new == 0 => return,
             Work::Advance => (&tile.advance, Extent::Groups([1, 1, 1])),
             Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
         };
-        self.dispatch(encoder, step.pass, stage, group, step.brick, extent);
+        self.dispatch(encoder, step.pass, dispatch, group, step.brick, extent);
     }
 
     /// Records the sums of how much the samples of a tile vary, of which every pixel has so many. Gives how many sums
@@ -106,10 +106,10 @@ impl<'a> Recorder<'a> {
     ) -> usize {
         let tile = &self.frame.tiles[self.tile];
         let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
-        let stage = Stage { sample: samples, ..bytemuck::Zeroable::zeroed() };
+        let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
         // Fewer than there are pixels, so it fits.
         let extent = Extent::Groups([groups as u32, 1, 1]);
-        self.dispatch(encoder, noise, stage, &tile.sums, None, extent);
+        self.dispatch(encoder, noise, dispatch, &tile.sums, None, extent);
         (groups * WORKGROUP_SIZE) as usize
     }
 
@@ -117,15 +117,15 @@ impl<'a> Recorder<'a> {
         &mut self,
         encoder: &mut CommandEncoder,
         pass: &Pass,
-        stage: Stage,
+        dispatch: DispatchParameters,
         group: &wgpu::BindGroup,
         brick: Option<&wgpu::BindGroup>,
         extent: Extent<'_>,
     ) {
-        let number = self.frame.stage_offset(self.stages.len());
-        self.stages.push(stage);
-        let LitFrame { look, sky, .. } = self.frame;
-        let bound = Bound { frame: group, stage: number, brick, look, sky: sky.as_ref() };
+        let number = self.frame.parameter_offset(self.parameters.len());
+        self.parameters.push(dispatch);
+        let LitFrame { lighting, sky, .. } = self.frame;
+        let bound = Bound { frame: group, dispatch: number, brick, lighting, sky: sky.as_ref() };
         pass.record(encoder, bound, extent);
     }
 }

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 /// What one dispatch does.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct Stage {
+pub(in crate::gpu) struct DispatchParameters {
     pub(in crate::gpu) sample: u32,
     pub(in crate::gpu) surface: u32,
     pub(in crate::gpu) is_last: u32,
@@ -35,7 +35,7 @@ pub(super) const GROUPS_OF_ONE: u64 = 12;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(in crate::gpu) struct Look {
+pub(in crate::gpu) struct LightingParameters {
     pub(in crate::gpu) background: [f32; 3],
     pub(in crate::gpu) flags: u32,
     pub(in crate::gpu) ambient: [f32; 3],

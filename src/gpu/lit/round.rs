@@ -5,10 +5,10 @@ use std::ops::Range;
 use wgpu::BindGroup;
 
 use super::frame::Area;
-use super::look::Lit;
+use super::lighting::LightingData;
 use super::pass::Pass;
 use super::passes::{BySchedule, LitPasses, ShadePasses};
-use super::records::{LIST_OF_LIGHT, Stage};
+use super::records::{DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
 use crate::gpu::scene_buffers::SceneBuffers;
 
@@ -19,7 +19,7 @@ const BITS: usize = 32;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Step<'a> {
     pub(super) pass: &'a Pass,
-    pub(super) stage: Stage,
+    pub(super) dispatch: DispatchParameters,
     /// Group 1, if the pass works on a brick.
     pub(super) brick: Option<&'a BindGroup>,
     pub(super) work: Work,
@@ -73,14 +73,14 @@ pub(in crate::gpu) enum Moment {
     Extended,
     Scattered,
     Occluded,
-    Deposited,
+    Accumulated,
 }
 
 /// What a round is made of.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Round<'a> {
     pub(in crate::gpu) passes: &'a LitPasses,
-    pub(in crate::gpu) lit: &'a Lit,
+    pub(in crate::gpu) lighting: &'a LightingData,
     pub(in crate::gpu) scene: &'a SceneBuffers,
     pub(in crate::gpu) occluders: &'a SceneBuffers,
     /// How many paths the buffers have room for.
@@ -97,7 +97,7 @@ impl<'a> Round<'a> {
     /// The dispatches of some samples, which are followed together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
-        let stage = Stage {
+        let dispatch = DispatchParameters {
             sample: samples.start,
             count,
             paths: self.room,
@@ -105,17 +105,17 @@ impl<'a> Round<'a> {
         };
         let mut steps = Steps { round: *self, turns: count, steps: Vec::new() };
         let first = &self.scene.bricks()[0].surface_group;
-        steps.push(&self.passes.start, stage, Some(first), Work::Pixels(Area::Whole));
+        steps.push(&self.passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
         steps.mark(Moment::Started);
         match &self.passes.shade {
             ShadePasses::Studio { surface, shadow, illuminate, ambient, gather } => {
                 let passes = StudioPasses { surface, shadow, illuminate, ambient, gather };
-                steps.studio(stage, &passes)?;
+                steps.studio(dispatch, &passes)?;
             }
-            ShadePasses::Path { scatter, occlude } => steps.path(stage, scatter, occlude)?,
+            ShadePasses::Path { scatter, occlude } => steps.path(dispatch, scatter, occlude)?,
         }
-        steps.push(&self.passes.deposit, stage, None, Work::Sums);
-        steps.mark(Moment::Deposited);
+        steps.push(&self.passes.accumulate, dispatch, None, Work::Sums);
+        steps.mark(Moment::Accumulated);
         Ok(steps.steps)
     }
 }
@@ -135,16 +135,28 @@ struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    fn push(&mut self, pass: &'a Pass, stage: Stage, brick: Option<&'a BindGroup>, work: Work) {
+    fn push(
+        &mut self,
+        pass: &'a Pass,
+        dispatch: DispatchParameters,
+        brick: Option<&'a BindGroup>,
+        work: Work,
+    ) {
         let (turns, is_search, moment) = (self.turns, false, None);
-        self.steps.push(Step { pass, stage, brick, work, turns, rays: 1, is_search, moment });
+        self.steps.push(Step { pass, dispatch, brick, work, turns, rays: 1, is_search, moment });
     }
 
-    fn push_search(&mut self, pass: &'a Pass, stage: Stage, brick: &'a BindGroup, work: Work) {
+    fn push_search(
+        &mut self,
+        pass: &'a Pass,
+        dispatch: DispatchParameters,
+        brick: &'a BindGroup,
+        work: Work,
+    ) {
         let (turns, is_search, moment) = (self.turns, true, None);
         self.steps.push(Step {
             pass,
-            stage,
+            dispatch,
             brick: Some(brick),
             work,
             turns,
@@ -167,7 +179,7 @@ impl<'a> Steps<'a> {
     }
 
     /// What the rays meet at a surface: the camera's by pixels, others by lists.
-    fn extend(&mut self, stage: Stage) -> Result<(), GpuError> {
+    fn extend(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let (first, later) = &self.round.passes.extend;
         for (turn, brick) in self.round.scene.bricks().iter().enumerate() {
             let by = match (turn, later) {
@@ -175,100 +187,114 @@ impl<'a> Steps<'a> {
                 (_, Some(later)) => later,
                 (_, None) => return Err(GpuError::OtherRenderer),
             };
-            let (pass, work) = by_surface(by, stage, Area::Seen);
-            self.push_search(pass, stage, &brick.trace_group, work);
+            let (pass, work) = by_surface(by, dispatch, Area::Visible);
+            self.push_search(pass, dispatch, &brick.trace_group, work);
         }
         Ok(())
     }
 
     /// A dispatch for every brick: each shades what it holds.
-    fn shade(&mut self, by: &'a BySchedule, stage: Stage) {
+    fn shade(&mut self, by: &'a BySchedule, dispatch: DispatchParameters) {
         for brick in self.round.scene.bricks() {
             // What the camera sees beside the scene is background.
-            let (pass, work) = by_surface(by, stage, Area::Whole);
-            self.push(pass, stage, Some(&brick.surface_group), work);
+            let (pass, work) = by_surface(by, dispatch, Area::Whole);
+            self.push(pass, dispatch, Some(&brick.surface_group), work);
         }
     }
 
-    /// The stage of a surface; from the second on, the list of paths that go on is counted first.
-    fn surface(&mut self, stage: Stage, surface: u32, is_last: bool) -> Stage {
+    /// The parameters of the passes over a surface; from the second on, the list of paths that go on is counted first.
+    fn surface(
+        &mut self,
+        dispatch: DispatchParameters,
+        surface: u32,
+        is_last: bool,
+    ) -> DispatchParameters {
         let list = surface.wrapping_sub(1) & 1;
-        let stage = Stage { surface, is_last: is_last.into(), list, ..stage };
+        let dispatch = DispatchParameters { surface, is_last: is_last.into(), list, ..dispatch };
         if surface > 0 {
-            self.advance(Stage { is_new: 1, ..stage });
+            self.advance(DispatchParameters { is_new: 1, ..dispatch });
         }
-        stage
+        dispatch
     }
 
-    fn advance(&mut self, stage: Stage) {
-        let stage = Stage { count: 0, first: [0, 0], ..stage };
-        self.push(&self.round.passes.advance, stage, None, Work::Advance);
+    fn advance(&mut self, dispatch: DispatchParameters) {
+        let dispatch = DispatchParameters { count: 0, first: [0, 0], ..dispatch };
+        self.push(&self.round.passes.advance, dispatch, None, Work::Advance);
     }
 
     /// Searches what casts shadows for all that look for light.
-    fn search_occluders(&mut self, pass: &'a Pass, stage: Stage, area: Area) {
+    fn search_occluders(&mut self, pass: &'a Pass, dispatch: DispatchParameters, area: Area) {
         for brick in self.round.occluders.bricks() {
-            self.push_search(pass, stage, &brick.trace_group, Work::List(area));
+            self.push_search(pass, dispatch, &brick.trace_group, Work::List(area));
         }
     }
 
     fn path(
         &mut self,
-        stage: Stage,
+        dispatch: DispatchParameters,
         scatter: &'a BySchedule,
         occlude: &'a Pass,
     ) -> Result<(), GpuError> {
-        let lit = self.round.lit;
-        for surface in 0..=lit.most_surfaces {
-            let stage = self.surface(stage, surface, surface == lit.most_surfaces);
-            self.extend(stage)?;
+        let lighting = self.round.lighting;
+        for surface in 0..=lighting.most_surfaces {
+            let dispatch = self.surface(dispatch, surface, surface == lighting.most_surfaces);
+            self.extend(dispatch)?;
             self.mark(Moment::Extended);
-            self.shade(scatter, stage);
+            self.shade(scatter, dispatch);
             self.mark(Moment::Scattered);
-            if lit.look.source_count > 0 && surface < lit.most_surfaces {
-                let stage = Stage { list: LIST_OF_LIGHT, ..stage };
-                self.advance(stage);
-                self.search_occluders(occlude, stage, Area::Seen);
+            if lighting.parameters.source_count > 0 && surface < lighting.most_surfaces {
+                let dispatch = DispatchParameters { list: LIST_OF_LIGHT, ..dispatch };
+                self.advance(dispatch);
+                self.search_occluders(occlude, dispatch, Area::Visible);
                 self.mark(Moment::Occluded);
             }
         }
         Ok(())
     }
 
-    fn studio(&mut self, stage: Stage, passes: &StudioPasses<'a>) -> Result<(), GpuError> {
-        let lit = self.round.lit;
+    fn studio(
+        &mut self,
+        dispatch: DispatchParameters,
+        passes: &StudioPasses<'a>,
+    ) -> Result<(), GpuError> {
+        let lighting = self.round.lighting;
         let first = &self.round.scene.bricks()[0].surface_group;
-        let lights = lit.casts_shadow.len() as u32;
-        let directions = lit.look.occlusion_samples;
+        let lights = lighting.casts_shadow.len() as u32;
+        let directions = lighting.parameters.occlusion_samples;
         let at_once = self.round.occluders.rays_at_once(self.round.at_once);
-        for surface in 0..lit.most_surfaces {
-            let stage = self.surface(stage, surface, surface + 1 == lit.most_surfaces);
-            self.extend(stage)?;
-            self.shade(passes.surface, stage);
+        for surface in 0..lighting.most_surfaces {
+            let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.most_surfaces);
+            self.extend(dispatch)?;
+            self.shade(passes.surface, dispatch);
             if lights == 0 && directions == 0 {
                 continue;
             }
-            let stage = Stage { list: LIST_OF_LIGHT, ..stage };
-            self.advance(stage);
+            let dispatch = DispatchParameters { list: LIST_OF_LIGHT, ..dispatch };
+            self.advance(dispatch);
             for light in (0..lights).step_by(BITS) {
                 let count = (lights - light).min(BITS as u32);
-                let casts = |light: &u32| lit.has_shadows && lit.casts_shadow[*light as usize];
+                let casts =
+                    |light: &u32| lighting.has_shadows && lighting.casts_shadow[*light as usize];
                 for light in (light..light + count).filter(casts) {
-                    self.search_occluders(passes.shadow, Stage { light, ..stage }, Area::Occluders);
+                    self.search_occluders(
+                        passes.shadow,
+                        DispatchParameters { light, ..dispatch },
+                        Area::Occluders,
+                    );
                 }
-                let stage = Stage { light, count, ..stage };
-                self.push(passes.illuminate, stage, Some(first), Work::List(Area::Whole));
+                let dispatch = DispatchParameters { light, count, ..dispatch };
+                self.push(passes.illuminate, dispatch, Some(first), Work::List(Area::Whole));
             }
             for light in (0..directions).step_by(BITS) {
                 let count = (directions - light).min(BITS as u32);
                 for first in (light..light + count).step_by(at_once as usize) {
                     let count = (light + count - first).min(at_once);
-                    let stage = Stage { light: first, count, ..stage };
-                    self.search_occluders(passes.ambient, stage, Area::Occluders);
+                    let dispatch = DispatchParameters { light: first, count, ..dispatch };
+                    self.search_occluders(passes.ambient, dispatch, Area::Occluders);
                     self.weigh(count);
                 }
-                let stage = Stage { light, count, ..stage };
-                self.push(passes.gather, stage, Some(first), Work::List(Area::Whole));
+                let dispatch = DispatchParameters { light, count, ..dispatch };
+                self.push(passes.gather, dispatch, Some(first), Work::List(Area::Whole));
             }
         }
         Ok(())
@@ -276,10 +302,10 @@ impl<'a> Steps<'a> {
 }
 
 /// The camera's rays are taken by pixels, those that surfaces send by lists.
-fn by_surface(by: &BySchedule, stage: Stage, area: Area) -> (&Pass, Work) {
-    if stage.surface == 0 {
+fn by_surface(by: &BySchedule, dispatch: DispatchParameters, area: Area) -> (&Pass, Work) {
+    if dispatch.surface == 0 {
         (&by.pixels, Work::Pixels(area))
     } else {
-        (&by.queue, Work::List(Area::Seen))
+        (&by.queue, Work::List(Area::Visible))
     }
 }

@@ -2,7 +2,7 @@
 
 use wgpu::Limits;
 
-use super::kernels::{Mode, Sources, Surfaces};
+use super::kernels::{Materials, Mode, Sources};
 use super::records::{
     COMMON_SLOTS, FILM_SLOTS, GROUPS_NEEDED, LIGHT_SLOTS, LISTS, MEDIUM_SLOTS,
     PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
@@ -95,9 +95,9 @@ impl LitSizes {
 
 fn slots(mode: Mode) -> u64 {
     match mode {
-        Mode::Path(Surfaces::Any, ..) => MEDIUM_SLOTS,
-        Mode::Path(Surfaces::Matt, Sources::None, _) => COMMON_SLOTS,
-        Mode::Path(Surfaces::Matt, Sources::Any, _) => LIGHT_SLOTS,
+        Mode::Path(Materials::Any, ..) => MEDIUM_SLOTS,
+        Mode::Path(Materials::Matt, Sources::None, _) => COMMON_SLOTS,
+        Mode::Path(Materials::Matt, Sources::Any, _) => LIGHT_SLOTS,
         Mode::Studio => STUDIO_SLOTS,
     }
 }

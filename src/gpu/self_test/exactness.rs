@@ -76,7 +76,7 @@ fn comparison_and_conversion(values: &[Values], answers: &[Exact]) -> TestedProp
 fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
     let Values { f, g, whole, i, j, .. } = *v;
     let orders = [f < g, f <= g, f == g, f != g, f >= g, f > g];
-    let comparisons = (0..).zip(orders).fold(0, |bits, (place, is)| bits | u32::from(is) << place);
+    let comparisons = (0..).zip(orders).fold(0, |bits, (bit, is)| bits | u32::from(is) << bit);
     // The kernel's shifts ask for these.
     let shift = j & 31;
     [

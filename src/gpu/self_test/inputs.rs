@@ -5,33 +5,33 @@ use bytemuck::Zeroable;
 use super::records::{Operands, Values};
 use crate::generate::Uniform;
 
-/// The numbers of one invocation, by place.
+/// The numbers of one invocation, by slot.
 struct Numbers<'a> {
     uniform: &'a Uniform,
     index: u64,
 }
 
 impl Numbers<'_> {
-    fn bits(&self, place: u64) -> u32 {
+    fn bits(&self, slot: u64) -> u32 {
         // Truncation is what is wanted.
-        self.uniform.bits(self.index, place) as u32
+        self.uniform.bits(self.index, slot) as u32
     }
 
     /// From `first` to `last`, both included.
-    fn integer(&self, place: u64, first: i32, last: i32) -> i32 {
+    fn integer(&self, slot: u64, first: i32, last: i32) -> i32 {
         let count = f64::from(last - first + 1);
-        first + (self.uniform.number(self.index, place) * count) as i32
+        first + (self.uniform.number(self.index, slot) * count) as i32
     }
 
-    /// Any sign and mantissa. Takes one place.
-    fn float(&self, place: u64, exponent: i32) -> f32 {
-        let bits = self.bits(place);
+    /// Any sign and mantissa. Takes one slot.
+    fn float(&self, slot: u64, exponent: i32) -> f32 {
+        let bits = self.bits(slot);
         f32::from_bits(((exponent + 127) as u32) << 23 | bits & 0x807f_ffff)
     }
 
-    /// Any sign and mantissa, and an exponent between both. Takes two places.
-    fn float_between(&self, place: u64, first: i32, last: i32) -> f32 {
-        self.float(place, self.integer(place + 1, first, last))
+    /// Any sign and mantissa, and an exponent between both. Takes two slots.
+    fn float_between(&self, slot: u64, first: i32, last: i32) -> f32 {
+        self.float(slot, self.integer(slot + 1, first, last))
     }
 }
 
@@ -51,8 +51,7 @@ pub(super) fn operands(count: usize) -> Vec<Operands> {
         let quotient = numbers.integer(8, -100, 100);
         // Division is bounded for divisors from 2^-126 to 2^126.
         let divisor = numbers.integer(9, (-126).max(-126 - quotient), 125.min(125 - quotient));
-        let vector =
-            |place: u64| [0, 2, 4].map(|axis| numbers.float_between(place + axis, -10, 10));
+        let vector = |slot: u64| [0, 2, 4].map(|axis| numbers.float_between(slot + axis, -10, 10));
         Operands {
             a,
             b,
@@ -79,7 +78,7 @@ pub(super) fn values(count: usize) -> Vec<Values> {
     all(2, count, |numbers| {
         let f = numbers.float_between(0, -3, 30);
         let small = numbers.float(2, -126);
-        let tiny = |place| f32::from_bits(numbers.bits(place) & (MANTISSA >> 1));
+        let tiny = |slot| f32::from_bits(numbers.bits(slot) & (MANTISSA >> 1));
         Values {
             f,
             g: match numbers.integer(3, 0, 7) {

@@ -148,7 +148,7 @@ impl Environment {
     /// The radiance, in the units of the map, that comes from a direction of unit length.
     #[must_use]
     pub fn radiance(&self, direction: DVec3, rotation: [f32; 2]) -> [f64; 3] {
-        let [column, row] = self.place(direction, rotation);
+        let [column, row] = self.texel(direction, rotation);
         self.texels[row * self.width as usize + column].map(f64::from)
     }
 
@@ -157,7 +157,7 @@ impl Environment {
     /// It is positive where there is light.
     #[must_use]
     pub fn density(&self, direction: DVec3, rotation: [f32; 2]) -> f64 {
-        self.density_of(self.place(direction, rotation))
+        self.density_of(self.texel(direction, rotation))
     }
 
     /// A direction of unit length for two fractions of 2³², and its density per steradian: zero if the map is
@@ -182,7 +182,7 @@ impl Environment {
     }
 
     /// Column and row of the texel in a direction.
-    fn place(&self, direction: DVec3, [cosine, sine]: [f32; 2]) -> [usize; 2] {
+    fn texel(&self, direction: DVec3, [cosine, sine]: [f32; 2]) -> [usize; 2] {
         let d = turned(direction, [cosine, -sine]);
         // Zeros lose their signs, which atan2 would look at.
         let across = (d.x + 0.0).atan2(0.0 - d.z) / TAU + 0.5;

@@ -3,7 +3,7 @@
 mod header;
 
 use super::numbers::{Layout, rows};
-use crate::scene::points::Points;
+use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 
 /// Why an array is no list of spheres.
@@ -78,7 +78,7 @@ pub enum SpheresError {
 ///
 /// # Errors
 /// If the file is no such array, or has fewer or more bytes than its header says.
-pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<Points, SpheresError> {
+pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, SpheresError> {
     let (header, data) = header::split(bytes)?;
     let shape = header.shape;
     let (count, columns) = match *shape {
@@ -105,10 +105,10 @@ pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<Points, Spheres
     };
     let r = radius.unwrap_or_default();
     match header.dtype.as_str() {
-        "<f4" => rows(data, layout, f32::from_le_bytes, r as f32).map(Points::F32),
-        ">f4" => rows(data, layout, f32::from_be_bytes, r as f32).map(Points::F32),
-        "<f8" => rows(data, layout, f64::from_le_bytes, r).map(Points::F64),
-        _ => rows(data, layout, f64::from_be_bytes, r).map(Points::F64),
+        "<f4" => rows(data, layout, f32::from_le_bytes, r as f32).map(SphereArray::F32),
+        ">f4" => rows(data, layout, f32::from_be_bytes, r as f32).map(SphereArray::F32),
+        "<f8" => rows(data, layout, f64::from_le_bytes, r).map(SphereArray::F64),
+        _ => rows(data, layout, f64::from_be_bytes, r).map(SphereArray::F64),
     }
     .map_err(|_| SpheresError::Memory { rows: count })
 }

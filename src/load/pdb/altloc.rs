@@ -50,8 +50,8 @@ pub(super) fn kept(atoms: impl Iterator<Item = Place> + Clone) -> Vec<bool> {
             return Some(0);
         }
         let same_residue = locations.first()?.residue == atom.residue;
-        let place = locations.iter().position(|location| location.letter == atom.letter)?;
-        same_residue.then_some(place + 1)
+        let index = locations.iter().position(|location| location.letter == atom.letter)?;
+        same_residue.then_some(index + 1)
     };
     let mut best = HashMap::new();
     for atom in atoms.clone() {

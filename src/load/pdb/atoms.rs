@@ -9,7 +9,7 @@ use super::record::Record;
 use crate::image::color::LinearRgb;
 use crate::load::elements::{Appearance, appearance, unknown_note};
 use crate::load::{Column, ColumnValues, Loaded};
-use crate::scene::points::Points;
+use crate::scene::sphere_array::SphereArray;
 
 /// What an atom must have, each with its first and last column.
 const NEEDED: [(&str, usize, usize); 6] = [
@@ -76,9 +76,9 @@ impl Atoms {
         self.chain.push([chain, b' ', b' ', b' ']);
         self.record.push(if record.name == "ATOM" { *b"ATOM" } else { *b"HETA" });
 
-        let look = self.species.push(name, record.bytes(77), residue);
-        self.spheres.push([x, y, z, look.radius]);
-        self.colors.push(look.color);
+        let appearance = self.species.push(name, record.bytes(77), residue);
+        self.spheres.push([x, y, z, appearance.radius]);
+        self.colors.push(appearance.color);
         let ([letter], [insertion]) = (record.bytes(17), record.bytes(27));
         self.letters.push([letter, insertion]);
         self.has_alternates |= letter != b' ';
@@ -138,7 +138,7 @@ impl Atoms {
             }
             numbers @ ColumnValues::Numbers(_) => numbers,
         };
-        let mut loaded = Loaded::new(Points::F64(self.spheres));
+        let mut loaded = Loaded::new(SphereArray::F64(self.spheres));
         loaded.colors = Some(self.colors);
         loaded.columns = [
             ("species", self.species.labels.into_values()),
@@ -161,8 +161,8 @@ impl Atoms {
 #[derive(Default)]
 struct Species {
     labels: Labels,
-    /// What each of the names looks like.
-    looks: Vec<Appearance>,
+    /// What each of the names appearances like.
+    appearances: Vec<Appearance>,
     /// The index of what has this name, this symbol and this kind of residue.
     known: Memo,
 }
@@ -177,27 +177,27 @@ impl Species {
             let mut field = [b' '; 4];
             field.iter_mut().zip(text.bytes()).for_each(|(to, from)| *to = from);
             let index = self.labels.index(field);
-            if index as usize == self.looks.len() {
-                // Without a text it looks like what is not an element.
-                self.looks.push(appearance(if is_element { &text } else { "" }));
+            if index as usize == self.appearances.len() {
+                // Without a text it appearances like what is not an element.
+                self.appearances.push(appearance(if is_element { &text } else { "" }));
             }
             self.known.insert(key, index);
             index
         });
         self.labels.indices.push(index);
-        self.looks.get(index as usize).copied().unwrap_or_else(|| appearance(""))
+        self.appearances.get(index as usize).copied().unwrap_or_else(|| appearance(""))
     }
 
     fn retain(&mut self, keep: &[bool]) {
         let former = self.labels.retain(keep);
-        let look = |index: &u32| self.looks.get(*index as usize).copied();
-        self.looks = former.iter().filter_map(look).collect();
+        let appearance = |index: &u32| self.appearances.get(*index as usize).copied();
+        self.appearances = former.iter().filter_map(appearance).collect();
     }
 
     /// A note about what is not an element.
     fn unknown(&self) -> Option<String> {
-        let looks = self.labels.names.iter().zip(&self.looks);
-        let unknown = looks.filter(|(_, look)| !look.is_element);
+        let appearances = self.labels.names.iter().zip(&self.appearances);
+        let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);
         unknown_note(&unknown.map(|(name, _)| name.clone()).collect::<Vec<_>>(), "")
     }
 }

@@ -16,7 +16,7 @@ impl Memo {
     const RECENT: usize = 64;
 
     pub(super) fn get(&mut self, key: u64) -> Option<u32> {
-        let recent = self.recent.get_mut(Self::place(key));
+        let recent = self.recent.get_mut(Self::slot(key));
         match recent {
             Some(Some((found, value))) if *found == key => Some(*value),
             _ => {
@@ -34,7 +34,7 @@ impl Memo {
     }
 
     /// Multiplicative hashing: the upper bits of a product with 2⁶⁴ divided by the golden ratio.
-    fn place(key: u64) -> usize {
+    fn slot(key: u64) -> usize {
         (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize
     }
 }

@@ -79,9 +79,9 @@ impl<'a> Record<'a> {
         match std::str::from_utf8(bytes) {
             Ok(text) if text.is_ascii() => Ok(Self { line, name, text }),
             _ => {
-                let place = bytes.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
-                let byte = bytes.get(place).copied().unwrap_or_default();
-                Err(PdbError::NotAscii { line, column: place + 1, byte })
+                let offset = bytes.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
+                let byte = bytes.get(offset).copied().unwrap_or_default();
+                Err(PdbError::NotAscii { line, column: offset + 1, byte })
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::load::elements::appearance;
 use crate::load::{ColumnValues, Labels};
-use crate::scene::points::Points;
+use crate::scene::sphere_array::SphereArray;
 
 /// An atom with what matters to a test; the rest is in its columns, too.
 struct Row {
@@ -68,9 +68,9 @@ fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
 }
 
 fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
-    match &loaded.points {
-        Points::F64(spheres) => spheres,
-        Points::F32(_) => panic!("f32"),
+    match &loaded.spheres {
+        SphereArray::F64(spheres) => spheres,
+        SphereArray::F32(_) => panic!("f32"),
     }
 }
 
@@ -128,7 +128,7 @@ fn line_ends_blanks_marks_and_short_lines() {
     }
     let cut: String = text.lines().map(|line| format!("{}\n", &line[..54])).collect();
     let cut = loaded(&cut);
-    assert_eq!(cut.points, wanted.points);
+    assert_eq!(cut.spheres, wanted.spheres);
     assert_eq!(numbers(&cut, "occupancy"), [1.0, 1.0]);
     assert_eq!(numbers(&cut, "b_factor"), [0.0, 0.0]);
 }
@@ -335,8 +335,8 @@ fn wrong_numbers() {
 fn bytes_that_are_not_ascii() {
     let mut bytes = format!("REMARK caf\u{e9}\n{}", ROW.line()).into_bytes();
     assert!(read(&bytes, 0).is_ok());
-    let place = bytes.len() - 81 + 13;
-    bytes[place] = 0xe9;
+    let offset = bytes.len() - 81 + 13;
+    bytes[offset] = 0xe9;
     assert_eq!(
         read(&bytes, 0).unwrap_err().to_string(),
         "line 2, column 14: the byte 0xe9 is not ASCII; ATOM, HETATM and CRYST1 records must be ASCII text"
@@ -371,17 +371,17 @@ fn no_input_panics() {
     for _ in 0..5000 {
         let mut bytes = text.clone().into_bytes();
         for _ in 0..random.usize(1..6) {
-            let place = random.usize(..bytes.len());
+            let offset = random.usize(..bytes.len());
             match random.u8(..4) {
-                0 => bytes[place] = random.u8(..),
-                1 => bytes[place] = telling[random.usize(..telling.len())],
-                2 => drop(bytes.remove(place)),
-                _ => bytes.insert(place, telling[random.usize(..telling.len())]),
+                0 => bytes[offset] = random.u8(..),
+                1 => bytes[offset] = telling[random.usize(..telling.len())],
+                2 => drop(bytes.remove(offset)),
+                _ => bytes.insert(offset, telling[random.usize(..telling.len())]),
             }
         }
         for frame in 0..3 {
             if let Ok(loaded) = read(&bytes, frame) {
-                let atoms = loaded.points.len();
+                let atoms = loaded.spheres.len();
                 for column in &loaded.columns {
                     let values = match &column.values {
                         ColumnValues::Labels(Labels { names, indices }) => {

@@ -9,7 +9,7 @@ use crate::geometry::math::{MAX_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::Ground;
 use crate::scene::Scene;
-use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError};
+use crate::scene_file::span::{Keys, Lines, Number, SceneFileError, WithSpan};
 use crate::scene_file::value::{ColorValue, Vector};
 
 #[derive(Deserialize)]
@@ -37,17 +37,17 @@ impl GroundPlan {
     pub(super) fn read(
         table: Spanned<Table<GroundTable>>,
         lines: &Lines<'_>,
-    ) -> Result<Placed<Self>, SceneFileError> {
-        let place = lines.place(table.span().start);
+    ) -> Result<WithSpan<Self>, SceneFileError> {
+        let span = lines.span(table.span().start);
         let GroundTable { height, point, normal, color, shadow_catcher } = table.into_inner().0;
         if let (Some(height), Some(_)) = (&height, point.as_ref().or(normal.as_ref())) {
             return Err(lines
-                .place(height.span().start)
+                .span(height.span().start)
                 .error("`height` and `point` with `normal` say the same in two ways; drop one"));
         }
         if let (Some(normal), None) = (&normal, &point) {
-            let place = lines.place(normal.span().start);
-            return Err(place.error("`normal` needs a `point` of the ground"));
+            let span = lines.span(normal.span().start);
+            return Err(span.error("`normal` needs a `point` of the ground"));
         }
         let is_near = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= MAX_LENGTH);
         for (key, vector) in [("point", &point), ("normal", &normal)] {
@@ -57,13 +57,13 @@ impl GroundPlan {
             let [x, y, z] = vector.get_ref().0;
             let is_direction = key == "point" || unit(DVec3::new(x, y, z)).is_some();
             if !(is_near(&[x, y, z]) && is_direction) {
-                return Err(lines.place(vector.span().start).error(format!(
+                return Err(lines.span(vector.span().start).error(format!(
                     "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, \
                      and a normal must have a length"
                 )));
             }
         }
-        let keys = Keys { lines, numbers: vec![("height", height)], table: place };
+        let keys = Keys { lines, numbers: vec![("height", height)], table: span };
         let range = "between -2^56 and 2^56";
         let height = keys.within("height", [-MAX_LENGTH, MAX_LENGTH], range)?;
         let point = point.map(|point| DVec3::from(point.get_ref().0));
@@ -73,7 +73,7 @@ impl GroundPlan {
             color: color.0,
             is_shadow_catcher: shadow_catcher,
         };
-        Ok(Placed { value, place })
+        Ok(WithSpan { value, span })
     }
 
     pub(super) fn ground(&self, scene: &Scene) -> Ground {

@@ -8,7 +8,9 @@ use crate::exact::Table;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH, unit};
 use crate::image::color::LinearRgb;
 use crate::light::{Light, LightFrame, LightKind};
-use crate::scene_file::place::{Keys, Lines, Number, Place, SceneFileError, refuse_foreign, span};
+use crate::scene_file::span::{
+    Keys, Lines, Number, SceneFileError, Span, range_of, refuse_foreign,
+};
 use crate::scene_file::value::{ColorValue, Vector, scaled};
 
 /// What a light is, by name.
@@ -76,12 +78,12 @@ struct Aim {
 
 impl Aim {
     /// The direction towards the light.
-    fn toward(self, lines: &Lines<'_>, table: Place) -> Result<DVec3, SceneFileError> {
+    fn toward(self, lines: &Lines<'_>, table: Span) -> Result<DVec3, SceneFileError> {
         let (key, vector, sign) = match (self.toward, self.direction) {
             (Some(toward), None) => ("toward", toward, 1.0),
             (None, Some(direction)) => ("direction", direction, -1.0),
             (Some(_), Some(direction)) => {
-                return Err(lines.place(direction.span().start).error(
+                return Err(lines.span(direction.span().start).error(
                     "`toward` and `direction` are opposite ways to say the same; drop one",
                 ));
             }
@@ -95,8 +97,8 @@ impl Aim {
         let toward = sign * DVec3::from(vector.get_ref().0);
         unit(toward).map(|_| toward).ok_or_else(|| {
             let [x, y, z] = vector.get_ref().0;
-            let place = lines.place(vector.span().start);
-            place.error(format!("`{key}` is [{x:?}, {y:?}, {z:?}], which is no direction"))
+            let span = lines.span(vector.span().start);
+            span.error(format!("`{key}` is [{x:?}, {y:?}, {z:?}], which is no direction"))
         })
     }
 }
@@ -153,7 +155,7 @@ fn position(
         return Ok(DVec3::from(position));
     }
     let [x, y, z] = position;
-    Err(keys.lines.place(vector.span().start).error(format!(
+    Err(keys.lines.span(vector.span().start).error(format!(
         "`position` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56"
     )))
 }
@@ -162,7 +164,7 @@ pub(super) fn read(
     table: Spanned<Table<LightTable>>,
     lines: &Lines<'_>,
 ) -> Result<Light, SceneFileError> {
-    let place = lines.place(table.span().start);
+    let span = lines.span(table.span().start);
     let table = table.into_inner().0;
     let kind = table.kind;
     let is_one = |kinds: &[Kind]| kinds.contains(&kind);
@@ -171,16 +173,16 @@ pub(super) fn read(
         lines,
         kind.name(),
         &[
-            ("at", span(&table.at), kind != Kind::Head),
-            ("toward", span(&table.toward), far),
-            ("direction", span(&table.direction), far),
-            ("angular_radius", span(&table.angular_radius), far),
-            ("angular_diameter", span(&table.angular_diameter), far),
-            ("position", span(&table.position), near),
-            ("radius", span(&table.radius), is_one(&[Kind::Sphere])),
-            ("strength", span(&table.strength), !near),
-            ("intensity", span(&table.intensity), is_one(&[Kind::Point])),
-            ("radiance", span(&table.radiance), is_one(&[Kind::Sphere])),
+            ("at", range_of(&table.at), kind != Kind::Head),
+            ("toward", range_of(&table.toward), far),
+            ("direction", range_of(&table.direction), far),
+            ("angular_radius", range_of(&table.angular_radius), far),
+            ("angular_diameter", range_of(&table.angular_diameter), far),
+            ("position", range_of(&table.position), near),
+            ("radius", range_of(&table.radius), is_one(&[Kind::Sphere])),
+            ("strength", range_of(&table.strength), !near),
+            ("intensity", range_of(&table.intensity), is_one(&[Kind::Point])),
+            ("radiance", range_of(&table.radiance), is_one(&[Kind::Sphere])),
         ],
     )?;
     let numbers = vec![
@@ -191,12 +193,11 @@ pub(super) fn read(
         ("intensity", table.intensity),
         ("radiance", table.radiance),
     ];
-    let keys = Keys { lines, numbers, table: place };
+    let keys = Keys { lines, numbers, table: span };
     let light = match kind {
         Kind::Head => LightKind::Head { strength: times(table.color, &keys, "strength")? },
         Kind::Directional => LightKind::Directional {
-            toward: Aim { toward: table.toward, direction: table.direction }
-                .toward(lines, place)?,
+            toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, span)?,
             strength: times(table.color, &keys, "strength")?,
             angular_radius: angular_radius(&keys, 0.0)?,
         },
@@ -209,7 +210,7 @@ pub(super) fn read(
             let radius = keys.within("radius", [MIN_LENGTH, MAX_LENGTH], range)?;
             LightKind::Sphere {
                 center: position(table.position, kind, &keys)?,
-                radius: radius.ok_or_else(|| place.error("a sphere light needs a `radius`"))?,
+                radius: radius.ok_or_else(|| span.error("a sphere light needs a `radius`"))?,
                 radiance: times(table.color, &keys, "radiance")?,
             }
         }
@@ -221,16 +222,16 @@ pub(super) fn read_sun(
     table: Spanned<Table<SunTable>>,
     lines: &Lines<'_>,
 ) -> Result<Light, SceneFileError> {
-    let place = lines.place(table.span().start);
+    let span = lines.span(table.span().start);
     let table = table.into_inner().0;
     let numbers = vec![
         ("angular_radius", table.angular_radius),
         ("angular_diameter", table.angular_diameter),
         ("strength", table.strength),
     ];
-    let keys = Keys { lines, numbers, table: place };
+    let keys = Keys { lines, numbers, table: span };
     let kind = LightKind::Directional {
-        toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, place)?,
+        toward: Aim { toward: table.toward, direction: table.direction }.toward(lines, span)?,
         strength: times(table.color, &keys, "strength")?,
         angular_radius: angular_radius(&keys, SUN_RADIUS)?,
     };

@@ -22,7 +22,7 @@ use sky::SkyPlan;
 use studio::StudioPlan;
 
 use super::SceneFile;
-use super::place::{Lines, Place, Placed, SceneFileError, span};
+use super::span::{Lines, SceneFileError, Span, WithSpan, range_of};
 use super::value::scaled;
 use crate::camera::Camera;
 use crate::exact::Table;
@@ -73,7 +73,7 @@ pub(super) struct SceneLighting {
     /// `None` if the file says nothing of light that comes from elsewhere than spheres.
     lights: Option<Vec<Light>>,
     sky: Option<SkyPlan>,
-    ground: Option<Placed<GroundPlan>>,
+    ground: Option<WithSpan<GroundPlan>>,
 }
 
 impl LightingTables {
@@ -97,28 +97,28 @@ impl LightingTables {
 
     /// What the file says, or what it says that only a lit picture has.
     fn integrator(&self, lines: &Lines<'_>) -> Result<Option<IntegratorKind>, SceneFileError> {
-        let of_paths = [("[path]", span(&self.path)), ("[sky]", span(&self.sky))];
-        let of_studio = [("[studio]", span(&self.studio))];
+        let of_paths = [("[path]", range_of(&self.path)), ("[sky]", range_of(&self.sky))];
+        let of_studio = [("[studio]", range_of(&self.studio))];
         let lights = self.lights.as_ref();
         let of_both = [
-            ("[sampling]", span(&self.sampling)),
+            ("[sampling]", range_of(&self.sampling)),
             ("[[lights]]", lights.map(|lights| lights.first().map_or(0..0, Spanned::span))),
-            ("[sun]", span(&self.sun)),
-            ("[ground]", span(&self.ground)),
+            ("[sun]", range_of(&self.sun)),
+            ("[ground]", range_of(&self.ground)),
         ];
         let first = |tables: &[(&'static str, Option<Range<usize>>)]| {
             tables.iter().find_map(|(name, span)| Some((*name, span.as_ref()?.start)))
         };
         let of_any = || first(&of_paths).or(first(&of_studio)).or(first(&of_both));
         if let (Some(IntegratorKind::Primary), Some((table, start))) = (self.integrator, of_any()) {
-            return Err(lines.place(start).error(format!(
+            return Err(lines.span(start).error(format!(
                 "`{table}` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one"
             )));
         }
         let kind = match (self.integrator, first(&of_paths), first(&of_studio)) {
             (Some(kind), ..) => Some(kind),
             (None, Some((table, start)), Some(_)) => {
-                return Err(lines.place(start).error(format!(
+                return Err(lines.span(start).error(format!(
                     "`{table}` is for paths and `[studio]` for a studio; say which with \
                      `integrator = \"path\"` or `integrator = \"studio\"`"
                 )));
@@ -130,7 +130,7 @@ impl LightingTables {
             }
         };
         match (kind, self.shading) {
-            (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => Err(lines.place(start).error(
+            (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => Err(lines.span(start).error(
                 "`shading` is for pictures without light, and this file asks for light; drop one",
             )),
             _ => Ok(kind),
@@ -196,21 +196,21 @@ impl SceneFile {
             is_denoised: says.is_denoised,
         };
         self.check_colors()?;
-        settings.check(scene).map(|()| settings).map_err(|error| self.place_of(&error).error(error))
+        settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
     }
 
     /// Refuses spheres of this file that would create light.
     fn check_colors(&self) -> Result<(), SceneFileError> {
         for (index, sphere) in self.spheres.iter().enumerate() {
-            let (color, finish) = (sphere.value.color, sphere.value.finish);
+            let (color, surface) = (sphere.value.color, sphere.value.surface);
             let (rgb, what) = (color.to_array(), format!("sphere {index}"));
-            match finish.material {
+            match surface.material {
                 Material::Emissive { strength } => {
                     scaled(color, strength.into(), &what)
-                        .map_err(|error| sphere.place.error(error))?;
+                        .map_err(|error| sphere.span.error(error))?;
                 }
                 _ if rgb.iter().any(|c| *c > 1.0) => {
-                    return Err(sphere.place.error(SettingsError::Albedo { what, rgb }));
+                    return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));
                 }
                 _ => {}
             }
@@ -219,15 +219,15 @@ impl SceneFile {
     }
 
     /// Of what is left when all tables, and the spheres of this file, have been checked.
-    fn place_of(&self, error: &SettingsError) -> Place {
-        let ground = || self.lighting.ground.as_ref().map(|ground| ground.place);
-        let data = || self.data.as_ref().map(|data| data.place);
+    fn span_of(&self, error: &SettingsError) -> Span {
+        let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
+        let data = || self.data.as_ref().map(|data| data.span);
         match error {
             SettingsError::Ground | SettingsError::Catcher => ground(),
             SettingsError::Albedo { what, .. } if what == "the ground" => ground(),
             SettingsError::Albedo { .. } | SettingsError::TooBright { .. } => data(),
             _ => None,
         }
-        .unwrap_or(Place::START)
+        .unwrap_or(Span::START)
     }
 }

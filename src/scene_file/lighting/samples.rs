@@ -6,7 +6,7 @@ use toml::Spanned;
 use crate::camera::filter::PixelFilter;
 use crate::exact::Table;
 use crate::render::{LightSampling, PathTracing, Sampling};
-use crate::scene_file::place::{Keys, Lines, SceneFileError, whole};
+use crate::scene_file::span::{Keys, Lines, SceneFileError, whole};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -37,7 +37,7 @@ pub(super) fn read_sampling(
         filter: filter.unwrap_or(defaults.filter),
     };
     let numbers = vec![("samples", whole(&samples))];
-    let keys = Keys { lines, numbers, table: lines.place(start) };
+    let keys = Keys { lines, numbers, table: lines.span(start) };
     sampling.check().map(|()| sampling).map_err(|error| keys.refused(&error))
 }
 
@@ -65,6 +65,6 @@ pub(super) fn read_path(
         light_sampling: light_sampling.unwrap_or(defaults.light_sampling),
     };
     let numbers = vec![("max_depth", whole(&max_depth))];
-    let keys = Keys { lines, numbers, table: lines.place(start) };
+    let keys = Keys { lines, numbers, table: lines.span(start) };
     path.check().map(|()| path).map_err(|error| keys.refused(&error))
 }

@@ -9,7 +9,9 @@ use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::light::environment::Environment;
 use crate::light::{Sky, SkyLight};
-use crate::scene_file::place::{Keys, Lines, Number, Placed, SceneFileError, refuse_foreign, span};
+use crate::scene_file::span::{
+    Keys, Lines, Number, SceneFileError, WithSpan, range_of, refuse_foreign,
+};
 use crate::scene_file::value::{ColorValue, scaled};
 
 /// What a sky is, by name.
@@ -55,7 +57,7 @@ pub(super) struct SkyPlan {
 #[derive(Debug)]
 enum SkyPlanLight {
     Known(SkyLight),
-    Image { file: Placed<String>, strength: f32, rotation: f64 },
+    Image { file: WithSpan<String>, strength: f32, rotation: f64 },
 }
 
 impl SkyPlan {
@@ -63,27 +65,27 @@ impl SkyPlan {
         table: Spanned<Table<SkyTable>>,
         lines: &Lines<'_>,
     ) -> Result<Self, SceneFileError> {
-        let place = lines.place(table.span().start);
+        let span = lines.span(table.span().start);
         let table = table.into_inner().0;
         let kind = table.kind;
         refuse_foreign(
             lines,
             kind.name(),
             &[
-                ("color", span(&table.color), kind == Kind::Constant),
-                ("zenith", span(&table.zenith), kind == Kind::Gradient),
-                ("horizon", span(&table.horizon), kind == Kind::Gradient),
-                ("nadir", span(&table.nadir), kind == Kind::Gradient),
-                ("image", span(&table.image), kind == Kind::Image),
-                ("rotation", span(&table.rotation), kind == Kind::Image),
+                ("color", range_of(&table.color), kind == Kind::Constant),
+                ("zenith", range_of(&table.zenith), kind == Kind::Gradient),
+                ("horizon", range_of(&table.horizon), kind == Kind::Gradient),
+                ("nadir", range_of(&table.nadir), kind == Kind::Gradient),
+                ("image", range_of(&table.image), kind == Kind::Image),
+                ("rotation", range_of(&table.rotation), kind == Kind::Image),
             ],
         )?;
         let numbers = vec![("rotation", table.rotation), ("strength", table.strength)];
-        let keys = Keys { lines, numbers, table: place };
+        let keys = Keys { lines, numbers, table: span };
         let strength = keys.within("strength", [0.0, 1e6], "from 0 to 1e6")?.unwrap_or(1.0);
         let color = |value: Option<Spanned<ColorValue>>, default: f32| {
             let color = value.map_or(LinearRgb::gray(default), |color| color.into_inner().0);
-            scaled(color, strength, "the sky").map_err(|error| place.error(error))
+            scaled(color, strength, "the sky").map_err(|error| span.error(error))
         };
         // Without numbers of its own, the gradient of a sky that no file describes.
         let light = match kind {
@@ -97,10 +99,10 @@ impl SkyPlan {
                 let range = "from -36000 to 36000 degrees";
                 let degrees = keys.within("rotation", [-36e3, 36e3], range)?.unwrap_or(0.0);
                 let file = table.image.ok_or_else(|| {
-                    place.error("an image needs a file; write `image = \"FILE.hdr\"`, or .exr")
+                    span.error("an image needs a file; write `image = \"FILE.hdr\"`, or .exr")
                 })?;
                 SkyPlanLight::Image {
-                    file: lines.placed(file),
+                    file: lines.spanned(file),
                     strength: strength as f32,
                     rotation: degrees.to_radians(),
                 }
@@ -121,7 +123,7 @@ impl SkyPlan {
             SkyPlanLight::Known(light) => light.clone(),
             SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {
                 environment: Arc::new(
-                    image.ok_or_else(|| file.place.error("this image was not given"))?,
+                    image.ok_or_else(|| file.span.error("this image was not given"))?,
                 ),
                 strength: *strength,
                 rotation: *rotation,

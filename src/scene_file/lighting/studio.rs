@@ -10,7 +10,7 @@ use crate::image::color::LinearRgb;
 use crate::range::RangeError;
 use crate::render::{DepthCue, Occlusion, Outline, Studio};
 use crate::scene::Scene;
-use crate::scene_file::place::{Keys, Lines, Number, Place, Placed, SceneFileError, whole};
+use crate::scene_file::span::{Keys, Lines, Number, SceneFileError, Span, WithSpan, whole};
 use crate::scene_file::value::ColorValue;
 
 #[derive(Default, Deserialize)]
@@ -52,7 +52,7 @@ struct OutlineTable {
 #[derive(Debug)]
 pub(super) struct StudioPlan {
     studio: Studio,
-    depth_cue: Option<Placed<DepthCuePlan>>,
+    depth_cue: Option<WithSpan<DepthCuePlan>>,
 }
 
 #[derive(Debug)]
@@ -67,7 +67,7 @@ impl StudioPlan {
         table: Option<Spanned<Table<StudioTable>>>,
         lines: &Lines<'_>,
     ) -> Result<Self, SceneFileError> {
-        let place = table.as_ref().map_or(Place::START, |table| lines.place(table.span().start));
+        let span = table.as_ref().map_or(Span::START, |table| lines.span(table.span().start));
         let table = table.map(|table| table.into_inner().0).unwrap_or_default();
         let defaults = Studio::default();
         let max_surfaces = table.max_surfaces.as_ref().map(|most| *most.get_ref());
@@ -78,7 +78,7 @@ impl StudioPlan {
             ..defaults
         };
         let numbers = vec![("max_surfaces", whole(&table.max_surfaces))];
-        check(&bare, &Keys { lines, numbers, table: place })?;
+        check(&bare, &Keys { lines, numbers, table: span })?;
         let occlusion = table.occlusion.map(|table| read_occlusion(table, lines)).transpose()?;
         let outline = table.outline.map(|table| read_outline(table, lines)).transpose()?;
         let depth_cue = table.depth_cue.map(|table| read_depth_cue(table, lines)).transpose()?;
@@ -93,13 +93,13 @@ impl StudioPlan {
         background: LinearRgb,
     ) -> Result<Studio, SceneFileError> {
         let mut studio = self.studio.clone();
-        if let Some(Placed { value: plan, place }) = &self.depth_cue {
+        if let Some(WithSpan { value: plan, span }) = &self.depth_cue {
             let [near, far] = reach(scene, camera);
             let near = plan.near.unwrap_or(plan.far.map_or(near, |far| near.min(far / 2.0)));
             let far = plan.far.unwrap_or(if far > near { far } else { near + 1.0 });
             let color = plan.color.unwrap_or(background);
             studio.depth_cue = Some(DepthCue { near, far, color });
-            studio.check().map_err(|error| place.error(error))?;
+            studio.check().map_err(|error| span.error(error))?;
         }
         Ok(studio)
     }
@@ -122,7 +122,7 @@ fn read_occlusion(
     table: Spanned<Table<OcclusionTable>>,
     lines: &Lines<'_>,
 ) -> Result<Occlusion, SceneFileError> {
-    let place = lines.place(table.span().start);
+    let span = lines.span(table.span().start);
     let OcclusionTable { radius, samples } = table.into_inner().0;
     let defaults = Occlusion::default();
     let occlusion = Occlusion {
@@ -131,7 +131,7 @@ fn read_occlusion(
     };
     let numbers = vec![("radius", radius), ("samples", whole(&samples))];
     let studio = Studio { occlusion: Some(occlusion), ..Studio::default() };
-    check(&studio, &Keys { lines, numbers, table: place })?;
+    check(&studio, &Keys { lines, numbers, table: span })?;
     Ok(occlusion)
 }
 
@@ -139,12 +139,12 @@ fn read_outline(
     table: Spanned<Table<OutlineTable>>,
     lines: &Lines<'_>,
 ) -> Result<Outline, SceneFileError> {
-    let place = lines.place(table.span().start);
+    let span = lines.span(table.span().start);
     let OutlineTable { width, color, depth, angle } = table.into_inner().0;
     let keys = Keys {
         lines,
         numbers: vec![("width", width), ("depth", depth), ("angle", angle)],
-        table: place,
+        table: span,
     };
     let defaults = Outline::default();
     let any = [f64::NEG_INFINITY, f64::INFINITY];
@@ -166,10 +166,10 @@ fn read_outline(
 fn read_depth_cue(
     table: Spanned<Table<DepthCueTable>>,
     lines: &Lines<'_>,
-) -> Result<Placed<DepthCuePlan>, SceneFileError> {
-    let place = lines.place(table.span().start);
+) -> Result<WithSpan<DepthCuePlan>, SceneFileError> {
+    let span = lines.span(table.span().start);
     let DepthCueTable { near, far, color } = table.into_inner().0;
-    let keys = Keys { lines, numbers: vec![("near", near), ("far", far)], table: place };
+    let keys = Keys { lines, numbers: vec![("near", near), ("far", far)], table: span };
     let near = keys.within("near", [0.0, MAX_LENGTH], "0 or more, and at most 2^56")?;
     let range = "more than `near`, and from 2^-56 to 2^56";
     let far = keys.within("far", [MIN_LENGTH, MAX_LENGTH], range)?;
@@ -178,5 +178,5 @@ fn read_depth_cue(
         return Err(keys.refused(&RangeError { parameter: "far", value: far, range }));
     }
     let value = DepthCuePlan { near, far, color: color.map(|color| color.0) };
-    Ok(Placed { value, place })
+    Ok(WithSpan { value, span })
 }

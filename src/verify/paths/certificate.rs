@@ -23,7 +23,7 @@ pub enum PathStage {
     /// Whether anything is between a surface and the light that it looks for.
     Occlude,
     /// What the sample adds to the picture.
-    Settle,
+    Accumulate,
 }
 
 impl PathStage {
@@ -38,7 +38,7 @@ impl PathStage {
             Self::Light => "light",
             Self::Scatter => "scatter",
             Self::Occlude => "occlude",
-            Self::Settle => "settle",
+            Self::Accumulate => "accumulate",
         }
     }
 }
@@ -94,7 +94,7 @@ pub struct PathCertificate {
     /// Searches for what hides a light.
     pub occlude: StageCounts,
     /// What samples add.
-    pub settle: StageCounts,
+    pub accumulate: StageCounts,
     /// How many stages are not legal.
     pub violation_count: u64,
     /// The first of them, in the order of samples, surfaces and pixels.
@@ -107,7 +107,7 @@ impl PathCertificate {
     /// All stages together.
     #[must_use]
     pub fn stages(&self) -> StageCounts {
-        [self.start, self.extend, self.scatter, self.occlude, self.settle]
+        [self.start, self.extend, self.scatter, self.occlude, self.accumulate]
             .into_iter()
             .fold(StageCounts::default(), StageCounts::plus)
     }

@@ -2,12 +2,12 @@
 
 use super::certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
 use super::expected::{Expected, Mismatch};
-use super::kernel::{Address, Hit, Kernel, settled};
+use super::kernel::{Address, Hit, Kernel, radiance_so_far};
 use super::recording::{NO_EMITTER, PathRecording, PathState, RecordedSample, flag, slot};
 use super::search::{self, Searched};
 use super::{start, upload};
 use crate::parallel::{map_parts, ranges};
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
 use crate::verify::certificate::KEPT;
 use crate::verify::checker::Checker;
@@ -19,7 +19,7 @@ use crate::verify::number::{Number, Vector};
 const CHUNK: usize = 256;
 
 /// What is known of a stage.
-enum Verdict {
+enum StageOutcome {
     Decided,
     Open,
     Undecided,
@@ -42,7 +42,7 @@ impl Checker<'_> {
         if certificate.upload.is_some() {
             return certificate;
         }
-        let is_matt = |finish: &Finish| match finish.material {
+        let is_matt = |surface: &SurfaceProperties| match surface.material {
             Material::Lambert { specular, .. } => specular == 0.0,
             Material::Emissive { .. } => true,
             Material::Conductor { .. } | Material::Dielectric { .. } => false,
@@ -51,7 +51,7 @@ impl Checker<'_> {
             checker: self,
             recording,
             model: CameraModel::new(recording.camera.kind, &recording.uploaded, &recording.film),
-            is_matt: self.scene.appearance().finishes().iter().all(is_matt),
+            is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
         };
         for sample in &recording.samples {
             let pixels = ranges(sample.start.len(), CHUNK);
@@ -71,7 +71,7 @@ impl PathCertificate {
         self.extend = self.extend.plus(part.extend);
         self.scatter = self.scatter.plus(part.scatter);
         self.occlude = self.occlude.plus(part.occlude);
-        self.settle = self.settle.plus(part.settle);
+        self.accumulate = self.accumulate.plus(part.accumulate);
         self.violation_count += part.violation_count;
         self.upload = self.upload.take().or(part.upload);
         let room = KEPT.saturating_sub(self.violations.len());
@@ -80,12 +80,12 @@ impl PathCertificate {
 }
 
 impl StageCounts {
-    fn count(&mut self, verdict: &Verdict) {
+    fn count(&mut self, verdict: &StageOutcome) {
         self.checked += 1;
         match verdict {
-            Verdict::Decided => self.decided += 1,
-            Verdict::Open => self.open += 1,
-            Verdict::Undecided => self.undecided += 1,
+            StageOutcome::Decided => self.decided += 1,
+            StageOutcome::Open => self.open += 1,
+            StageOutcome::Undecided => self.undecided += 1,
         }
     }
 }
@@ -95,7 +95,7 @@ fn note(
     counts: &mut StageCounts,
     violations: &mut Vec<PathViolation>,
     Address { pixel, sample, surface }: Address,
-    result: Result<Verdict, Mismatch>,
+    result: Result<StageOutcome, Mismatch>,
 ) {
     match result {
         Ok(verdict) => counts.count(&verdict),
@@ -110,14 +110,14 @@ fn note(
 /// Follows a stage along every combination of open decisions, until one leads to what the device did.
 fn along_choices(
     mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
-) -> Result<Verdict, Mismatch> {
+) -> Result<StageOutcome, Mismatch> {
     let mut choices = Choices::default();
     let mut nearest: Option<Mismatch> = None;
     loop {
         match follow(&mut choices) {
-            Ok(expected) if expected.is_wide => return Ok(Verdict::Undecided),
-            Ok(_) if choices.were_open() => return Ok(Verdict::Open),
-            Ok(_) => return Ok(Verdict::Decided),
+            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided),
+            Ok(_) if choices.were_open() => return Ok(StageOutcome::Open),
+            Ok(_) => return Ok(StageOutcome::Decided),
             Err(mismatch) => {
                 if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
                     nearest = Some(mismatch);
@@ -130,12 +130,12 @@ fn along_choices(
     }
     match nearest {
         Some(mismatch) if !choices.were_too_many() => Err(mismatch),
-        _ => Ok(Verdict::Undecided),
+        _ => Ok(StageOutcome::Undecided),
     }
 }
 
-fn simple(is_open: bool) -> Verdict {
-    if is_open { Verdict::Open } else { Verdict::Decided }
+fn simple(is_open: bool) -> StageOutcome {
+    if is_open { StageOutcome::Open } else { StageOutcome::Decided }
 }
 
 impl PathCheck<'_> {
@@ -164,7 +164,7 @@ impl PathCheck<'_> {
         let pixel = [origin[0] + (index % width) as u32, origin[1] + (index / width) as u32];
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
-        let PathCertificate { violations, start, extend, scatter, occlude, settle, .. } = part;
+        let PathCertificate { violations, start, extend, scatter, occlude, accumulate, .. } = part;
         note(start, violations, address, self.start(address, &state));
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
@@ -188,7 +188,7 @@ impl PathCheck<'_> {
             }
             let open = f32::from_bits(stage.open[index]);
             let is_searched = surface < self.recording.max_depth
-                && self.recording.look.source_count > 0
+                && self.recording.lighting.source_count > 0
                 && after.number(slot::SHADOW) > 0.0;
             if is_searched {
                 note(occlude, violations, address, self.occlude(&after, open));
@@ -209,10 +209,10 @@ impl PathCheck<'_> {
             let fail = Expected::default().fail(PathStage::Extend, "the hit", words);
             note(extend, violations, address, Err(fail));
         }
-        note(settle, violations, address, Self::settle(&state, recorded.sums[index]));
+        note(accumulate, violations, address, Self::accumulate(&state, recorded.sums[index]));
     }
 
-    fn start(&self, address: Address, state: &PathState) -> Result<Verdict, Mismatch> {
+    fn start(&self, address: Address, state: &PathState) -> Result<StageOutcome, Mismatch> {
         along_choices(|choices| {
             let mut expected = Expected::default();
             let (recording, model) = (self.recording, &self.model);
@@ -232,7 +232,7 @@ impl PathCheck<'_> {
         last: Option<Hit>,
         hit: Hit,
         legal: &mut LegalHits,
-    ) -> Result<Verdict, Mismatch> {
+    ) -> Result<StageOutcome, Mismatch> {
         let mut expected = Expected::default();
         search::check_hit(self.searched(), state, last, hit, &mut expected, legal).map(simple)
     }
@@ -243,7 +243,7 @@ impl PathCheck<'_> {
         before: &PathState,
         hit: Hit,
         after: &PathState,
-    ) -> Result<Verdict, Mismatch> {
+    ) -> Result<StageOutcome, Mismatch> {
         along_choices(|choices| {
             let mut kernel = Kernel {
                 scene: self.checker.scene,
@@ -261,31 +261,31 @@ impl PathCheck<'_> {
         })
     }
 
-    fn occlude(&self, state: &PathState, open: f32) -> Result<Verdict, Mismatch> {
+    fn occlude(&self, state: &PathState, open: f32) -> Result<StageOutcome, Mismatch> {
         let mut expected = Expected::default();
-        let PathRecording { tables, look, .. } = self.recording;
-        let emitter = state.left().emitter;
+        let PathRecording { tables, lighting, .. } = self.recording;
+        let emitter = state.departure().emitter;
         let sought = (emitter != NO_EMITTER)
-            .then(|| tables.get(look.emitter_first as usize + 3 * emitter as usize))
+            .then(|| tables.get(lighting.emitter_first as usize + 3 * emitter as usize))
             .flatten()
             .map(|sphere| sphere.map(f32::from_bits));
         search::check_open(self.searched(), state, sought, open, &mut expected).map(simple)
     }
 
     /// What a sample adds to the picture.
-    fn settle(state: &PathState, sums: [[u32; 4]; 2]) -> Result<Verdict, Mismatch> {
-        const COLOR: (PathStage, &str) = (PathStage::Settle, "the sample's colour");
-        const ALPHA: (PathStage, &str) = (PathStage::Settle, "the sample's opacity");
-        const ALBEDO: (PathStage, &str) = (PathStage::Settle, "the first surface's colour");
-        const SQUARE: (PathStage, &str) = (PathStage::Settle, "the luminance's square");
+    fn accumulate(state: &PathState, sums: [[u32; 4]; 2]) -> Result<StageOutcome, Mismatch> {
+        const COLOR: (PathStage, &str) = (PathStage::Accumulate, "the sample's colour");
+        const ALPHA: (PathStage, &str) = (PathStage::Accumulate, "the sample's opacity");
+        const ALBEDO: (PathStage, &str) = (PathStage::Accumulate, "the first surface's colour");
+        const SQUARE: (PathStage, &str) = (PathStage::Accumulate, "the luminance's square");
         let [[r, g, b, alpha], [x, y, z, square]] = sums.map(|sum| sum.map(f32::from_bits));
         let mut expected = Expected::default();
-        let color = settled(state);
+        let color = radiance_so_far(state);
         expected.vector(COLOR, [r, g, b], color)?;
         expected.number(ALPHA, alpha, Number::had(state.number(slot::RADIANCE)))?;
         expected.vector(ALBEDO, [x, y, z], Vector::had(state.vector(slot::FIRST)))?;
         let weights = Vector([0.2126, 0.7152, 0.0722].map(Number::constant));
         expected.number(SQUARE, square, color.dot(weights).squared())?;
-        Ok(if expected.is_wide { Verdict::Undecided } else { Verdict::Decided })
+        Ok(if expected.is_wide { StageOutcome::Undecided } else { StageOutcome::Decided })
     }
 }

@@ -3,7 +3,7 @@
 
 use super::certificate::PathStage;
 use super::expected::{Expected, Mismatch};
-use super::recording::{PathRecording, PathState, UploadedLook, flag, slot};
+use super::recording::{PathRecording, PathState, UploadedLighting, flag, slot};
 use super::vertex::Vertex;
 use super::warp::Axes;
 use crate::camera::sampling::{pair, pixel_seed};
@@ -17,13 +17,13 @@ use crate::verify::number::{Number, Vector};
 pub(super) struct Hit {
     pub(super) t: f32,
     pub(super) id: u32,
-    pub(super) place: u32,
+    pub(super) shape_index: u32,
     pub(super) distance: f32,
 }
 
 impl Hit {
-    pub(super) fn new([t, id, place, distance]: [u32; 4]) -> Self {
-        Self { t: f32::from_bits(t), id, place, distance: f32::from_bits(distance) }
+    pub(super) fn new([t, id, shape_index, distance]: [u32; 4]) -> Self {
+        Self { t: f32::from_bits(t), id, shape_index, distance: f32::from_bits(distance) }
     }
 }
 
@@ -65,8 +65,8 @@ const ORIGIN: Name = (PathStage::Vertex, "where the path goes on");
 const DIRECTION: Name = (PathStage::Scatter, "where the path goes");
 const DENSITY: Name = (PathStage::Scatter, "the density of going there");
 const FLAGS: Name = (PathStage::Scatter, "the path's flags");
-const LEFT: Name = (PathStage::Vertex, "the sphere that the path leaves");
-const FAR_WALL: Name = (PathStage::Scatter, "the far wall of the sphere that the path leaves");
+const DEPARTURE: Name = (PathStage::Vertex, "the sphere that the path leaves");
+const EXIT_DISTANCE: Name = (PathStage::Scatter, "the far side of the sphere that the path leaves");
 const THROUGHPUT: Name = (PathStage::Scatter, "what the path carries");
 const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
 const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
@@ -76,8 +76,8 @@ const MEDIUM: Name = (PathStage::Scatter, "what absorbs light on the way");
 const FIRST: Name = (PathStage::Vertex, "the first surface's colour");
 
 impl<'a> Kernel<'a> {
-    pub(super) fn look(&self) -> &'a UploadedLook {
-        &self.recording.look
+    pub(super) fn lighting(&self) -> &'a UploadedLighting {
+        &self.recording.lighting
     }
 
     /// A vector of the tables; zeros beyond them.
@@ -91,7 +91,7 @@ impl<'a> Kernel<'a> {
 
     pub(super) fn pair(&self, number: u32) -> [u32; 2] {
         let Address { pixel, sample, surface } = self.address;
-        pair(pixel_seed(pixel, self.look().seed), sample, number + 8 * surface)
+        pair(pixel_seed(pixel, self.lighting().seed), sample, number + 8 * surface)
     }
 
     pub(super) fn is_last(&self) -> bool {
@@ -101,12 +101,12 @@ impl<'a> Kernel<'a> {
     /// Follows the kernel, and compares what it wrote.
     pub(super) fn follow(&mut self) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
-        let settled = self.settled();
+        let radiance_so_far = self.radiance_so_far();
         let alpha = before.number(slot::RADIANCE);
         let through = Vector::had(before.vector(slot::THROUGHPUT));
         let Some(vertex) = self.vertex()? else {
             let light = self.light_from_afar();
-            return self.end(settled + through.times(light), alpha);
+            return self.end(radiance_so_far + through.times(light), alpha);
         };
         let medium = Vector::had(before.vector(slot::MEDIUM));
         let arriving = if self.is_matt {
@@ -114,9 +114,9 @@ impl<'a> Kernel<'a> {
         } else {
             through.times(medium.map(|m| (-m * vertex.distance).exp()))
         };
-        self.compare_left(&vertex)?;
+        self.compare_departure(&vertex)?;
         if vertex.is_passed {
-            return self.pass(&vertex, settled, arriving);
+            return self.pass(&vertex, radiance_so_far, arriving);
         }
         let is_seen = !before.has(flag::SCATTERED);
         if is_seen && before.number(slot::FIRST) >= 0.0 {
@@ -131,14 +131,14 @@ impl<'a> Kernel<'a> {
             let density = self.known_density(self.hit.id, before.vector(slot::ORIGIN));
             let weight = self.chance_weight(density);
             let light = Vector::had(vertex.color) * material.parameter * weight;
-            self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
+            self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
             return self.stop();
         }
         let axes = self.axes_around(vertex.normal);
         let out = axes.to_local(-Vector::had(before.vector(slot::DIRECTION)));
         let at = Surface { vertex, material, axes, out };
         let light = self.head_light(&at, is_seen);
-        self.compare_radiance(settled + arriving.times(light), Number::ONE)?;
+        self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
         if self.is_last() {
             return self.stop();
         }
@@ -146,23 +146,24 @@ impl<'a> Kernel<'a> {
         self.bounce(&at, arriving)
     }
 
-    /// The sphere that is left, and its far wall on the way that the path takes.
-    fn compare_left(&mut self, at: &Vertex) -> Result<(), Mismatch> {
-        let (after, left) = (self.after, self.after.left());
-        let (id, place) = if at.is_sphere() { (self.hit.id, self.hit.place) } else { (NO_ID, 0) };
-        self.expected.bits(LEFT, left.id, id)?;
-        self.expected.bits(LEFT, left.place, place)?;
-        let far_wall = if after.has(flag::INSIDE) {
-            at.far_wall(Vector::had(after.vector(slot::DIRECTION)))
+    /// The sphere that is left, and its far side on the way that the path takes.
+    fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
+        let (after, departure) = (self.after, self.after.departure());
+        let (id, shape_index) =
+            if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
+        self.expected.bits(DEPARTURE, departure.id, id)?;
+        self.expected.bits(DEPARTURE, departure.shape_index, shape_index)?;
+        let exit_distance = if after.has(flag::INSIDE) {
+            at.exit_distance(Vector::had(after.vector(slot::DIRECTION)))
         } else {
             Number::ZERO
         };
-        self.expected.number(FAR_WALL, left.far_wall, far_wall)
+        self.expected.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
     }
 
     /// The radiance so far, and the light that was looked for last if nothing is in between.
-    fn settled(&self) -> Vector {
-        settled(self.before)
+    fn radiance_so_far(&self) -> Vector {
+        radiance_so_far(self.before)
     }
 
     pub(super) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
@@ -198,7 +199,7 @@ impl<'a> Kernel<'a> {
         self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
         self.expected.bits(FLAGS, after.flags(), 0)?;
         self.compare_no_light()?;
-        self.same(&[slot::DIRECTION, slot::LEFT, slot::THROUGHPUT, slot::FIRST])?;
+        self.same(&[slot::DIRECTION, slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST])?;
         self.same(&[slot::MEDIUM])
     }
 
@@ -209,9 +210,14 @@ impl<'a> Kernel<'a> {
     }
 
     /// The path goes through a surface as if there were nothing.
-    fn pass(&mut self, at: &Vertex, settled: Vector, arriving: Vector) -> Result<(), Mismatch> {
+    fn pass(
+        &mut self,
+        at: &Vertex,
+        radiance_so_far: Vector,
+        arriving: Vector,
+    ) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
-        self.compare_radiance(settled, Number::had(before.number(slot::RADIANCE)))?;
+        self.compare_radiance(radiance_so_far, Number::had(before.number(slot::RADIANCE)))?;
         self.same(&[slot::FIRST])?;
         // Glass ends at its back wall, also where that lets light pass.
         if at.is_back && self.material_of(at).is_dielectric() {
@@ -249,7 +255,7 @@ impl<'a> Kernel<'a> {
 
         let carried = through.times(next.weight).fence();
         let most = carried.largest();
-        let survival = if surface >= self.look().roulette_from {
+        let survival = if surface >= self.lighting().roulette_from {
             most.min(Number::constant(0.95))
         } else {
             Number::ONE
@@ -281,7 +287,7 @@ pub(super) fn unit(bits: u32) -> Number {
 }
 
 /// The radiance of a path, and the light that it looked for last if nothing is in between.
-pub(super) fn settled(state: &PathState) -> Vector {
+pub(super) fn radiance_so_far(state: &PathState) -> Vector {
     let open = Number::had(state.number(slot::PENDING));
     Vector::had(state.vector(slot::RADIANCE)) + Vector::had(state.vector(slot::PENDING)) * open
 }

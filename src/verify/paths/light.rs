@@ -42,7 +42,7 @@ impl Kernel<'_> {
         if !is_seen || at.material.is_dielectric() {
             return Vector::ZERO;
         }
-        let sum = (0..self.look().light_count)
+        let sum = (0..self.lighting().light_count)
             .filter(|light| self.table(3 * light)[3] == HEAD)
             .map(|light| {
                 let [r, g, b, _] = self.table_numbers(3 * light + 1);
@@ -58,18 +58,18 @@ impl Kernel<'_> {
     }
 
     pub(super) fn look_for_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
-        let (look, after) = (self.look(), self.after);
-        if look.source_count == 0 {
-            self.expected.bits(EMITTER, after.left().emitter, NO_EMITTER)?;
+        let (lighting, after) = (self.lighting(), self.after);
+        if lighting.source_count == 0 {
+            self.expected.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
             return self.same(&[slot::SHADOW, slot::PENDING]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
-        let place = unit(which) * Number::known(look.source_count.into());
-        let source = self.choices.pick(place.floor()) as u32;
-        let source = source.min(look.source_count - 1);
+        let scaled = unit(which) * Number::known(lighting.source_count.into());
+        let source = self.choices.pick(scaled.floor()) as u32;
+        let source = source.min(lighting.source_count - 1);
         let position = at.vertex.position;
-        let is_emitter = source == look.lamp_sources && look.emitter_count > 0;
-        let found = if source < look.lamp_sources {
+        let is_emitter = source == lighting.lamp_sources && lighting.emitter_count > 0;
+        let found = if source < lighting.lamp_sources {
             self.find_lamp(source, position, u)
         } else if is_emitter {
             self.find_sphere(position, u, choice)
@@ -77,13 +77,14 @@ impl Kernel<'_> {
             self.find_sky(u)
         };
         self.expected.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
-        self.expected.bits(EMITTER, after.left().emitter, found.emitter)?;
+        self.expected.bits(EMITTER, after.departure().emitter, found.emitter)?;
 
         let color = Vector::had(at.vertex.color);
         let toward = at.axes.to_local(found.direction);
         let r = self.reflect_toward(&at.material, color, at.out, toward);
         let mut light = through.times(r.value).times(found.radiance);
-        if look.light_sampling == MULTIPLE && self.choices.decide(found.density.is_above_zero()) {
+        if lighting.light_sampling == MULTIPLE && self.choices.decide(found.density.is_above_zero())
+        {
             let all = (found.density + r.density).max(Number::constant(1e-30));
             light = light * (found.density / all);
         }
@@ -104,7 +105,7 @@ impl Kernel<'_> {
             return false;
         }
         if vertex.is_back {
-            let to_wall = vertex.far_wall(found.direction);
+            let to_wall = vertex.exit_distance(found.direction);
             if self.choices.decide(to_wall.is_less(found.distance)) {
                 return false;
             }
@@ -119,14 +120,14 @@ impl Kernel<'_> {
     }
 
     fn sources(&self) -> Number {
-        Number::known(self.look().source_count.max(1).into())
+        Number::known(self.lighting().source_count.max(1).into())
     }
 
     fn find_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> Found {
         let light = self.table(3 * source + 2)[0];
         let at = light.saturating_mul(3);
         let [x, y, z, _] = self.table_numbers(at);
-        let place = Vector::had([x, y, z]);
+        let position_of_light = Vector::had([x, y, z]);
         let [r, g, b, size] = self.table_numbers(at.saturating_add(1));
         let (power, size) = (Vector::had([r, g, b]), Number::had(size));
         let kind = self.table(at)[3];
@@ -140,7 +141,8 @@ impl Kernel<'_> {
             emitter: NO_EMITTER,
         };
         if kind == DIRECTIONAL {
-            let direction = axes_around(place, self.choices).to_world(cone_direction(u, size));
+            let direction =
+                axes_around(position_of_light, self.choices).to_world(cone_direction(u, size));
             let direction = self.looked_for(direction);
             let strength = power * (Number::TWO / (Number::TWO - size));
             let density = if size.is_zero() {
@@ -150,7 +152,7 @@ impl Kernel<'_> {
             };
             return found(direction, far, density, strength);
         }
-        let toward = place - position;
+        let toward = position_of_light - position;
         let distance = toward.fence().squared().sqrt();
         let axis = toward.fence().map(|c| c / distance.max(Number::constant(1e-30)));
         if kind == POINT {
@@ -179,7 +181,7 @@ impl Kernel<'_> {
     }
 
     fn emitter(&self, index: u32) -> Emitter {
-        let at = self.look().emitter_first.saturating_add(3 * index);
+        let at = self.lighting().emitter_first.saturating_add(3 * index);
         let [_, _, probability, _] = self.table_numbers(at + 1);
         let [r, g, b, _] = self.table_numbers(at + 2);
         Emitter {
@@ -191,8 +193,8 @@ impl Kernel<'_> {
 
     /// The first emitter of which a word is at least so large.
     fn find_emitter(&self, word: usize, value: u32) -> u32 {
-        let count = self.look().emitter_count;
-        let first = self.look().emitter_first;
+        let count = self.lighting().emitter_count;
+        let first = self.lighting().emitter_first;
         let is_before = |index: u32| self.table(first + 3 * index + 1)[word] < value;
         let (mut low, mut high) = (0, count);
         while low < high {
@@ -216,7 +218,7 @@ impl Kernel<'_> {
 
     /// The density with which an emitter that was met would have been looked for.
     pub(super) fn known_density(&mut self, id: u32, position: [f32; 3]) -> Number {
-        if self.look().emitter_count == 0 {
+        if self.lighting().emitter_count == 0 {
             return Number::ZERO;
         }
         let found = self.emitter(self.find_emitter(0, id));
@@ -263,7 +265,7 @@ impl Kernel<'_> {
 
     /// What light that is met counts, if it might have been looked for with a density.
     pub(super) fn chance_weight(&mut self, looked_for: Number) -> Number {
-        let sampling = self.look().light_sampling;
+        let sampling = self.lighting().light_sampling;
         let is_sought = !looked_for.is_zero() && self.choices.decide(looked_for.is_above_zero());
         if self.before.has(flag::FULL) || sampling == 0 || !is_sought {
             return Number::ONE;

@@ -48,7 +48,7 @@ const LAST: f64 = (ENERGIES - 1) as f64;
 
 impl Kernel<'_> {
     pub(super) fn material_of(&self, vertex: &Vertex) -> Material {
-        let at = self.look().material_first.saturating_add(2 * vertex.place);
+        let at = self.lighting().material_first.saturating_add(2 * vertex.material_index);
         let [kind, _, _, energies] = self.table(at);
         let [_, parameter, alpha, _] = self.table_numbers(at);
         let [x, y, z, _] = self.table_numbers(at.saturating_add(1));
@@ -66,11 +66,11 @@ impl Kernel<'_> {
     pub(super) fn energy(&self, first: u32, cosine: Number) -> Number {
         let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
         let Interval { low, high } = along.interval();
-        let place = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
+        let index = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
         let entry = |at: u32| {
             Number::had(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize])
         };
-        (place(low)..=place(high))
+        (index(low)..=index(high))
             .map(|below| {
                 let (a, b) = (entry(below), entry(below + 1));
                 let within = Number::between(

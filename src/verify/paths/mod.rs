@@ -25,6 +25,6 @@ mod warp;
 
 pub use certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
 pub use recording::{
-    PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLook, UploadedSky,
+    PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
 };
 pub use upload::PathUploadError;

@@ -22,7 +22,7 @@ pub struct PathRecording {
     /// How many surfaces a path meets at most.
     pub max_depth: u32,
     /// What was made of the settings for the device.
-    pub look: UploadedLook,
+    pub lighting: UploadedLighting,
     /// The bits of lights, emitters, materials and energies, each at its own place.
     pub tables: Vec<[u32; 4]>,
     /// The sky's image, if it has one.
@@ -85,9 +85,9 @@ impl PathState {
     }
 
     /// What the path leaves.
-    pub(super) fn left(&self) -> Left {
-        let [id, place, far_wall, emitter] = self.slots[slot::LEFT];
-        Left { id, place, far_wall: f32::from_bits(far_wall), emitter }
+    pub(super) fn departure(&self) -> Departure {
+        let [id, shape_index, exit_distance, emitter] = self.slots[slot::DEPARTURE];
+        Departure { id, shape_index, exit_distance: f32::from_bits(exit_distance), emitter }
     }
 
     pub(super) fn flags(&self) -> u32 {
@@ -99,27 +99,27 @@ impl PathState {
     }
 }
 
-/// What a path leaves: `shaders/left.wgsl`.
+/// What a path leaves: `shaders/departure.wgsl`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Left {
+pub(super) struct Departure {
     /// The sphere; [`NO_ID`](crate::image::NO_ID) for none.
     pub(super) id: u32,
     /// Where the device has it.
-    pub(super) place: u32,
-    /// How far its far wall is, where the path goes inside; else 0.
-    pub(super) far_wall: f32,
+    pub(super) shape_index: u32,
+    /// How far its far side is, where the path goes inside; else 0.
+    pub(super) exit_distance: f32,
     /// Which emitter is looked for, or [`NO_EMITTER`].
     pub(super) emitter: u32,
 }
 
-/// For [`Left::emitter`].
+/// For [`Departure::emitter`].
 pub(super) const NO_EMITTER: u32 = u32::MAX;
 
 /// The slots that paths use.
 pub(super) mod slot {
     pub(in crate::verify) const ORIGIN: usize = 0;
     pub(in crate::verify) const DIRECTION: usize = 1;
-    pub(in crate::verify) const LEFT: usize = 2;
+    pub(in crate::verify) const DEPARTURE: usize = 2;
     pub(in crate::verify) const THROUGHPUT: usize = 3;
     pub(in crate::verify) const RADIANCE: usize = 4;
     pub(in crate::verify) const FIRST: usize = 5;
@@ -143,7 +143,7 @@ pub(super) mod flag {
 
 /// What of settings the kernels of paths are given: `Look` in `shaders/light_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct UploadedLook {
+pub struct UploadedLighting {
     /// What is seen where there is nothing.
     pub background: [f32; 3],
     /// Sums of the `LOOK_` constants.

@@ -93,24 +93,24 @@ pub(super) fn check_hit(
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
     legal.clear();
-    let left = state.left();
-    let left_sphere = scene.spheres().get(left.id as usize).copied();
-    // The far wall has been compared when the path was scattered, and is known exactly.
-    let wall = f64::from(left.far_wall);
-    let own = last.zip(left_sphere).filter(|_| state.has(flag::INSIDE));
+    let departure = state.departure();
+    let departed = scene.spheres().get(departure.id as usize).copied();
+    // The far side has been compared when the path was scattered, and is known exactly.
+    let far_side = f64::from(departure.exit_distance);
+    let own = last.zip(departed).filter(|_| state.has(flag::INSIDE));
     if own.is_some() {
         legal.miss = false;
-        legal.limit = wall;
+        legal.limit = far_side;
     }
     if entry.entered.may_meet_box {
-        let is_left = |sphere| left_sphere.is_some_and(|left| is_same(sphere, left));
-        legal.find_nearer(candidates, &entry.line, entry.slack, is_left);
+        let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
+        legal.find_nearer(candidates, &entry.line, entry.slack, is_departed);
         legal.miss |= entry.entered.may_miss_box && own.is_none();
     }
     if let Some((Hit { id, .. }, sphere)) = own
-        && wall <= legal.limit
+        && far_side <= legal.limit
     {
-        let (near, far) = (None, Some(Interval { low: wall, high: wall }));
+        let (near, far) = (None, Some(Interval { low: far_side, high: far_side }));
         legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
     }
     let is_open = legal.count() > 1;
@@ -131,7 +131,7 @@ pub(super) fn check_hit(
     let Interval { low, high } = entry.entered.enter;
     let enter = match own {
         Some((last, _)) if last.id == id => {
-            expected.bits((STAGE, "the hit's place"), found.place, last.place)?;
+            expected.bits((STAGE, "the hit's shape index"), found.shape_index, last.shape_index)?;
             Number::ZERO
         }
         _ => Number::between(low, high),
@@ -156,10 +156,10 @@ pub(super) fn check_open(
     let Interval { low, high } = entry.entered.enter;
     let rest = (Number::had(distance) - Number::between(low, high)).interval();
     let (mut may_be_hidden, mut must_be_hidden) = (false, false);
-    let left = state.left();
+    let departure = state.departure();
     let is_exempt = |sphere: [f32; 4]| {
-        let left = scene.spheres().get(left.id as usize);
-        let own = left.is_some_and(|left| is_same(sphere, *left));
+        let departed = scene.spheres().get(departure.id as usize);
+        let own = departed.is_some_and(|own| is_same(sphere, *own));
         own || sought.is_some_and(|sought| is_same(sphere, sought))
     };
     if entry.entered.may_meet_box && rest.high > 0.0 {

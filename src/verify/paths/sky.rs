@@ -11,21 +11,21 @@ use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 impl Kernel<'_> {
     /// The radiance that a ray meets behind everything, by what it counts.
     pub(super) fn light_from_afar(&mut self) -> Vector {
-        let look = self.look();
+        let lighting = self.lighting();
         let is_seen = !self.before.has(flag::SCATTERED);
-        let is_transparent = look.flags & flag::TRANSPARENT != 0;
+        let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
         if is_seen && is_transparent {
             return Vector::ZERO;
         }
-        if is_seen && look.flags & flag::SKY_SEEN == 0 {
-            return Vector::had(look.background);
+        if is_seen && lighting.flags & flag::SKY_SEEN == 0 {
+            return Vector::had(lighting.background);
         }
-        let sources = Number::known(look.source_count.max(1).into());
+        let sources = Number::known(lighting.source_count.max(1).into());
         let direction = Vector::had(self.before.vector(slot::DIRECTION));
         let density = self.sky_density(direction) / sources;
         let weight = self.chance_weight(density);
         let mut sum = self.sky_radiance(direction) * weight;
-        for light in 0..look.light_count {
+        for light in 0..lighting.light_count {
             let [x, y, z, _] = self.table_numbers(3 * light);
             let [r, g, b, k] = self.table_numbers(3 * light + 1);
             if self.table(3 * light)[3] != DIRECTIONAL || k <= 0.0 {
@@ -49,48 +49,48 @@ impl Kernel<'_> {
     }
 
     pub(super) fn sky_radiance(&mut self, direction: Vector) -> Vector {
-        let look = self.look();
+        let lighting = self.lighting();
         if self.image().is_none() {
             let height = direction.0[1];
             let is_down = self.choices.decide(height.is_less(Number::ZERO));
-            let end = Vector::had(if is_down { look.nadir } else { look.zenith });
+            let end = Vector::had(if is_down { lighting.nadir } else { lighting.zenith });
             let along = height.abs();
-            return Vector::had(look.horizon) * (Number::ONE - along) + end * along;
+            return Vector::had(lighting.horizon) * (Number::ONE - along) + end * along;
         }
-        let [column, row] = self.place(direction);
-        let at = row as usize * look.environment_size[0] as usize + column as usize;
+        let [column, row] = self.texel(direction);
+        let at = row as usize * lighting.environment_size[0] as usize + column as usize;
         let texel = self.image().and_then(|image| image.texels.get(at)).copied();
-        Vector::had(texel.unwrap_or_default()) * Number::had(look.environment_strength)
+        Vector::had(texel.unwrap_or_default()) * Number::had(lighting.environment_strength)
     }
 
     fn sky_density(&mut self, direction: Vector) -> Number {
         if self.image().is_none() {
             return Number::ZERO;
         }
-        let place = self.place(direction);
-        self.density_of(place)
+        let texel = self.texel(direction);
+        self.density_of(texel)
     }
 
     /// x and z, turned about +y.
     fn turned(&self, [x, z]: [Number; 2], sign: f64) -> [Number; 2] {
-        let [cosine, sine] = self.look().environment_rotation.map(Number::had);
+        let [cosine, sine] = self.lighting().environment_rotation.map(Number::had);
         let sine = Number::known(sign) * sine;
         [cosine * x + sine * z, cosine * z - sine * x]
     }
 
     /// Column and row of the texel in a direction.
-    fn place(&mut self, direction: Vector) -> [u32; 2] {
+    fn texel(&mut self, direction: Vector) -> [u32; 2] {
         let Vector([x, y, z]) = direction;
         let [x, z] = self.turned([x, z], -1.0);
         let across = atan2_turns(x, -z, self.choices) + Number::HALF;
         let level = (x.squared() + z.squared()).sqrt();
         let down = Number::TWO * atan2_turns(level, y, self.choices);
-        let [width, height] = self.look().environment_size;
+        let [width, height] = self.lighting().environment_size;
         [(across, width), (down, height)].map(|(part, count)| {
             // Numbers below zero become zero.
             let all = (part * Number::known(count.into())).max(Number::ZERO);
-            let place = self.choices.pick(all.floor());
-            (place as u32).min(count.max(1) - 1)
+            let texel = self.choices.pick(all.floor());
+            (texel as u32).min(count.max(1) - 1)
         })
     }
 
@@ -101,12 +101,12 @@ impl Kernel<'_> {
 
     /// Where the shares of a row's columns start.
     fn columns(&self, row: u32) -> usize {
-        let [width, height] = self.look().environment_size.map(|side| side as usize);
+        let [width, height] = self.lighting().environment_size.map(|side| side as usize);
         height + 1 + row as usize * (width + 1)
     }
 
     fn density_of(&mut self, [column, row]: [u32; 2]) -> Number {
-        let [width, height] = self.look().environment_size.map(f64::from);
+        let [width, height] = self.lighting().environment_size.map(f64::from);
         let entry = self.columns(row) + column as usize;
         // Multiples of 2^-24 below 1: exact.
         let share = |at: usize| Number::known(self.share(at + 1) - self.share(at));
@@ -134,7 +134,7 @@ impl Kernel<'_> {
         if self.image().is_none() {
             return (Vector::ZERO, Number::ZERO);
         }
-        let [width, height] = self.look().environment_size;
+        let [width, height] = self.lighting().environment_size;
         let chance = u.map(unit);
         let row = self.chosen(0, height, chance[1]);
         let columns = self.columns(row);

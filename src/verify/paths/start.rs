@@ -29,9 +29,9 @@ pub(super) fn check(
     expected: &mut Expected,
     choices: &mut Choices,
 ) -> Result<(), Mismatch> {
-    let look = &recording.look;
-    let seed = pixel_seed(pixel, look.seed);
-    let location = location(&recording.film, &look.filter_table, pixel, pair(seed, sample, 0));
+    let lighting = &recording.lighting;
+    let seed = pixel_seed(pixel, lighting.seed);
+    let location = location(&recording.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
     let ray = model.ray_through_lens(location, DVec2::from(pair(seed, sample, 1).map(unit)));
     let is_seen = choices.decide(match (ray.may_be_seen, ray.may_be_unseen) {
         (true, true) => None,
@@ -51,14 +51,14 @@ pub(super) fn check(
     let distance = Number::around(ray.distance, ray.distance_error);
     expected.number(DISTANCE, found.number(slot::FIRST), distance)?;
 
-    let is_shown = !is_seen && look.flags & flag::TRANSPARENT == 0;
-    let radiance = if is_shown { look.background } else { [0.0; 3] };
+    let is_shown = !is_seen && lighting.flags & flag::TRANSPARENT == 0;
+    let radiance = if is_shown { lighting.background } else { [0.0; 3] };
     let one = 1.0_f32.to_bits();
     let mut slots = [[0; 4]; PathState::SLOTS];
     slots[slot::ORIGIN] = found.slots[slot::ORIGIN];
     let [x, y, z, _] = found.slots[slot::DIRECTION];
     slots[slot::DIRECTION] = [x, y, z, 0];
-    slots[slot::LEFT] = [NO_ID, 0, 0, NO_EMITTER];
+    slots[slot::DEPARTURE] = [NO_ID, 0, 0, NO_EMITTER];
     slots[slot::THROUGHPUT] = [one; 4];
     let [r, g, b] = radiance.map(f32::to_bits);
     slots[slot::RADIANCE] = [r, g, b, 0];

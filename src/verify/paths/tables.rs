@@ -5,18 +5,18 @@ use std::cmp::Ordering;
 use glam::Vec4;
 
 use super::material::ENERGIES;
-use super::recording::{PathRecording, UploadedLook};
+use super::recording::{PathRecording, UploadedLighting};
 use super::upload::{PathUploadError, are_near, is_near};
 use crate::light::energy::EnergyTables;
 use crate::light::{LightKind, SkyLight};
 use crate::render::{Integrator, LightSampling};
 use crate::scene::Scene;
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// Tables, and how they are read.
 struct Tables<'a> {
     words: &'a [[u32; 4]],
-    look: &'a UploadedLook,
+    lighting: &'a UploadedLighting,
 }
 
 impl Tables<'_> {
@@ -35,7 +35,7 @@ impl Tables<'_> {
 }
 
 pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
-    let tables = Tables { words: &recording.tables, look: &recording.look };
+    let tables = Tables { words: &recording.tables, lighting: &recording.lighting };
     let lamps = check_lights(&tables, scene, recording)?;
     let emitters = check_emitters(&tables, scene, recording)?;
     check_materials(&tables, scene)?;
@@ -46,7 +46,7 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
     };
     let sources = lamps + u32::from(emitters > 0) + u32::from(is_image);
-    let UploadedLook { source_count, lamp_sources, emitter_count, .. } = recording.look;
+    let UploadedLighting { source_count, lamp_sources, emitter_count, .. } = recording.lighting;
     if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
         Ok(())
     } else {
@@ -73,7 +73,7 @@ fn check_lights(
     let mut count = 0;
     for (light, index) in lights.zip(0_u32..) {
         count = index + 1;
-        let [place, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
+        let [position, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
         let size = tables.numbers(3 * index + 1)[3];
         let kind = tables.words(3 * index)[3];
         let near = |color: crate::image::color::LinearRgb| {
@@ -83,7 +83,7 @@ fn check_lights(
         let is_at = |point: glam::DVec3| {
             let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
             (0..3).all(|axis| {
-                let off = f64::from(place[axis]) - exact[axis];
+                let off = f64::from(position[axis]) - exact[axis];
                 off.abs() <= 2e-7 * exact[axis].abs() + 1e-15 * moved[axis] + 1e-37
             })
         };
@@ -94,7 +94,7 @@ fn check_lights(
                 // The difference cancels; the device's number does not.
                 let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
                 let is_right =
-                    kind == 1 && near(strength) && are_near(place, toward.to_array()) && is_size;
+                    kind == 1 && near(strength) && are_near(position, toward.to_array()) && is_size;
                 (is_right, angular_radius == 0.0 || is_looked_for(recording))
             }
             LightKind::Point { position, intensity } => {
@@ -113,7 +113,7 @@ fn check_lights(
             return Err(PathUploadError::Table { what: "light", index: index as usize });
         }
     }
-    if tables.look.light_count != count {
+    if tables.lighting.light_count != count {
         return Err(PathUploadError::Look { what: "the number of lights" });
     }
     Ok(lamps)
@@ -129,9 +129,9 @@ fn check_emitters(
         return Ok(0);
     }
     let radiance = |id: u32| {
-        let finish = scene.finish(id);
-        let strength = match finish.material {
-            Material::Emissive { strength } => f64::from(strength) * f64::from(finish.opacity),
+        let surface = scene.surface(id);
+        let strength = match surface.material {
+            Material::Emissive { strength } => f64::from(strength) * f64::from(surface.opacity),
             _ => 0.0,
         };
         scene.color(id).to_array().map(|c| f64::from(c) * strength)
@@ -142,14 +142,14 @@ fn check_emitters(
         (0.2126 * r + 0.7152 * g + 0.0722 * b) * size * size
     };
     let mut ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
-    keep_first_of_place(&mut ids, scene.spheres());
+    keep_first_of_equals(&mut ids, scene.spheres());
     let total: f64 = ids.iter().map(|id| weight(*id)).sum();
     let all = 2_f64.powi(32);
     // Each has one pick by right, and picks are whole numbers.
     let slack = (ids.len() as f64 + 2.0) / all;
     let mut before = 0.0;
     for (index, id) in ids.iter().enumerate() {
-        let at = tables.look.emitter_first.saturating_add(3 * index as u32);
+        let at = tables.lighting.emitter_first.saturating_add(3 * index as u32);
         let [found_id, last, ..] = tables.words(at + 1);
         let end = f64::from(last) + 1.0;
         let probability = tables.numbers(at + 1)[2];
@@ -170,7 +170,7 @@ fn check_emitters(
 
 /// Of spheres with equal numbers the first is met, and none of the others; only what is met is looked for. Keeps of
 /// some ascending ids those of spheres that no earlier one of the scene equals.
-fn keep_first_of_place(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
+fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
     // Compared by value: a zero has no sign, and none is no number.
     let order = |a: &[f32; 4], b: &[f32; 4]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
     let sphere = |id: u32| &spheres[id as usize];
@@ -178,8 +178,8 @@ fn keep_first_of_place(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
     ids.dedup_by(|later, first| order(sphere(*later), sphere(*first)).is_eq());
     let mut is_hidden = vec![false; ids.len()];
     for (id, at) in (0_u32..).zip(spheres) {
-        if let Ok(place) = ids.binary_search_by(|other| order(sphere(*other), at)) {
-            is_hidden[place] |= id < ids[place];
+        if let Ok(at) = ids.binary_search_by(|other| order(sphere(*other), at)) {
+            is_hidden[at] |= id < ids[at];
         }
     }
     let mut hidden = is_hidden.into_iter();
@@ -189,23 +189,22 @@ fn keep_first_of_place(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
 
 /// The ground's material, which is the first, and those of the spheres.
 fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadError> {
-    let surfaces = scene.checked_appearance().surfaces();
-    let finishes: Vec<Finish> = surfaces.iter().map(|surface| surface.finish).collect();
-    let energies = EnergyTables::of(&finishes);
-    let ground = Finish::default();
-    let finishes = std::iter::once((&ground, [1.0; 3], None)).chain(
-        surfaces
-            .iter()
+    let rows = scene.checked_appearance().material_rows();
+    let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
+    let energies = EnergyTables::of(&surfaces);
+    let ground = SurfaceProperties::default();
+    let records = std::iter::once((&ground, [1.0; 3], None)).chain(
+        rows.iter()
             .zip(energies.starts())
-            .map(|(surface, start)| (&surface.finish, surface.color.to_array(), *start)),
+            .map(|(row, start)| (&row.surface, row.color.to_array(), *start)),
     );
-    for (index, (finish, color, start)) in finishes.enumerate() {
-        let at = tables.look.material_first.saturating_add(2 * index as u32);
+    for (index, (surface, color, start)) in records.enumerate() {
+        let at = tables.lighting.material_first.saturating_add(2 * index as u32);
         let [kind, _, _, first] = tables.words(at);
         let [_, parameter, alpha, _] = tables.numbers(at);
         let [x, y, z, opacity] = tables.numbers(at.saturating_add(1));
         let absorption = [x, y, z];
-        let (expected_kind, expected, roughness, absorbed) = match finish.material {
+        let (expected_kind, expected, roughness, absorbed) = match surface.material {
             Material::Lambert { specular, roughness } => (0, specular, roughness, [0.0; 3]),
             Material::Conductor { roughness } => (1, 1.0, roughness, [0.0; 3]),
             Material::Dielectric { ior, roughness, attenuation_distance } => {
@@ -221,8 +220,8 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadE
             && is_near(parameter, expected.into())
             && is_near(alpha, expected_alpha)
             && are_near(absorption, absorbed)
-            && is_near(opacity, finish.opacity.into())
-            && start.is_none_or(|start| has_energies(tables, first, &energies, start, finish));
+            && is_near(opacity, surface.opacity.into())
+            && start.is_none_or(|start| has_energies(tables, first, &energies, start, surface));
         if !is_right {
             return Err(PathUploadError::Table { what: "material", index });
         }
@@ -236,9 +235,9 @@ fn has_energies(
     first: u32,
     energies: &EnergyTables,
     start: u32,
-    finish: &Finish,
+    surface: &SurfaceProperties,
 ) -> bool {
-    let count = match finish.material {
+    let count = match surface.material {
         Material::Dielectric { .. } => 2 * ENERGIES,
         _ => ENERGIES,
     };

@@ -1,6 +1,6 @@
 //! Whether the numbers that a device was given are those of the scene and the settings that were asked for.
 
-use super::recording::{PathRecording, UploadedLook, flag};
+use super::recording::{PathRecording, UploadedLighting, flag};
 use super::tables;
 use crate::geometry::math::unit;
 use crate::light::SkyLight;
@@ -57,7 +57,7 @@ pub(super) fn check(
 ) -> Result<(), PathUploadError> {
     check_view(scene, candidates, &recording.camera, &recording.uploaded)?;
     check_size(recording)?;
-    check_look(scene, recording)?;
+    check_lighting(scene, recording)?;
     tables::check(scene, recording)
 }
 
@@ -76,8 +76,8 @@ fn check_size(recording: &PathRecording) -> Result<(), PathUploadError> {
     if are_whole { Ok(()) } else { Err(PathUploadError::Size { pixels }) }
 }
 
-fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
-    let PathRecording { settings, look, .. } = recording;
+fn check_lighting(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
+    let PathRecording { settings, lighting, .. } = recording;
     let Integrator::Path(path) = &settings.integrator else {
         return Err(PathUploadError::Look { what: "the integrator" });
     };
@@ -95,27 +95,27 @@ fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUpload
         let normal = unit(ground.normal).unwrap_or_default().to_array();
         let moved = (ground.point.abs() + scene.origin().abs()) * f64::EPSILON * 4.0;
         let is_point = (0..3).all(|axis| {
-            let off = f64::from(look.ground_point[axis]) - point[axis];
+            let off = f64::from(lighting.ground_point[axis]) - point[axis];
             off.abs() <= 2.0 * U * point[axis].abs() + moved[axis] + FLUSH
         });
         is_point
-            && are_near(look.ground_normal, normal)
-            && are_near(look.ground_color, ground.color.to_array().map(f64::from))
+            && are_near(lighting.ground_normal, normal)
+            && are_near(lighting.ground_color, ground.color.to_array().map(f64::from))
     });
     let filter = settings.sampling.filter.offset_table();
     let all = [
         (
             "the background",
-            are_near(look.background, settings.background.to_array().map(f64::from)),
+            are_near(lighting.background, settings.background.to_array().map(f64::from)),
         ),
-        ("the set of flags", look.flags == expected_flags),
-        ("the seed", look.seed == settings.sampling.seed),
-        ("the start of roulette", look.roulette_from == path.roulette_from),
-        ("how lights are sampled", look.light_sampling == sampling),
+        ("the set of flags", lighting.flags == expected_flags),
+        ("the seed", lighting.seed == settings.sampling.seed),
+        ("the start of roulette", lighting.roulette_from == path.roulette_from),
+        ("how lights are sampled", lighting.light_sampling == sampling),
         ("the depth of paths", recording.max_depth == path.max_depth),
         ("the ground", is_ground),
-        ("the pixel filter", look.filter_table[..] == filter[..]),
-        ("the sky", is_sky(settings, look, recording)),
+        ("the pixel filter", lighting.filter_table[..] == filter[..]),
+        ("the sky", is_sky(settings, lighting, recording)),
     ];
     match all.into_iter().find(|(_, is_right)| !is_right) {
         None => Ok(()),
@@ -123,8 +123,12 @@ fn check_look(scene: &Scene, recording: &PathRecording) -> Result<(), PathUpload
     }
 }
 
-fn is_sky(settings: &RenderSettings, look: &UploadedLook, recording: &PathRecording) -> bool {
-    let ends = [look.zenith, look.horizon, look.nadir];
+fn is_sky(
+    settings: &RenderSettings,
+    lighting: &UploadedLighting,
+    recording: &PathRecording,
+) -> bool {
+    let ends = [lighting.zenith, lighting.horizon, lighting.nadir];
     let are = |colors: [[f32; 3]; 3]| {
         ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)))
     };
@@ -135,12 +139,12 @@ fn is_sky(settings: &RenderSettings, look: &UploadedLook, recording: &PathRecord
         }
         SkyLight::Image { environment, strength, rotation } => {
             let shares = environment.rows().iter().chain(environment.columns());
-            look.environment_size == [environment.width(), environment.height()]
+            lighting.environment_size == [environment.width(), environment.height()]
                 && are_near(
-                    look.environment_rotation,
+                    lighting.environment_rotation,
                     Environment::rotation(*rotation).map(f64::from),
                 )
-                && is_near(look.environment_strength, (*strength).into())
+                && is_near(lighting.environment_strength, (*strength).into())
                 && recording.sky.as_ref().is_some_and(|sky| {
                     sky.texels == environment.texels() && sky.shares.iter().eq(shares)
                 })

@@ -28,8 +28,8 @@ pub(super) struct Vertex {
     /// The sphere; radius 0 for the ground.
     pub(super) sphere: [f32; 4],
     pub(super) color: [f32; 3],
-    /// Its place among the materials; the ground is the first.
-    pub(super) place: u32,
+    /// Its index among the materials; the ground is the first.
+    pub(super) material_index: u32,
     /// Whether the path goes through it as if there were nothing.
     pub(super) is_passed: bool,
 }
@@ -40,7 +40,7 @@ impl Vertex {
     }
 
     /// How far it is from the surface of a sphere to its other side; 0 if that is not inside.
-    pub(super) fn far_wall(&self, direction: Vector) -> Number {
+    pub(super) fn exit_distance(&self, direction: Vector) -> Number {
         let [x, y, z, _] = self.sphere;
         let to_center = Vector::had([x, y, z]) - self.position;
         (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
@@ -48,9 +48,9 @@ impl Vertex {
 }
 
 /// What is known of a surface before where it is.
-struct Paint {
+struct SurfaceColor {
     color: [f32; 3],
-    place: u32,
+    material_index: u32,
     is_passed: bool,
 }
 
@@ -94,23 +94,28 @@ impl Kernel<'_> {
         direction: Vector,
         behind: Number,
     ) -> Option<Number> {
-        let look = self.look();
-        if look.flags & flag::GROUND == 0 {
+        let lighting = self.lighting();
+        if lighting.flags & flag::GROUND == 0 {
             return None;
         }
-        let normal = Vector::had(look.ground_normal);
+        let normal = Vector::had(lighting.ground_normal);
         let toward = direction.dot(normal);
         if !self.choices.decide(toward.is_less(Number::ZERO)) {
             return None;
         }
-        let height = (origin - Vector::had(look.ground_point)).dot(normal);
+        let height = (origin - Vector::had(lighting.ground_point)).dot(normal);
         let toward = toward.min(Number::known(-f64::MIN_POSITIVE));
         let t = height / -toward;
         self.choices.decide((-behind).is_less(t)).then_some(t)
     }
 
     /// `opacities` are those of the material and of the colour, which the kernel multiplies.
-    fn paint(&mut self, color: [f32; 3], place: u32, opacities: [f32; 2]) -> Paint {
+    fn surface_color(
+        &mut self,
+        color: [f32; 3],
+        material_index: u32,
+        opacities: [f32; 2],
+    ) -> SurfaceColor {
         let [_, pass] = self.pair(3).map(crate::camera::sampling::unit);
         let [material, alpha] = opacities.map(f64::from);
         // Without an error of its own: both have 24 bits.
@@ -119,7 +124,7 @@ impl Kernel<'_> {
         let error = if is_exact { 0.0 } else { U * opacity + FLUSH };
         let is_open = (pass - opacity).abs() <= error && !is_exact;
         let is_passed = self.choices.decide((!is_open).then_some(pass >= opacity));
-        Paint { color, place, is_passed }
+        SurfaceColor { color, material_index, is_passed }
     }
 
     /// The point, which is compared, and then known exactly.
@@ -135,17 +140,26 @@ impl Kernel<'_> {
         direction: Vector,
         distance: Number,
     ) -> Result<Vertex, Mismatch> {
-        let look = self.look();
-        let paint = self.paint(look.ground_color, 0, [1.0; 2]);
-        let normal = Vector::had(look.ground_normal);
+        let lighting = self.lighting();
+        let surface_color = self.surface_color(lighting.ground_color, 0, [1.0; 2]);
+        let normal = Vector::had(lighting.ground_normal);
         let on_ray = origin + direction * distance;
-        let above = (on_ray - Vector::had(look.ground_point)).dot(normal);
+        let above = (on_ray - Vector::had(lighting.ground_point)).dot(normal);
         let position = (on_ray - normal * above).fence();
         let size = distance.interval().high;
         let position = self.compared(position, size)?;
-        let Paint { color, place, is_passed } = paint;
+        let SurfaceColor { color, material_index, is_passed } = surface_color;
         let sphere = [0.0; 4];
-        Ok(Vertex { position, normal, is_back: false, distance, sphere, color, place, is_passed })
+        Ok(Vertex {
+            position,
+            normal,
+            is_back: false,
+            distance,
+            sphere,
+            color,
+            material_index,
+            is_passed,
+        })
     }
 
     fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
@@ -155,13 +169,14 @@ impl Kernel<'_> {
             let words = format!("there is no sphere {}", hit.id);
             return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
         };
-        let (appearance, place) = (
+        let (appearance, material_index) = (
             self.scene.checked_appearance(),
-            self.scene.checked_appearance().surface_index(hit.id) + 1,
+            self.scene.checked_appearance().material_row(hit.id) + 1,
         );
-        let finish = appearance.finishes()[appearance.finish_index(hit.id) as usize];
+        let surface = appearance.surfaces()[appearance.surface_index(hit.id) as usize];
         let color = self.scene.color(hit.id).to_array();
-        let paint = self.paint(color, place, [finish.opacity, appearance.alpha(hit.id)]);
+        let surface_color =
+            self.surface_color(color, material_index, [surface.opacity, appearance.alpha(hit.id)]);
 
         let entered =
             Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
@@ -173,14 +188,14 @@ impl Kernel<'_> {
         let center = Vector::had([x, y, z]);
         let direction = Vector::had(before.vector(slot::DIRECTION));
         let middle = (center - *origin).dot(direction);
-        let is_far_wall = before.has(flag::INSIDE) && hit.id == before.left().id;
-        let (half, exact) = if is_far_wall {
+        let is_far_side = before.has(flag::INSIDE) && hit.id == before.departure().id;
+        let (half, exact) = if is_far_side {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)
         } else {
             (test.half, test.exact_half())
         };
-        let is_behind = is_far_wall || self.choices.decide(middle.is_less(Number::had(hit.t)));
+        let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::had(hit.t)));
         let chord = Chord { half, exact, is_behind };
         let (normal, error) = normal_at(&test, line, chord, radius, *slack);
         let mut outward = Vector::around(normal, error);
@@ -196,9 +211,9 @@ impl Kernel<'_> {
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
         let normal = if is_back { -outward } else { outward };
-        let Paint { color, place, is_passed } = paint;
+        let SurfaceColor { color, material_index, is_passed } = surface_color;
         let sphere = [x, y, z, radius];
-        Ok(Vertex { position, normal, is_back, distance, sphere, color, place, is_passed })
+        Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, is_passed })
     }
 }
 

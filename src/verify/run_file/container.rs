@@ -70,8 +70,8 @@ pub(super) fn write(
     let mut digest = Sha256::new();
     emit(&length, &header, arrays, &mut sink_into(&mut digest))?;
     let digest = hex(digest);
-    let place = digest_in(&header, NO_DIGEST).ok_or_else(|| io::Error::other("no digest"))?;
-    header[place..place + digest.len()].copy_from_slice(digest.as_bytes());
+    let offset = digest_in(&header, NO_DIGEST).ok_or_else(|| io::Error::other("no digest"))?;
+    header[offset..offset + digest.len()].copy_from_slice(digest.as_bytes());
     emit(&length, &header, arrays, &mut |bytes| out.write_all(bytes))
 }
 
@@ -85,8 +85,8 @@ fn emit(length: &[u8], header: &[u8], arrays: &[Array<'_>], sink: &mut Sink<'_>)
 fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
     let before = format!("\"{DIGEST}\":\"");
     let wanted = format!("{before}{digest}\"");
-    let place = header.windows(wanted.len()).position(|window| window == wanted.as_bytes())?;
-    Some(place + before.len())
+    let offset = header.windows(wanted.len()).position(|window| window == wanted.as_bytes())?;
+    Some(offset + before.len())
 }
 
 /// A file that is whole and unaltered. What is in it may still be anything.
@@ -129,12 +129,12 @@ impl<'a> Container<'a> {
             return Err(truncated(header_length.saturating_add(parsed.data_len() as u64)));
         }
         let digest = text(&parsed, DIGEST).unwrap_or_default();
-        let place = digest_in(header, digest).filter(|_| digest.len() == NO_DIGEST.len());
-        let place = LENGTH + place.ok_or(RunFileError::Altered)?;
+        let offset = digest_in(header, digest).filter(|_| digest.len() == NO_DIGEST.len());
+        let offset = LENGTH + offset.ok_or(RunFileError::Altered)?;
         let mut found = Sha256::new();
-        found.update(&bytes[..place]);
+        found.update(&bytes[..offset]);
         found.update(NO_DIGEST);
-        found.update(&bytes[place + digest.len()..]);
+        found.update(&bytes[offset + digest.len()..]);
         if hex(found) != digest {
             return Err(RunFileError::Altered);
         }

@@ -10,7 +10,7 @@ use crate::camera::{CameraKind, CameraVectors};
 use crate::image::Image;
 use crate::image::color::LinearRgb;
 use crate::parallel::try_map;
-use crate::render::{PrimaryLook, Shading};
+use crate::render::{PrimarySettings, Shading};
 use crate::scene::{Colors, Scene};
 use crate::text::shortened;
 use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView};
@@ -62,7 +62,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
         file.fixed::<f32, 3, 7>("view")?;
     let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
     let [background] = file.fixed::<f32, 3, 1>("background")?;
-    let look = PrimaryLook {
+    let primary = PrimarySettings {
         shading: named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?,
         background: color("background", background)?,
     };
@@ -79,7 +79,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
             scene_max,
         },
         film,
-        look,
+        primary,
         pixels: pixels(file, &shape)?,
         image: image(file, &film, ["color", "depth", "normal", "id"])?,
         rendered: rendered(file, &film)?,

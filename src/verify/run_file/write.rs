@@ -19,7 +19,7 @@ pub fn write(
     provenance: &Provenance,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let Recording { camera, uploaded, film, look, pixels, image, rendered } = recording;
+    let Recording { camera, uploaded, film, primary, pixels, image, rendered } = recording;
     let shape = [film.height() as usize, film.width() as usize];
     let (Some(depth), Some(normal), Some(id)) = (image.depth(), image.normal(), image.id()) else {
         return Err(io::Error::other("the recording lacks a layer"));
@@ -38,7 +38,7 @@ pub fn write(
     for (key, text) in [
         ("camera", camera.kind.name()),
         ("y_axis", film.y_axis().name()),
-        ("shading", look.shading.name()),
+        ("shading", primary.shading.name()),
     ] {
         texts.insert(key.to_owned(), text.to_owned());
     }
@@ -66,20 +66,20 @@ pub fn write(
         uploaded.scene_max,
     ];
     let (origin, advance) = ([scene.origin()], [uploaded.advance]);
-    let background = [look.background];
+    let background = [primary.background];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
     let colors = scene.appearance().colors();
     let entries: Vec<u32> = match colors {
         Colors::Scalars { values, map } => values.iter().map(|v| map.index(*v) as u32).collect(),
         _ => Vec::new(),
     };
-    let (palette, places) = match colors {
+    let (palette, indices) = match colors {
         Colors::One(color) => (Some(std::slice::from_ref(color)), None),
         Colors::Palette { palette, indices } => (Some(&palette[..]), Some(&indices[..])),
         Colors::Scalars { map, .. } => (Some(map.colors()), Some(&entries[..])),
         Colors::Rgba8(_) => (None, None),
     };
-    let places = places.filter(|places| !places.is_empty());
+    let indices = indices.filter(|indices| !indices.is_empty());
     // The widest numbers first, so that all are aligned.
     let mut arrays = vec![
         Array::new("camera", &[5], &camera, |vector| vector.to_array()),
@@ -119,7 +119,8 @@ pub fn write(
         }),
     );
     arrays.extend(
-        places.map(|places| Array::new("color_index", &[places.len()], places, |place| [*place])),
+        indices
+            .map(|indices| Array::new("color_index", &[indices.len()], indices, |index| [*index])),
     );
     if let Colors::Rgba8(colors) = colors {
         arrays.push(Array::new("color_rgba8", &[colors.len()], colors, |color| *color));

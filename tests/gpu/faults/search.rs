@@ -71,7 +71,7 @@ pub(super) const GRIDS: &[Row] = &[
         GRID,
         "grid.wgsl",
         "(*found).t <= t_leave",
-        "(*found).place != NO_PLACE",
+        "(*found).shape_index != NO_SHAPE",
     ),
     (
         "diagonal_steps",

@@ -139,7 +139,7 @@ fn clear() -> Vec<Sphere> {
 /// Each sphere again, opaque where the first is not, which is the one that is seen, and the other way round.
 fn equals() -> Vec<Sphere> {
     let opposite = |sphere: &Sphere| {
-        let opacity = if sphere.finish.opacity < 1.0 { 1.0 } else { 0.3 };
+        let opacity = if sphere.surface.opacity < 1.0 { 1.0 } else { 0.3 };
         Sphere::new(sphere.center, sphere.radius, gray(0.1)).with_opacity(opacity)
     };
     let mut spheres = clear();
@@ -166,10 +166,10 @@ fn moved(spheres: &[Sphere], mut settings: RenderSettings, scale: f64, offset: f
     let spheres: Vec<Sphere> = spheres
         .iter()
         .map(|s| {
-            let Sphere { center, radius, color, finish, .. } = *s;
+            let Sphere { center, radius, color, surface, .. } = *s;
             Sphere::new(place(center), radius * scale, color)
-                .with_material(finish.material)
-                .with_opacity(finish.opacity)
+                .with_material(surface.material)
+                .with_opacity(surface.opacity)
         })
         .collect();
     let film = Film::new(48, 36).unwrap();

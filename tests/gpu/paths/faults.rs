@@ -2,7 +2,7 @@
 
 use pinhole::verify::PathStage;
 use pinhole::verify::PathStage::{
-    Extend, Light, Occlude, Radiance, Scatter, Settle, Start, Vertex,
+    Accumulate, Extend, Light, Occlude, Radiance, Scatter, Start, Vertex,
 };
 
 use super::scenes::{self, LitView};
@@ -38,7 +38,7 @@ const IDS: &[Row] = &[
         Extend,
         scenes::thrice,
         "origin_id.wgsl",
-        "return ids[place] == left;",
+        "return ids[shape_index] == left;",
         "return false;",
     ),
     (
@@ -50,7 +50,7 @@ const IDS: &[Row] = &[
         "id == left",
     ),
     (
-        "place_of_another_brick",
+        "shape_of_another_brick",
         Vertex,
         scenes::thrice,
         "vertex.wgsl",
@@ -66,7 +66,7 @@ const COLORS: &[Row] = &[
         Radiance,
         scenes::own_colors,
         "vertex.wgsl",
-        "paint.a * opacity_of(material)",
+        "color.a * opacity_of(material)",
         "opacity_of(material)",
     ),
     (
@@ -74,16 +74,16 @@ const COLORS: &[Row] = &[
         Radiance,
         scenes::own_colors,
         "vertex.wgsl",
-        "paint.a * opacity_of(material)",
-        "paint.a",
+        "color.a * opacity_of(material)",
+        "color.a",
     ),
     (
         "material_of_the_neighbor",
         Radiance,
         scenes::own_colors,
         "appearance.wgsl",
-        "brick.material_first + place,",
-        "brick.material_first + place + 1u,",
+        "brick.material_first + shape_index,",
+        "brick.material_first + shape_index + 1u,",
     ),
     (
         "one_byte_decoded_as_the_next",
@@ -130,7 +130,7 @@ const RAYS: &[Row] = &[
         "return false;",
     ),
     (
-        "far_wall_a_thousandth_too_near",
+        "exit_distance_a_thousandth_too_short",
         Scatter,
         scenes::glass,
         "vertex.wgsl",
@@ -138,7 +138,7 @@ const RAYS: &[Row] = &[
         "return max(1.998 * dot(",
     ),
     (
-        "far_wall_forgotten",
+        "exit_distance_forgotten",
         Extend,
         scenes::glass,
         "entry_path.wgsl",
@@ -150,8 +150,8 @@ const RAYS: &[Row] = &[
         Extend,
         scenes::matt,
         "brick.wgsl",
-        "+ nearest.place, entry.distance)",
-        "+ nearest.place, 0.0)",
+        "+ nearest.shape_index, entry.distance)",
+        "+ nearest.shape_index, 0.0)",
     ),
     (
         "rest_of_a_cell_forgotten",
@@ -174,11 +174,11 @@ const SURFACES: &[Row] = &[
         "sphere.xyz + 1.00001 * sphere.w * outward",
     ),
     (
-        "near_wall_for_far_wall",
+        "near_side_for_far_side",
         Vertex,
         scenes::from_inside,
         "vertex.wgsl",
-        "is_far_wall || hit.t > middle",
+        "is_far_side || hit.t > middle",
         "false",
     ),
     (
@@ -194,16 +194,16 @@ const SURFACES: &[Row] = &[
         Vertex,
         scenes::matt,
         "vertex.wgsl",
-        "- dot(on_ray - look.ground_point, n) * n",
-        "- 1.001 * dot(on_ray - look.ground_point, n) * n - 0.0001 * n",
+        "- dot(on_ray - lighting.ground_point, n) * n",
+        "- 1.001 * dot(on_ray - lighting.ground_point, n) * n - 0.0001 * n",
     ),
     (
         "another_sphere_left",
         Vertex,
         scenes::matt,
         "scatter.wgsl",
-        "Left(vertex.id, vertex.place, far_wall, sought_by(next.light))",
-        "Left(vertex.id ^ 1u, vertex.place, far_wall, sought_by(next.light))",
+        "Departure(vertex.id, vertex.shape_index, exit_distance, sought_by(next.light))",
+        "Departure(vertex.id ^ 1u, vertex.shape_index, exit_distance, sought_by(next.light))",
     ),
     (
         "frame_with_a_sign_wrong",
@@ -218,8 +218,8 @@ const SURFACES: &[Row] = &[
         Scatter,
         scenes::matt,
         "bounce.wgsl",
-        "2u + 8u * stage.surface",
-        "3u + 8u * stage.surface",
+        "2u + 8u * dispatch.surface",
+        "3u + 8u * dispatch.surface",
     ),
     (
         "disk_not_concentric",
@@ -392,7 +392,7 @@ const LIGHTS: &[Row] = &[
         scenes::emitters,
         "emitters.wgsl",
         "return find_emitter(1u, bits);",
-        "return (find_emitter(1u, bits) + 1u) % look.emitter_count;",
+        "return (find_emitter(1u, bits) + 1u) % lighting.emitter_count;",
     ),
     ("light_of_another_pair", Light, scenes::emitters, "direct.wgsl", "sample, 4u", "sample, 2u"),
     (
@@ -432,8 +432,8 @@ const LIGHTS: &[Row] = &[
         Light,
         scenes::sun,
         "lamp.wgsl",
-        "to_world(axes_around(place.xyz), cone_direction(u, k))",
-        "place.xyz",
+        "to_world(axes_around(light_record.xyz), cone_direction(u, k))",
+        "light_record.xyz",
     ),
     (
         "sky_chosen_in_another_row",
@@ -459,7 +459,7 @@ const LIGHTS: &[Row] = &[
         "return PI * sum *",
         "return sum *",
     ),
-    ("own_wall_hides_no_light", Light, scenes::from_inside, "direct.wgsl", "&& !is_in_own", ""),
+    ("own_surface_hides_no_light", Light, scenes::from_inside, "direct.wgsl", "&& !is_in_own", ""),
     ("ground_hides_no_light", Light, scenes::image_over_ground, "direct.wgsl", "&& !is_below", ""),
     (
         "shadow_ray_too_short",
@@ -482,7 +482,7 @@ const LIGHTS: &[Row] = &[
         Occlude,
         scenes::emitters,
         "origin_place_and_light.wgsl",
-        "sought = emitter(from_shape.word).sphere;",
+        "sought = emitter(departure.word).sphere;",
         "",
     ),
     (
@@ -510,7 +510,7 @@ const CHANCE: &[Row] = &[
         Radiance,
         scenes::emitters_directly,
         "by_chance.wgsl",
-        "select(balanced, 0.0, look.light_sampling == LIGHT_DIRECT)",
+        "select(balanced, 0.0, lighting.light_sampling == LIGHT_DIRECT)",
         "balanced",
     ),
     (
@@ -519,7 +519,7 @@ const CHANCE: &[Row] = &[
         scenes::emitters,
         "bounce.wgsl",
         "emitter_with_id(id)",
-        "(emitter_with_id(id) + 1u) % look.emitter_count",
+        "(emitter_with_id(id) + 1u) % lighting.emitter_count",
     ),
     (
         "gradient_of_the_wrong_half",
@@ -555,16 +555,16 @@ const ENDS: &[Row] = &[
         Scatter,
         scenes::matt,
         "bounce.wgsl",
-        "6u + 8u * stage.surface)).x",
-        "7u + 8u * stage.surface)).x",
+        "6u + 8u * dispatch.surface)).x",
+        "7u + 8u * dispatch.surface)).x",
     ),
     (
         "roulette_one_surface_late",
         Scatter,
         scenes::matt,
         "bounce.wgsl",
-        "stage.surface >= look.roulette_from",
-        "stage.surface > look.roulette_from",
+        "dispatch.surface >= lighting.roulette_from",
+        "dispatch.surface > lighting.roulette_from",
     ),
     (
         "hidden_light_added",
@@ -576,17 +576,17 @@ const ENDS: &[Row] = &[
     ),
     (
         "light_added_twice",
-        Settle,
+        Accumulate,
         scenes::matt,
-        "deposit.wgsl",
-        "let sample = settled(index);",
-        "let sample = settled(index) + vec4f(load(index, PENDING).rgb * load(index, PENDING).w, 0.0);",
+        "accumulate.wgsl",
+        "let sample = radiance_so_far(index);",
+        "let sample = radiance_so_far(index) + vec4f(load(index, PENDING).rgb * load(index, PENDING).w, 0.0);",
     ),
     (
         "luminance_of_other_weights",
-        Settle,
+        Accumulate,
         scenes::matt,
-        "deposit.wgsl",
+        "accumulate.wgsl",
         "vec3f(0.2126, 0.7152, 0.0722)",
         "vec3f(0.2990, 0.5870, 0.1140)",
     ),
@@ -596,8 +596,8 @@ const ENDS: &[Row] = &[
         Occlude,
         scenes::matt,
         "schedule_queue.wgsl",
-        "if (ordinal >= atomicLoad(&queue.counts[stage.list])) {",
-        "if (ordinal >= atomicLoad(&queue.counts[stage.list]) / select(1u, 2u, stage.list == LIST_OF_LIGHT)) {",
+        "if (ordinal >= atomicLoad(&queue.counts[dispatch.list])) {",
+        "if (ordinal >= atomicLoad(&queue.counts[dispatch.list]) / select(1u, 2u, dispatch.list == LIST_OF_LIGHT)) {",
     ),
     (
         "paths_that_pass_are_dropped",
@@ -620,7 +620,7 @@ const ENDS: &[Row] = &[
         Extend,
         scenes::matt,
         "queue.wgsl",
-        "return stage.surface & 1u;",
+        "return dispatch.surface & 1u;",
         "return 0u;",
     ),
     (

@@ -89,7 +89,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
             view.settings.lights.pop();
         }),
     ),
-    ("another_number_of_sources", Spoil::Said(|recording| recording.look.source_count += 1)),
+    ("another_number_of_sources", Spoil::Said(|recording| recording.lighting.source_count += 1)),
     (
         "energy_of_a_lobe",
         Spoil::Said(|recording| {
@@ -100,14 +100,14 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
     (
         "opacity_of_a_material",
         Spoil::Said(|recording| {
-            let at = recording.look.material_first as usize + 2 * 3 + 1;
+            let at = recording.lighting.material_first as usize + 2 * 3 + 1;
             recording.tables[at][3] ^= 1 << 3;
         }),
     ),
     (
         "emitter_more_likely",
         Spoil::Said(|recording| {
-            let at = recording.look.emitter_first as usize + 1;
+            let at = recording.lighting.emitter_first as usize + 1;
             recording.tables[at][1] += 1 << 20;
         }),
     ),

@@ -8,7 +8,7 @@ use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
 use pinhole::scene::material::Material;
-use pinhole::{Appearance, Film, Finish, LinearRgb, Points, Scene, Sphere, View};
+use pinhole::{Appearance, Film, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties, View};
 
 /// A scene, and how it is lit and seen.
 pub(crate) struct LitView {
@@ -295,21 +295,21 @@ pub(crate) fn coincident_emitters() -> LitView {
     LitView { scene: Scene::new(&spheres).unwrap(), ..emitters() }
 }
 
-/// Every sphere has a color and an alpha of its own, and a finish of some.
+/// Every sphere has a color and an alpha of its own, and a surface of some.
 pub(crate) fn own_colors() -> LitView {
     let spheres = mixed();
     let colors: Vec<[u8; 4]> = (0..spheres.len() as u8)
         .map(|i| [60 + 20 * i, 200 - 15 * i, 30 + 9 * i, if i % 4 == 2 { 100 + i } else { 255 }])
         .collect();
     let tinted = glass_of(1.5, 0.0, Some(0.8));
-    let finishes = spheres.iter().map(|sphere| match sphere.finish.material {
-        Material::Dielectric { .. } => Finish { material: tinted, ..sphere.finish },
-        _ => sphere.finish,
+    let surfaces = spheres.iter().map(|sphere| match sphere.surface.material {
+        Material::Dielectric { .. } => SurfaceProperties { material: tinted, ..sphere.surface },
+        _ => sphere.surface,
     });
     let indices = (0..spheres.len() as u32).collect();
-    let appearance = Appearance::from(colors).with_finishes(finishes.collect(), indices);
+    let appearance = Appearance::from(colors).with_surfaces(surfaces.collect(), indices);
     let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
-    let scene = Scene::from_parts(Points::F64(points.collect()), appearance).unwrap();
+    let scene = Scene::from_parts(SphereArray::F64(points.collect()), appearance).unwrap();
     LitView { scene, ..everything() }
 }
 
@@ -351,11 +351,11 @@ pub(crate) fn thrice() -> LitView {
     let origin = scene.origin();
     let of = |id: u32, moved: u32| {
         let [x, y, z, radius] = scene.spheres()[id as usize].map(f64::from);
-        let finish = scene.finish((id + moved) % count);
+        let surface = scene.surface((id + moved) % count);
         let center = (DVec3::new(x, y, z) + origin).to_array();
         ball(center, radius, scene.color((id + moved) % count))
-            .with_material(finish.material)
-            .with_opacity(finish.opacity)
+            .with_material(surface.material)
+            .with_opacity(surface.opacity)
     };
     let spheres: Vec<Sphere> = (0..3)
         .flat_map(|turn| (0..count).map(move |id| (id, turn)))

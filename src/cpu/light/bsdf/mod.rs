@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::flight::{Meeting, Surface};
-use super::stage::Stage;
+use super::context::LightingContext;
+use super::surface_ray::{Interaction, Surface};
 use crate::light::energy::{self, ENTRIES};
 use crate::scene::material::Material;
 use conductor::Conductor;
@@ -53,15 +53,19 @@ pub(super) struct Scattered {
 impl Bsdf {
     /// The surface that was met, seen from the local direction `out`. An emissive sphere scatters nothing and has
     /// none.
-    pub(super) fn of(stage: &Stage<'_>, meeting: &Meeting, out: DVec3) -> Option<Self> {
+    pub(super) fn of(
+        context: &LightingContext<'_>,
+        interaction: &Interaction,
+        out: DVec3,
+    ) -> Option<Self> {
         // Tilted no further than it takes to divide by its cosine.
         let out = DVec3::new(out.x, out.y, out.z.max(MIN_COSINE));
-        let color = stage.color(meeting.surface);
-        let Surface::Sphere(id) = meeting.surface else {
+        let color = context.color(interaction.surface);
+        let Surface::Sphere(id) = interaction.surface else {
             return Some(Self { out, kind: Kind::Lambert(Lambert { color, lobe: None }) });
         };
-        let energy = |table: usize| energy::lookup(stage.energy(id, table), out.z);
-        let kind = match stage.scene.finish(id).material {
+        let energy = |table: usize| energy::lookup(context.energy(id, table), out.z);
+        let kind = match context.scene.surface(id).material {
             Material::Lambert { specular, roughness } => {
                 let lobe = (specular > 0.0)
                     .then(|| (Ggx::of_roughness(roughness), f64::from(specular), energy(0)));
@@ -73,9 +77,9 @@ impl Bsdf {
             }
             Material::Dielectric { ior, roughness, .. } => {
                 let ior = f64::from(ior);
-                let eta = if meeting.is_outside { ior } else { 1.0 / ior };
+                let eta = if interaction.is_outside { ior } else { 1.0 / ior };
                 let rough = (roughness > 0.0).then(|| {
-                    let table = if meeting.is_outside { 0 } else { ENTRIES };
+                    let table = if interaction.is_outside { 0 } else { ENTRIES };
                     (Ggx::of_roughness(roughness), energy(table))
                 });
                 Kind::Dielectric(Dielectric { eta, rough })
@@ -86,12 +90,16 @@ impl Bsdf {
     }
 
     /// As a studio shades it: matt, with its lobe if it is Lambert's.
-    pub(super) fn in_studio(stage: &Stage<'_>, meeting: &Meeting, out: DVec3) -> Option<Self> {
-        let bsdf = Self::of(stage, meeting, out)?;
+    pub(super) fn in_studio(
+        context: &LightingContext<'_>,
+        interaction: &Interaction,
+        out: DVec3,
+    ) -> Option<Self> {
+        let bsdf = Self::of(context, interaction, out)?;
         Some(match bsdf.kind {
             Kind::Lambert(_) => bsdf,
             _ => {
-                let color = stage.color(meeting.surface);
+                let color = context.color(interaction.surface);
                 Self { kind: Kind::Lambert(Lambert { color, lobe: None }), ..bsdf }
             }
         })

@@ -37,18 +37,18 @@ struct Wish {
 }
 
 /// The crowded cells that the budget is enough for.
-pub(super) struct Crowd {
+pub(super) struct DenseCells {
     /// Of every cell, the level of the grid inside; 0 for none.
     levels: Vec<u8>,
 }
 
-impl Crowd {
+impl DenseCells {
     /// Of the lists, by the spheres' places; the longest come first.
     pub(super) fn of(
         cells: &Cells,
         spheres: &[[f32; 4]],
         margin: f32,
-        (places, starts): (&[u32], &[u32]),
+        (shape_indices, starts): (&[u32], &[u32]),
         budget: GridBudget,
     ) -> Self {
         let wishes = map_parts(ranges(cells.len(), 1 << 12), |range| {
@@ -56,7 +56,7 @@ impl Crowd {
             lists
                 .filter(|(_, start, end)| end - start >= CROWDED)
                 .filter_map(|(cell, start, end)| {
-                    let list = &places[start as usize..end as usize];
+                    let list = &shape_indices[start as usize..end as usize];
                     let best = best_level(cells.size, list, spheres, margin)?;
                     Some(Wish { cell: cell as u32, len: end - start, ..best })
                 })
@@ -65,13 +65,13 @@ impl Crowd {
         let mut wishes: Vec<Wish> = wishes.into_iter().flatten().collect();
         let mut levels = vec![0; cells.len()];
         let saved: f32 = wishes.iter().map(|wish| wish.saved).sum();
-        let all = cells.len() as f32 * STEP_COST + places.len() as f32;
+        let all = cells.len() as f32 * STEP_COST + shape_indices.len() as f32;
         if saved < WORTH_IT * all {
             return Self { levels };
         }
         wishes.sort_unstable_by_key(|wish| (std::cmp::Reverse(wish.len), wish.cell));
         let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
-        let mut listed_left = budget.listed.saturating_sub(places.len());
+        let mut listed_left = budget.listed.saturating_sub(shape_indices.len());
         for Wish { cell, len, level, met, .. } in wishes {
             let needed = (1_usize << (3 * level), most_listed(met).saturating_sub(len as usize));
             if needed.0 <= cells_left && needed.1 <= listed_left {
@@ -110,9 +110,9 @@ pub(super) fn inner_lists(
     let most = most_listed(met(cells.size, inner.size, list, spheres));
     let mut lists = vec![Vec::new(); inner.len()];
     let mut listed = 0;
-    for &place in list {
-        inner.met_by_clipped(&spheres[place as usize], margin, |cell| {
-            lists[cell].push(place);
+    for &shape_index in list {
+        inner.met_by_clipped(&spheres[shape_index as usize], margin, |cell| {
+            lists[cell].push(shape_index);
             listed += 1;
         });
     }
@@ -153,8 +153,8 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
 /// Expected elements of the lists inside a cell of edge `size`: of the inner cells that a sphere meets, the
 /// part that lies in this cell.
 fn met(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) -> f32 {
-    let of = |place: &u32| {
-        let radius = spheres[*place as usize][3];
+    let of = |shape_index: &u32| {
+        let radius = spheres[*shape_index as usize][3];
         mean_cells_met(inner, radius) / mean_cells_met(size, radius)
     };
     list.iter().map(of).sum()
@@ -162,6 +162,6 @@ fn met(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) -> f32 {
 
 fn corner(cells: &Cells, cell: usize) -> Vec3 {
     let [width, height, _] = cells.counts.map(|count| count as usize);
-    let place = [cell % width, cell / width % height, cell / (width * height)];
-    cells.min + cells.size * Vec3::from(place.map(|i| i as f32))
+    let coordinates = [cell % width, cell / width % height, cell / (width * height)];
+    cells.min + cells.size * Vec3::from(coordinates.map(|i| i as f32))
 }

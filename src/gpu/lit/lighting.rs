@@ -5,8 +5,8 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::kernels::{Mode, SkyKind, Sources, Surfaces};
-use super::records::{CATCHER, GROUND, Look, SHADOWS, SKY_SEEN, TRANSPARENT};
+use super::kernels::{Materials, Mode, SkyKind, Sources};
+use super::records::{CATCHER, GROUND, LightingParameters, SHADOWS, SKY_SEEN, TRANSPARENT};
 use crate::camera::Camera;
 use crate::geometry::math::unit;
 use crate::gpu::records::NO_HIT;
@@ -17,13 +17,13 @@ use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
 use crate::light::{LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings};
-use crate::scene::material::{Finish, Material};
+use crate::scene::material::{Material, SurfaceProperties};
 
 /// What a picture's kernels get to know of its lighting.
 #[derive(Debug)]
-pub(in crate::gpu) struct Lit {
+pub(in crate::gpu) struct LightingData {
     pub(in crate::gpu) mode: Mode,
-    pub(in crate::gpu) look: Look,
+    pub(in crate::gpu) parameters: LightingParameters,
     /// Never empty.
     pub(in crate::gpu) tables: Vec<[f32; 4]>,
     /// How many surfaces a ray meets: of a path at most, and one more that it may end on; in a studio one if every
@@ -37,18 +37,18 @@ pub(in crate::gpu) struct Lit {
     pub(super) casts_shadow: Vec<bool>,
 }
 
-impl Lit {
+impl LightingData {
     /// Of a lighting that has been checked, for a scene in its own frame.
     pub(in crate::gpu) fn new(
-        lighting: &RenderSettings,
+        settings: &RenderSettings,
         scene: &SceneSummary,
         camera: &dyn Camera,
     ) -> Self {
         let mut tables = Vec::new();
         let lights: Vec<LightKind> =
-            lighting.lights.iter().filter_map(|light| light.in_world(camera)).collect();
+            settings.lights.iter().filter_map(|light| light.in_world(camera)).collect();
         let emitters = &scene.emitters;
-        let sources = SourceList::of(lighting, &lights, emitters);
+        let sources = SourceList::of(settings, &lights, emitters);
         for (index, light) in lights.iter().enumerate() {
             let source = sources.lamps.get(index).copied().unwrap_or(0);
             tables.extend(light_record(light, scene.origin, source));
@@ -58,34 +58,34 @@ impl Lit {
             tables.extend(emitter_records(scene));
         }
         let material_first = tables.len() as u32;
-        let surfaces = scene.appearance.surfaces();
-        let finishes: Vec<Finish> = surfaces.iter().map(|surface| surface.finish).collect();
-        let energies = EnergyTables::of(&finishes);
-        let energy_first = material_first + 2 * (1 + surfaces.len()) as u32;
-        tables.extend(material_record(LinearRgb::WHITE, &Finish::default(), 0));
-        for (surface, start) in surfaces.iter().zip(energies.starts()) {
+        let rows = scene.appearance.material_rows();
+        let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
+        let energies = EnergyTables::of(&surfaces);
+        let energy_first = material_first + 2 * (1 + rows.len()) as u32;
+        tables.extend(material_record(LinearRgb::WHITE, &SurfaceProperties::default(), 0));
+        for (row, start) in rows.iter().zip(energies.starts()) {
             let energy = energy_first + start.unwrap_or(0) / 4;
-            tables.extend(material_record(surface.color, &surface.finish, energy));
+            tables.extend(material_record(row.color, &row.surface, energy));
         }
         tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
-        let mut look = look_of(lighting, scene);
-        look.light_count = lights.len() as u32;
-        look.source_count = sources.count();
-        look.lamp_sources = sources.lamps.len() as u32;
-        look.emitter_first = emitter_first;
-        look.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
-        look.material_first = material_first;
+        let mut parameters = parameters_of(settings, scene);
+        parameters.light_count = lights.len() as u32;
+        parameters.source_count = sources.count();
+        parameters.lamp_sources = sources.lamps.len() as u32;
+        parameters.emitter_first = emitter_first;
+        parameters.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
+        parameters.material_first = material_first;
         Self {
-            mode: mode_of(lighting, scene, &sources),
-            look,
+            mode: mode_of(settings, scene, &sources),
+            parameters,
             tables,
-            most_surfaces: match &lighting.integrator {
+            most_surfaces: match &settings.integrator {
                 Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
                 Integrator::Path(path) => path.max_depth,
             },
-            has_shadows: lighting.studio_parameters().is_some_and(|studio| studio.has_shadows),
-            sky: match (&lighting.sky.light, &lighting.integrator) {
+            has_shadows: settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
+            sky: match (&settings.sky.light, &settings.integrator) {
                 (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
                     Some(Arc::clone(environment))
                 }
@@ -96,7 +96,7 @@ impl Lit {
     }
 }
 
-impl Lit {
+impl LightingData {
     /// What its tables take on the device.
     pub(in crate::gpu) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
@@ -113,8 +113,8 @@ struct SourceList {
 }
 
 impl SourceList {
-    fn of(lighting: &RenderSettings, lights: &[LightKind], emitters: &Emitters) -> Self {
-        let Integrator::Path(path) = &lighting.integrator else {
+    fn of(settings: &RenderSettings, lights: &[LightKind], emitters: &Emitters) -> Self {
+        let Integrator::Path(path) = &settings.integrator else {
             return Self { lamps: Vec::new(), emitters: false, image: false };
         };
         let is_looked_for = path.light_sampling != LightSampling::Chance;
@@ -125,7 +125,7 @@ impl SourceList {
             }
             LightKind::Point { .. } | LightKind::Sphere { .. } => true,
         });
-        let image = match &lighting.sky.light {
+        let image = match &settings.sky.light {
             SkyLight::Image { environment, strength, .. } => {
                 environment.has_light() && *strength > 0.0
             }
@@ -143,88 +143,92 @@ impl SourceList {
     }
 }
 
-fn mode_of(lighting: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {
-    if lighting.studio_parameters().is_some() {
+fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {
+    if settings.studio_parameters().is_some() {
         return Mode::Studio;
     }
-    let is_matt = |finish: &Finish| match finish.material {
+    let is_matt = |surface: &SurfaceProperties| match surface.material {
         Material::Lambert { specular, .. } => specular == 0.0,
         Material::Emissive { .. } => true,
         Material::Conductor { .. } | Material::Dielectric { .. } => false,
     };
     Mode::Path(
-        if scene.appearance.finishes().iter().all(is_matt) {
-            Surfaces::Matt
+        if scene.appearance.surfaces().iter().all(is_matt) {
+            Materials::Matt
         } else {
-            Surfaces::Any
+            Materials::Any
         },
         if sources.count() == 0 { Sources::None } else { Sources::Any },
-        match lighting.sky.light {
+        match settings.sky.light {
             SkyLight::Image { .. } => SkyKind::Image,
             _ => SkyKind::Plain,
         },
     )
 }
 
-fn look_of(lighting: &RenderSettings, scene: &SceneSummary) -> Look {
-    let mut look = Look { seed: lighting.sampling.seed, ..Look::zeroed() };
-    look.background = lighting.background.to_array();
+fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingParameters {
+    let mut parameters =
+        LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
+    parameters.background = settings.background.to_array();
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    look.flags =
-        flag(lighting.is_transparent, TRANSPARENT) | flag(lighting.sky.is_visible, SKY_SEEN);
-    if let Some(ground) = &lighting.ground {
-        look.flags |= GROUND | flag(ground.is_shadow_catcher, CATCHER);
-        look.ground_point = (ground.point - scene.origin).as_vec3().to_array();
-        look.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
-        look.ground_color = ground.color.to_array();
+    parameters.flags =
+        flag(settings.is_transparent, TRANSPARENT) | flag(settings.sky.is_visible, SKY_SEEN);
+    if let Some(ground) = &settings.ground {
+        parameters.flags |= GROUND | flag(ground.is_shadow_catcher, CATCHER);
+        parameters.ground_point = (ground.point - scene.origin).as_vec3().to_array();
+        parameters.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
+        parameters.ground_color = ground.color.to_array();
     }
-    sky(&lighting.sky, &mut look);
-    match &lighting.integrator {
+    sky(&settings.sky, &mut parameters);
+    match &settings.integrator {
         Integrator::Primary(_) => {}
         Integrator::Path(path) => {
-            look.roulette_from = path.roulette_from;
-            look.light_sampling = match path.light_sampling {
+            parameters.roulette_from = path.roulette_from;
+            parameters.light_sampling = match path.light_sampling {
                 LightSampling::Chance => 0,
                 LightSampling::Direct => 1,
                 LightSampling::Multiple => 2,
             };
         }
         Integrator::Studio(studio) => {
-            look.ambient = studio.ambient.to_array();
-            look.flags |= flag(studio.has_shadows, SHADOWS);
+            parameters.ambient = studio.ambient.to_array();
+            parameters.flags |= flag(studio.has_shadows, SHADOWS);
             if let Some(occlusion) = &studio.occlusion {
-                look.occlusion_samples = occlusion.samples;
-                look.occlusion_radius = occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
+                parameters.occlusion_samples = occlusion.samples;
+                parameters.occlusion_radius =
+                    occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
             }
             if let Some(cue) = &studio.depth_cue {
-                look.cue_color = cue.color.to_array();
-                look.cue_near = cue.near as f32;
-                look.cue_scale = (1.0 / (cue.far - cue.near)) as f32;
+                parameters.cue_color = cue.color.to_array();
+                parameters.cue_near = cue.near as f32;
+                parameters.cue_scale = (1.0 / (cue.far - cue.near)) as f32;
             }
         }
     }
-    let table = lighting.sampling.filter.offset_table();
-    for (place, offset) in table.iter().enumerate() {
-        look.filter_table[place / 4][place % 4] = *offset;
+    let table = settings.sampling.filter.offset_table();
+    for (index, offset) in table.iter().enumerate() {
+        parameters.filter_table[index / 4][index % 4] = *offset;
     }
-    look
+    parameters
 }
 
-fn sky(sky: &Sky, look: &mut Look) {
+fn sky(sky: &Sky, parameters: &mut LightingParameters) {
     match &sky.light {
         SkyLight::Constant(radiance) => {
             let radiance = radiance.to_array();
-            (look.zenith, look.horizon, look.nadir) = (radiance, radiance, radiance);
+            (parameters.zenith, parameters.horizon, parameters.nadir) =
+                (radiance, radiance, radiance);
         }
         SkyLight::Gradient { zenith, horizon, nadir } => {
-            look.zenith = zenith.to_array();
-            look.horizon = horizon.to_array();
-            look.nadir = nadir.to_array();
+            parameters.zenith = zenith.to_array();
+            parameters.horizon = horizon.to_array();
+            parameters.nadir = nadir.to_array();
         }
         SkyLight::Image { environment, strength, rotation } => {
-            look.environment_size = [environment.width(), environment.height()];
-            look.environment_rotation = crate::light::environment::Environment::rotation(*rotation);
-            look.environment_strength = *strength;
+            parameters.environment_size = [environment.width(), environment.height()];
+            parameters.environment_rotation =
+                crate::light::environment::Environment::rotation(*rotation);
+            parameters.environment_strength = *strength;
         }
     }
 }
@@ -236,8 +240,8 @@ fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
 /// As `shaders/lamp.wgsl` reads it.
 fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
     let kind = |number: u32| f32::from_bits(number);
-    let near = |place: DVec3| (place - origin).as_vec3().to_array();
-    let [place, power] = match *light {
+    let near = |position: DVec3| (position - origin).as_vec3().to_array();
+    let [position, power] = match *light {
         LightKind::Head { strength } => [four([0.0; 3], kind(0)), four(strength.to_array(), 0.0)],
         LightKind::Directional { toward, strength, angular_radius } => {
             // 1 minus the cosine, without cancellation.
@@ -251,17 +255,17 @@ fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] 
             [four(near(center), kind(3)), four(radiance.to_array(), radius as f32)]
         }
     };
-    [place, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
+    [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
 }
 
 /// As `shaders/emitters.wgsl` reads them.
 fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     let emitters = &scene.emitters;
     emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
-        let EmissiveSphere { sphere, color, finish } = *emissive;
+        let EmissiveSphere { sphere, color, surface } = *emissive;
         // A surface that lets light through sends out its share.
-        let strength = match finish.material {
-            Material::Emissive { strength } => strength * finish.opacity,
+        let strength = match surface.material {
+            Material::Emissive { strength } => strength * surface.opacity,
             _ => 0.0,
         };
         let probability = emitters.probability(*id) as f32;
@@ -274,12 +278,12 @@ fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
 }
 
 /// As `shaders/material.wgsl` reads it.
-fn material_record(color: LinearRgb, finish: &Finish, energies: u32) -> [[f32; 4]; 2] {
+fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32) -> [[f32; 4]; 2] {
     let record = |kind: u32, parameter: f32, roughness: f32, absorption: [f32; 3]| {
         let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
-        [[kind, parameter, roughness * roughness, energies], four(absorption, finish.opacity)]
+        [[kind, parameter, roughness * roughness, energies], four(absorption, surface.opacity)]
     };
-    match finish.material {
+    match surface.material {
         Material::Lambert { specular, roughness } => record(0, specular, roughness, [0.0; 3]),
         Material::Conductor { roughness } => record(1, 1.0, roughness, [0.0; 3]),
         Material::Dielectric { ior, roughness, attenuation_distance } => {

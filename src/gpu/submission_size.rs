@@ -15,12 +15,12 @@ const MOST_TESTS: u64 = 1 << 27;
 
 /// Adapts to the device, from one submission to the next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(super) struct SubmissionSize {
     next: u64,
     most: u64,
 }
 
-impl Pace {
+impl SubmissionSize {
     /// For rays of which each tries about so many spheres.
     pub(super) fn new(tests_per_ray: usize) -> Self {
         let tests_per_group = 64 * tests_per_ray.max(1) as u64;
@@ -55,37 +55,37 @@ mod tests {
 
     #[test]
     fn a_slow_device_gets_less_and_a_quick_one_more() {
-        let mut pace = Pace::new(1);
-        assert_eq!(pace.groups(), FIRST);
-        pace.took(FIRST, Duration::from_millis(600));
-        assert_eq!(pace.groups(), FIRST / 10);
-        pace.took(FIRST / 10, Duration::from_secs(3600));
-        assert_eq!(pace.groups(), 1);
-        pace.took(1, Duration::ZERO);
-        assert_eq!(pace.groups(), 8);
-        pace.took(1000, Duration::from_millis(30));
-        assert_eq!(pace.groups(), 2000);
+        let mut submission_size = SubmissionSize::new(1);
+        assert_eq!(submission_size.groups(), FIRST);
+        submission_size.took(FIRST, Duration::from_millis(600));
+        assert_eq!(submission_size.groups(), FIRST / 10);
+        submission_size.took(FIRST / 10, Duration::from_secs(3600));
+        assert_eq!(submission_size.groups(), 1);
+        submission_size.took(1, Duration::ZERO);
+        assert_eq!(submission_size.groups(), 8);
+        submission_size.took(1000, Duration::from_millis(30));
+        assert_eq!(submission_size.groups(), 2000);
     }
 
     #[test]
     fn a_remainder_slows_nothing_unless_it_is_slow() {
-        let mut pace = Pace::new(1);
-        pace.took(1, Duration::from_millis(1));
-        assert_eq!(pace.groups(), FIRST);
-        pace.took(FIRST / 2, Duration::from_millis(10));
-        assert_eq!(pace.groups(), 3 * FIRST);
-        pace.took(FIRST, Duration::from_millis(120));
-        assert_eq!(pace.groups(), FIRST / 2);
+        let mut submission_size = SubmissionSize::new(1);
+        submission_size.took(1, Duration::from_millis(1));
+        assert_eq!(submission_size.groups(), FIRST);
+        submission_size.took(FIRST / 2, Duration::from_millis(10));
+        assert_eq!(submission_size.groups(), 3 * FIRST);
+        submission_size.took(FIRST, Duration::from_millis(120));
+        assert_eq!(submission_size.groups(), FIRST / 2);
     }
 
     /// 49,152 spheres for each of 64 rays are three million tests, a hundredth of a second.
     #[test]
     fn without_a_structure_submissions_are_short() {
-        let mut pace = Pace::new(3 << 14);
-        assert_eq!(pace.groups(), 2);
+        let mut submission_size = SubmissionSize::new(3 << 14);
+        assert_eq!(submission_size.groups(), 2);
         for _ in 0..10 {
-            pace.took(pace.groups(), Duration::ZERO);
+            submission_size.took(submission_size.groups(), Duration::ZERO);
         }
-        assert_eq!(pace.groups(), 42);
+        assert_eq!(submission_size.groups(), 42);
     }
 }

@@ -1,4 +1,4 @@
-//! Places in the text, and what is wrong there.
+//! Spans of the text, and what is wrong there.
 
 use std::fmt;
 use std::ops::Range;
@@ -19,20 +19,20 @@ pub struct SceneFileError {
     pub message: String,
 }
 
-/// A value and its place in the text.
+/// A value and where it is in the text.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placed<T> {
+pub(super) struct WithSpan<T> {
     pub(super) value: T,
-    pub(super) place: Place,
+    pub(super) span: Span,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Span {
     line: usize,
     column: usize,
 }
 
-impl Place {
+impl Span {
     /// Where nothing more precise is known.
     pub(super) const START: Self = Self { line: 1, column: 1 };
 
@@ -54,20 +54,20 @@ impl<'a> Lines<'a> {
     }
 
     /// Line and column of a byte.
-    pub(super) fn place(&self, byte: usize) -> Place {
+    pub(super) fn span(&self, byte: usize) -> Span {
         // At least one line starts at or before any byte.
         let line = self.starts.partition_point(|start| *start <= byte);
         let before = self.text.get(self.starts[line - 1]..byte).unwrap_or_default();
-        Place { line, column: before.chars().count() + 1 }
+        Span { line, column: before.chars().count() + 1 }
     }
 
-    /// A value with its place.
-    pub(super) fn placed<T>(&self, value: Spanned<T>) -> Placed<T> {
-        Placed { place: self.place(value.span().start), value: value.into_inner() }
+    /// A value and where it is.
+    pub(super) fn spanned<T>(&self, value: Spanned<T>) -> WithSpan<T> {
+        WithSpan { span: self.span(value.span().start), value: value.into_inner() }
     }
 }
 
-/// A number with its place.
+/// A number and where it is.
 pub(super) type Number = Spanned<f64>;
 
 /// The keys of a table that have numbers, to say where one is that is out of range.
@@ -75,7 +75,7 @@ pub(super) struct Keys<'a> {
     pub(super) lines: &'a Lines<'a>,
     pub(super) numbers: Vec<(&'static str, Option<Spanned<f64>>)>,
     /// Where the table begins.
-    pub(super) table: Place,
+    pub(super) table: Span,
 }
 
 impl Keys<'_> {
@@ -101,8 +101,8 @@ impl Keys<'_> {
     pub(super) fn refused(&self, error: &RangeError) -> SceneFileError {
         match self.number(error.parameter) {
             Some(number) => {
-                let place = self.lines.place(number.span().start);
-                place.error(RangeError { value: *number.get_ref(), ..error.clone() })
+                let span = self.lines.span(number.span().start);
+                span.error(RangeError { value: *number.get_ref(), ..error.clone() })
             }
             None => self.table.error(error),
         }
@@ -115,7 +115,7 @@ pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
     Some(Spanned::new(number.span(), f64::from(*number.get_ref())))
 }
 
-/// Refuses keys of a table that do not concern its kind: each with its place, and whether it does.
+/// Refuses keys of a table that do not concern its kind: each with where it is, and whether it does.
 pub(super) fn refuse_foreign(
     lines: &Lines<'_>,
     kind: &str,
@@ -126,13 +126,13 @@ pub(super) fn refuse_foreign(
     });
     match foreign {
         Some((key, start)) => Err(lines
-            .place(start)
+            .span(start)
             .error(format!("`{key}` does not concern the kind `{kind}`; drop it"))),
         None => Ok(()),
     }
 }
 
 /// Where a value is, if it is there.
-pub(super) fn span<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
+pub(super) fn range_of<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
     value.as_ref().map(Spanned::span)
 }

@@ -19,7 +19,7 @@ const HEADING: &str =
     "Light (any of these, as any table of a scene's that is about light, gives a lit picture)";
 
 #[derive(Debug, Args)]
-pub(super) struct PatienceArgs {
+pub(super) struct StopArgs {
     /// Take samples for so long, such as 20s or 1.5m, up to --samples
     #[arg(long, help_heading = HEADING, value_name = "TIME")]
     time: Option<String>,
@@ -34,7 +34,7 @@ pub(super) struct PatienceArgs {
 
 /// What was given, checked.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Patience {
+pub(super) struct StopRule {
     time: Option<Duration>,
     noise: Option<f64>,
     keep_partial: bool,
@@ -44,9 +44,9 @@ pub(super) struct Patience {
 #[cfg(feature = "gpu")]
 const LEAST_SAMPLES: u32 = 16;
 
-impl Patience {
-    pub(super) fn new(args: &PatienceArgs) -> Result<Self, Failure> {
-        let &PatienceArgs { noise, keep_partial, ref time } = args;
+impl StopRule {
+    pub(super) fn new(args: &StopArgs) -> Result<Self, Failure> {
+        let &StopArgs { noise, keep_partial, ref time } = args;
         if let Some(noise) = noise
             && !(noise.is_finite() && noise > 0.0)
         {
@@ -116,10 +116,10 @@ fn parse_time(text: &str) -> Result<Duration, Failure> {
     if time.is_zero() { Err(wrong()) } else { Ok(time) }
 }
 
-/// Patience with one picture of several.
+/// The rule for one picture of several.
 #[cfg(feature = "gpu")]
 pub(super) struct Watching {
-    patience: Patience,
+    stop_rule: StopRule,
     time: Option<Duration>,
     /// Of a lit picture; others have no noise.
     measures_noise: bool,
@@ -135,11 +135,11 @@ pub(super) struct Watching {
 #[cfg(feature = "gpu")]
 impl Watching {
     /// From now on; all pictures share the time.
-    pub(super) fn new(patience: Patience, pictures: usize, pixels: u64, is_lit: bool) -> Self {
-        let time = patience.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
-        let measures_noise = is_lit && (patience.noise.is_some() || progress::is_seen());
+    pub(super) fn new(stop_rule: StopRule, pictures: usize, pixels: u64, is_lit: bool) -> Self {
+        let time = stop_rule.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
+        let measures_noise = is_lit && (stop_rule.noise.is_some() || progress::is_seen());
         Self {
-            patience,
+            stop_rule,
             time,
             measures_noise,
             is_lit,
@@ -157,14 +157,14 @@ impl Watching {
         let has_any = progress.samples > 0;
         let is_late = self.time.is_some_and(|time| elapsed >= time);
         let is_interrupted = interrupt::is_requested();
-        if is_interrupted && !self.patience.keep_partial {
+        if is_interrupted && !self.stop_rule.keep_partial {
             return Decision::Stop;
         }
         if is_interrupted && has_any {
             return Decision::Finish;
         }
         if (is_interrupted || is_late) && !has_any {
-            if !self.patience.keep_partial {
+            if !self.stop_rule.keep_partial {
                 // Of one sample of every pixel.
                 self.too_short.set(Some(progress.part * f64::from(progress.total)));
                 return Decision::Stop;
@@ -173,7 +173,7 @@ impl Watching {
             return Decision::GoOn;
         }
         let is_smooth = progress.samples >= LEAST_SAMPLES
-            && self.patience.noise.zip(progress.noise).is_some_and(|(most, noise)| noise <= most);
+            && self.stop_rule.noise.zip(progress.noise).is_some_and(|(most, noise)| noise <= most);
         if has_any && (is_late || is_smooth) {
             Decision::Finish
         } else if self.measures_noise {
@@ -217,7 +217,7 @@ impl Watching {
         let by_time = self.time.map_or(0.0, |time| seconds / time.as_secs_f64());
         // Noise falls with the root of the samples.
         let by_noise = self
-            .patience
+            .stop_rule
             .noise
             .zip(progress.noise)
             .map_or(0.0, |(most, noise)| (most / noise.max(f64::MIN_POSITIVE)).powi(2));
@@ -225,7 +225,7 @@ impl Watching {
         let taken = progress.part * f64::from(progress.total) * self.pixels as f64;
         let noise =
             progress.noise.map_or(String::new(), |noise| format!(", noise {:.2}%", 100.0 * noise));
-        let of_total = if self.patience.open_end().is_some() {
+        let of_total = if self.stop_rule.open_end().is_some() {
             String::new()
         } else {
             format!(" of {}", progress.total)
@@ -249,7 +249,7 @@ impl Watching {
         if is_stopped && samples < total {
             return Some(format!("stopped; the picture has {samples} samples a pixel"));
         }
-        let wanted = self.patience.noise?;
+        let wanted = self.stop_rule.noise?;
         let left = noise.filter(|noise| *noise > wanted)?;
         Some(format!(
             "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}"

@@ -2,7 +2,7 @@
 // are in flight.
 
 @compute @workgroup_size(64)
-fn deposit(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+fn accumulate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     zero_bits = frame.zero;
     let pixel = path_of(group, lane);
     if (pixel == NO_PATH) {
@@ -16,9 +16,9 @@ fn deposit(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     var albedo = others.rgb;
     // Colour, and the square of the luminance.
     var sum = Sum(vec4f(color.rgb, others.w), rest);
-    for (var turn = 0u; turn < stage.count; turn++) {
+    for (var turn = 0u; turn < dispatch.count; turn++) {
         let index = turn * pixels + pixel;
-        let sample = settled(index);
+        let sample = radiance_so_far(index);
         let light = dot(sample.rgb, vec3f(0.2126, 0.7152, 0.0722));
         sum = plus(sum, vec4f(sample.rgb, light * light));
         alpha += sample.w;

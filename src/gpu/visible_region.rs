@@ -8,7 +8,7 @@ use crate::camera::film::YAxis;
 
 /// A rectangle of the film, in pixels, outside of which no ray meets the scene's box; perhaps empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct VisibleRegion {
     first: [f64; 2],
     /// Behind the last.
     end: [f64; 2],
@@ -17,7 +17,7 @@ pub(super) struct Seen {
 /// How much larger the rectangle is on each side: the rounding of a kernel moves no ray so far.
 const PIXELS_AROUND: f64 = 2.0;
 
-impl Seen {
+impl VisibleRegion {
     /// The rectangle around the box's eight corners; all of the film, if a corner is not before the camera.
     ///
     /// Where straight lines are straight in the picture, and rays go through one point, the box lies within its
@@ -28,7 +28,7 @@ impl Seen {
         if !camera.kind().is_linear() || camera.has_lens() {
             return all;
         }
-        let mut seen = Self { first: size, end: [0.0; 2] };
+        let mut region = Self { first: size, end: [0.0; 2] };
         for corner in space.corners() {
             let Some(location) = camera.location_of(space.origin + corner) else {
                 return all;
@@ -39,11 +39,11 @@ impl Seen {
             };
             for (axis, along) in [location.x, down].into_iter().enumerate() {
                 let pixel = (along + 1.0) / 2.0 * size[axis];
-                seen.first[axis] = seen.first[axis].min(pixel - PIXELS_AROUND);
-                seen.end[axis] = seen.end[axis].max(pixel + PIXELS_AROUND);
+                region.first[axis] = region.first[axis].min(pixel - PIXELS_AROUND);
+                region.end[axis] = region.end[axis].max(pixel + PIXELS_AROUND);
             }
         }
-        seen
+        region
     }
 
     /// As seen by rays that may be so many pixels beside their pixels' centres.
@@ -75,8 +75,9 @@ impl Seen {
 
 /// How many pixels of a film are traced in tiles of a size, in whole workgroups, once for every brick.
 pub(super) fn traced_pixels(scene: &SceneBuffers, view: &View<'_>, tile_size: [u32; 2]) -> u64 {
-    let seen = Seen::of(view, scene.space());
-    let pixels: u64 = tiles(&view.film, tile_size).map(|tile| seen.groups_of(tile).pixels()).sum();
+    let region = VisibleRegion::of(view, scene.space());
+    let pixels: u64 =
+        tiles(&view.film, tile_size).map(|tile| region.groups_of(tile).pixels()).sum();
     pixels * scene.bricks().len() as u64
 }
 
@@ -104,14 +105,14 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
-        let seen = Seen::of(&View::new(&camera, film), &space());
-        assert_eq!(seen, Seen { first: [68.0, 28.0], end: [92.0, 52.0] });
-        let all = seen.groups_of(tile([0, 0], [160, 80]));
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region, VisibleRegion { first: [68.0, 28.0], end: [92.0, 52.0] });
+        let all = region.groups_of(tile([0, 0], [160, 80]));
         assert_eq!(all, Groups { first: [8, 3], size: [4, 4] });
-        let lower = seen.groups_of(tile([0, 48], [160, 32]));
+        let lower = region.groups_of(tile([0, 48], [160, 32]));
         assert_eq!(lower, Groups { first: [8, 0], size: [4, 1] });
-        assert_eq!(seen.groups_of(tile([0, 56], [160, 24])).count(), 0);
-        assert_eq!(seen.groups_of(tile([96, 0], [64, 80])).count(), 0);
+        assert_eq!(region.groups_of(tile([0, 56], [160, 24])).count(), 0);
+        assert_eq!(region.groups_of(tile([96, 0], [64, 80])).count(), 0);
     }
 
     #[test]
@@ -120,8 +121,8 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
-        let up = Seen::of(&View::new(&camera, film), &space());
-        let down = Seen::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
+        let up = VisibleRegion::of(&View::new(&camera, film), &space());
+        let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
         assert_eq!((up.first[1], up.end[1]), (48.0, 72.0));
         assert_eq!((down.first[1], down.end[1]), (8.0, 32.0));
     }
@@ -132,8 +133,8 @@ mod tests {
         let pose =
             Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
-        let seen = Seen::of(&View::new(&camera, film), &space());
-        assert_eq!(seen.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
     }
 
     /// Every ray that meets the box is in the rectangle, and the rectangle is not much larger.
@@ -142,7 +143,7 @@ mod tests {
         let film = Film::new(200, 100).unwrap();
         let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();
-        let seen = Seen::of(&View::new(&camera, film), &space());
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
         for i in 0..8_u8 {
             let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
             let corner = DVec3::new(10.0 + sign(0), sign(1), sign(2));
@@ -151,7 +152,12 @@ mod tests {
             let along = (corner - ray.origin).dot(ray.direction);
             assert!((ray.at(along) - corner).length() < 1e-9);
             let (x, y) = ((location.x + 1.0) * 100.0, (1.0 - location.y) * 50.0);
-            assert!(seen.first[0] < x && x < seen.end[0] && seen.first[1] < y && y < seen.end[1]);
+            assert!(
+                region.first[0] < x
+                    && x < region.end[0]
+                    && region.first[1] < y
+                    && y < region.end[1]
+            );
         }
     }
 }

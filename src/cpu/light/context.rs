@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::flight::Surface;
 use super::source::Sources;
+use super::surface_ray::Surface;
 use crate::camera::Camera;
 use crate::geometry::math::{unit, wide};
 use crate::image::color::LinearRgb;
@@ -16,7 +16,7 @@ use crate::scene::Scene;
 use crate::scene::material::Material;
 
 #[derive(Debug)]
-pub(super) struct Stage<'a> {
+pub(super) struct LightingContext<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a RenderSettings,
     pub(super) ground: Option<Plane>,
@@ -45,7 +45,7 @@ pub(super) struct SkyImage<'a> {
     pub(super) rotation: [f32; 2],
 }
 
-impl<'a> Stage<'a> {
+impl<'a> LightingContext<'a> {
     pub(super) fn new(scene: &'a Scene, camera: &dyn Camera, settings: &'a RenderSettings) -> Self {
         let origin = scene.origin();
         let lights = settings.lights.iter().filter_map(|light| light.in_world(camera));
@@ -91,7 +91,7 @@ impl<'a> Stage<'a> {
             emitters,
             sky_image,
             sources,
-            energies: EnergyTables::of(scene.appearance().finishes()),
+            energies: EnergyTables::of(scene.appearance().surfaces()),
         }
     }
 
@@ -115,7 +115,7 @@ impl<'a> Stage<'a> {
 
     pub(super) fn opacity(&self, surface: Surface) -> f64 {
         match surface {
-            Surface::Sphere(id) => self.scene.finish(id).opacity.into(),
+            Surface::Sphere(id) => self.scene.surface(id).opacity.into(),
             Surface::Ground => 1.0,
         }
     }
@@ -123,7 +123,7 @@ impl<'a> Stage<'a> {
     /// The radiance that an emissive sphere sends out.
     pub(super) fn emission(&self, surface: Surface) -> Option<DVec3> {
         let Surface::Sphere(id) = surface else { return None };
-        match self.scene.finish(id).material {
+        match self.scene.surface(id).material {
             Material::Emissive { strength } => Some(self.color(surface) * f64::from(strength)),
             _ => None,
         }
@@ -131,8 +131,8 @@ impl<'a> Stage<'a> {
 
     /// A sphere's table of energies, from `skip` entries after its first on.
     pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
-        let place = self.scene.checked_appearance().finish_index(id) as usize;
-        let start = self.energies.starts()[place].map_or(0, |start| start as usize);
+        let surface = self.scene.checked_appearance().surface_index(id) as usize;
+        let start = self.energies.starts()[surface].map_or(0, |start| start as usize);
         self.energies.entries().get(start + skip..).unwrap_or_default()
     }
 

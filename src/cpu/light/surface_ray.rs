@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::stage::Stage;
+use super::context::LightingContext;
 use crate::cpu::sphere::intersect;
 use crate::geometry::ray::Ray;
 
 /// A ray in the scene's frame, and the surface that it leaves.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Flight {
+pub(super) struct SurfaceRay {
     pub(super) ray: Ray,
     pub(super) start: Start,
 }
@@ -21,7 +21,7 @@ pub(super) enum Start {
     Free,
     /// A sphere, away from it: never hits it.
     Outside(u32),
-    /// A sphere, through its inside: hits its far wall, if nothing is nearer.
+    /// A sphere, through its inside: hits its far side, if nothing is nearer.
     Inside(u32),
     /// The ground, away from it: never hits it.
     Ground,
@@ -38,7 +38,7 @@ pub(super) enum Surface {
 
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(super) struct Interaction {
     pub(super) surface: Surface,
     /// From the ray's origin, along the ray.
     pub(super) distance: f64,
@@ -50,7 +50,7 @@ pub(super) struct Meeting {
     pub(super) is_outside: bool,
 }
 
-impl Meeting {
+impl Interaction {
     /// Where rays start that stay on the side from which the ray came.
     pub(super) fn this_side(&self) -> Start {
         match self.surface {
@@ -81,20 +81,23 @@ pub(super) enum Hiding {
 
 /// The nearest surface; of several spheres at the same distance, that with the smallest id, and a sphere before the
 /// ground.
-pub(super) fn nearest(stage: &Stage<'_>, flight: &Flight) -> Option<Meeting> {
-    let ray = &flight.ray;
-    let mut nearest: Option<(u32, Wall)> = None;
-    for id in 0..stage.scene.len() as u32 {
-        let Some(wall) = sphere(stage, flight, id) else { continue };
-        if nearest.is_none_or(|(_, nearest)| wall.distance < nearest.distance) {
-            nearest = Some((id, wall));
+pub(super) fn nearest(
+    context: &LightingContext<'_>,
+    surface_ray: &SurfaceRay,
+) -> Option<Interaction> {
+    let ray = &surface_ray.ray;
+    let mut nearest: Option<(u32, SphereHit)> = None;
+    for id in 0..context.scene.len() as u32 {
+        let Some(hit) = sphere(context, surface_ray, id) else { continue };
+        if nearest.is_none_or(|(_, nearest)| hit.distance < nearest.distance) {
+            nearest = Some((id, hit));
         }
     }
-    let is_nearest = |t: &f64| nearest.is_none_or(|(_, wall)| *t < wall.distance);
-    if let Some(distance) = ground(stage, flight).filter(is_nearest) {
-        let plane = stage.ground.as_ref()?;
+    let is_nearest = |t: &f64| nearest.is_none_or(|(_, hit)| *t < hit.distance);
+    if let Some(distance) = ground(context, surface_ray).filter(is_nearest) {
+        let plane = context.ground.as_ref()?;
         let beside = ray.at(distance) - plane.point;
-        return Some(Meeting {
+        return Some(Interaction {
             surface: Surface::Ground,
             distance,
             point: plane.point + beside - beside.dot(plane.normal) * plane.normal,
@@ -102,9 +105,9 @@ pub(super) fn nearest(stage: &Stage<'_>, flight: &Flight) -> Option<Meeting> {
             is_outside: true,
         });
     }
-    nearest.map(|(id, Wall { distance, outward, is_outside })| {
-        let (center, radius) = stage.sphere(id);
-        Meeting {
+    nearest.map(|(id, SphereHit { distance, outward, is_outside })| {
+        let (center, radius) = context.sphere(id);
+        Interaction {
             surface: Surface::Sphere(id),
             distance,
             point: center + radius * outward,
@@ -116,31 +119,31 @@ pub(super) fn nearest(stage: &Stage<'_>, flight: &Flight) -> Option<Meeting> {
 
 /// Whether anything but the sphere `exempt`, and what is in its place, is nearer than `t_max`.
 pub(super) fn is_occluded(
-    stage: &Stage<'_>,
-    flight: &Flight,
+    context: &LightingContext<'_>,
+    surface_ray: &SurfaceRay,
     t_max: f64,
     hiding: Hiding,
     exempt: Option<u32>,
 ) -> bool {
     let hides = |id: u32| match hiding {
         Hiding::All => true,
-        Hiding::Opaque => stage.scene.finish(id).opacity >= 1.0,
+        Hiding::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
     // Of what is in the place of the sphere that is left, that one alone is there.
-    let is_there = |id: u32| match flight.start {
-        Start::Inside(own) => id == own || !stage.is_same(own, id),
+    let is_there = |id: u32| match surface_ray.start {
+        Start::Inside(own) => id == own || !context.is_same(own, id),
         Start::Free | Start::Outside(_) | Start::Ground => true,
     };
-    ground(stage, flight).is_some_and(|t| t < t_max)
-        || (0..stage.scene.len() as u32)
-            .filter(|id| !exempt.is_some_and(|own| stage.is_same(own, *id)))
+    ground(context, surface_ray).is_some_and(|t| t < t_max)
+        || (0..context.scene.len() as u32)
+            .filter(|id| !exempt.is_some_and(|own| context.is_same(own, *id)))
             .filter(|id| hides(*id) && is_there(*id))
-            .any(|id| sphere(stage, flight, id).is_some_and(|wall| wall.distance < t_max))
+            .any(|id| sphere(context, surface_ray, id).is_some_and(|hit| hit.distance < t_max))
 }
 
 /// Where a ray meets a sphere.
 #[derive(Clone, Copy)]
-struct Wall {
+struct SphereHit {
     distance: f64,
     /// Unit normal, away from the centre.
     outward: DVec3,
@@ -149,33 +152,33 @@ struct Wall {
     is_outside: bool,
 }
 
-fn sphere(stage: &Stage<'_>, flight: &Flight, id: u32) -> Option<Wall> {
-    let (center, radius) = stage.sphere(id);
-    let Flight { ray, start } = flight;
+fn sphere(context: &LightingContext<'_>, surface_ray: &SurfaceRay, id: u32) -> Option<SphereHit> {
+    let (center, radius) = context.sphere(id);
+    let SurfaceRay { ray, start } = surface_ray;
     let from_center = ray.origin - center;
     match *start {
-        Start::Outside(own) if stage.is_same(own, id) => None,
-        Start::Inside(own) if stage.is_same(own, id) => {
+        Start::Outside(own) if context.is_same(own, id) => None,
+        Start::Inside(own) if context.is_same(own, id) => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
-            Some(Wall { distance, outward, is_outside: false })
+            Some(SphereHit { distance, outward, is_outside: false })
         }
         _ => {
             let (distance, outward) = intersect(ray, center, radius)?;
             let is_outside = from_center.length_squared() - radius * radius > 0.0;
-            Some(Wall { distance, outward: outward.normalize_or(DVec3::Z), is_outside })
+            Some(SphereHit { distance, outward: outward.normalize_or(DVec3::Z), is_outside })
         }
     }
 }
 
 /// The distance to the ground.
-fn ground(stage: &Stage<'_>, flight: &Flight) -> Option<f64> {
-    let plane = stage.ground.as_ref()?;
-    let descent = flight.ray.direction.dot(plane.normal);
-    if descent >= 0.0 || flight.start == Start::Ground {
+fn ground(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<f64> {
+    let plane = context.ground.as_ref()?;
+    let descent = surface_ray.ray.direction.dot(plane.normal);
+    if descent >= 0.0 || surface_ray.start == Start::Ground {
         return None;
     }
-    let t = (plane.point - flight.ray.origin).dot(plane.normal) / descent;
+    let t = (plane.point - surface_ray.ray.origin).dot(plane.normal) / descent;
     (t > 0.0).then_some(t)
 }
 
@@ -188,11 +191,11 @@ mod tests {
     use crate::scene::Scene;
     use crate::scene::sphere::Sphere;
 
-    fn with_spheres(spheres: &[Sphere], test: impl FnOnce(&Stage<'_>)) {
+    fn with_spheres(spheres: &[Sphere], test: impl FnOnce(&LightingContext<'_>)) {
         let scene = Scene::new(spheres).unwrap();
         let pose = Pose::looking_at([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
-        test(&Stage::new(&scene, &camera, &RenderSettings::studio()));
+        test(&LightingContext::new(&scene, &camera, &RenderSettings::studio()));
     }
 
     fn direction(random: &mut fastrand::Rng) -> DVec3 {
@@ -205,18 +208,18 @@ mod tests {
     fn no_wall_leaks() {
         let mut random = fastrand::Rng::with_seed(21);
         for radius in [1e-4, 1.0, 1e6] {
-            with_spheres(&[Sphere::new([0.0; 3], radius, LinearRgb::WHITE)], |stage| {
-                let (_, radius) = stage.sphere(0);
+            with_spheres(&[Sphere::new([0.0; 3], radius, LinearRgb::WHITE)], |context| {
+                let (_, radius) = context.sphere(0);
                 for _ in 0..20_000 {
                     let outward = direction(&mut random);
                     let along = outward.any_orthonormal_vector();
                     let tilt = (random.f64() - 0.5) * 10_f64.powf(-16.0 * random.f64());
                     let direction = (along + tilt * outward).normalize_or(along);
                     let ray = Ray { origin: radius * outward, direction };
-                    let outside = Flight { ray, start: Start::Outside(0) };
-                    assert!(nearest(stage, &outside).is_none());
-                    let inside = Flight { ray, start: Start::Inside(0) };
-                    let met = nearest(stage, &inside).unwrap();
+                    let outside = SurfaceRay { ray, start: Start::Outside(0) };
+                    assert!(nearest(context, &outside).is_none());
+                    let inside = SurfaceRay { ray, start: Start::Inside(0) };
+                    let met = nearest(context, &inside).unwrap();
                     assert!(!met.is_outside, "{outward}, {tilt}");
                     assert_eq!(met.this_side(), Start::Inside(0));
                     assert!((met.point.length() / radius - 1.0).abs() < 1e-14);
@@ -232,14 +235,14 @@ mod tests {
     fn from_outside_the_outer_side_is_met() {
         let mut random = fastrand::Rng::with_seed(22);
         let mut hits = 0;
-        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)], |stage| {
+        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)], |context| {
             for _ in 0..20_000 {
                 let outward = direction(&mut random);
                 let along = outward.any_orthonormal_vector();
                 let miss = 1.0 + (random.f64() - 0.6) * 10_f64.powf(-16.0 * random.f64());
                 let origin = miss * outward - (1.0 + 9.0 * random.f64()) * along;
                 let ray = Ray { origin, direction: along };
-                if let Some(met) = nearest(stage, &Flight { ray, start: Start::Free }) {
+                if let Some(met) = nearest(context, &SurfaceRay { ray, start: Start::Free }) {
                     assert!(met.is_outside, "{outward}, {miss}");
                     hits += 1;
                 }
@@ -250,12 +253,12 @@ mod tests {
 
     #[test]
     fn of_equal_distances_the_smaller_id_is_met() {
-        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE); 3], |stage| {
+        with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE); 3], |context| {
             let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: -DVec3::Z };
-            let met = nearest(stage, &Flight { ray, start: Start::Free }).unwrap();
+            let met = nearest(context, &SurfaceRay { ray, start: Start::Free }).unwrap();
             assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
             let ray = Ray { origin: met.point, ..ray };
-            let met = nearest(stage, &Flight { ray, start: met.other_side() }).unwrap();
+            let met = nearest(context, &SurfaceRay { ray, start: met.other_side() }).unwrap();
             assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
         });
     }
@@ -264,20 +267,20 @@ mod tests {
     #[test]
     fn equal_spheres_do_not_hide_each_other() {
         let mut random = fastrand::Rng::with_seed(23);
-        with_spheres(&[Sphere::new([0.1, 0.2, 0.3], 0.7, LinearRgb::WHITE); 3], |stage| {
-            let (center, radius) = stage.sphere(0);
+        with_spheres(&[Sphere::new([0.1, 0.2, 0.3], 0.7, LinearRgb::WHITE); 3], |context| {
+            let (center, radius) = context.sphere(0);
             for _ in 0..2000 {
                 let outward = direction(&mut random);
                 let along = direction(&mut random);
                 let is_outward = along.dot(outward) >= 0.0;
                 let start = if is_outward { Start::Outside(1) } else { Start::Inside(1) };
                 let ray = Ray { origin: center + radius * outward, direction: along };
-                let flight = Flight { ray, start };
-                let hides = |exempt| is_occluded(stage, &flight, 9.0, Hiding::All, exempt);
+                let surface_ray = SurfaceRay { ray, start };
+                let hides = |exempt| is_occluded(context, &surface_ray, 9.0, Hiding::All, exempt);
                 if is_outward {
-                    assert!(nearest(stage, &flight).is_none() && !hides(None));
+                    assert!(nearest(context, &surface_ray).is_none() && !hides(None));
                 } else {
-                    let met = nearest(stage, &flight).unwrap();
+                    let met = nearest(context, &surface_ray).unwrap();
                     assert_eq!((met.surface, met.is_outside), (Surface::Sphere(0), false));
                     assert!(hides(None) && !hides(Some(2)));
                 }
@@ -291,24 +294,24 @@ mod tests {
         let at = |z: f64, opacity: f32| {
             Sphere::new([0.0, 0.0, z], 0.5, LinearRgb::WHITE).with_opacity(opacity)
         };
-        with_spheres(&[at(0.0, 1.0), at(2.0, 0.9), at(4.0, 1.0)], |stage| {
+        with_spheres(&[at(0.0, 1.0), at(2.0, 0.9), at(4.0, 1.0)], |context| {
             let up = Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Z };
-            let from = |start| Flight { ray: up, start };
+            let from = |start| SurfaceRay { ray: up, start };
             let hidden = |start, t_max, hiding, exempt| {
-                is_occluded(stage, &from(start), t_max, hiding, exempt)
+                is_occluded(context, &from(start), t_max, hiding, exempt)
             };
             let outside = Start::Outside(0);
             assert!(hidden(outside, 9.0, Hiding::All, None));
-            assert!(!hidden(outside, 1.0, Hiding::All, None), "the near wall of the next");
+            assert!(!hidden(outside, 1.0, Hiding::All, None), "the near hit of the next");
             assert!(hidden(outside, 1.1, Hiding::All, None));
             assert!(!hidden(outside, 1.1, Hiding::Opaque, None));
             assert!(!hidden(outside, 3.0, Hiding::Opaque, None));
             assert!(hidden(outside, 3.1, Hiding::Opaque, None));
             assert!(!hidden(outside, 9.0, Hiding::Opaque, Some(2)));
             let down = Ray { direction: -DVec3::Z, ..up };
-            let inside = Flight { ray: down, start: Start::Inside(0) };
-            assert!(is_occluded(stage, &inside, 1.1, Hiding::Opaque, None), "its own far wall");
-            assert!(!is_occluded(stage, &inside, 1.0, Hiding::Opaque, None));
+            let inside = SurfaceRay { ray: down, start: Start::Inside(0) };
+            assert!(is_occluded(context, &inside, 1.1, Hiding::Opaque, None), "its own far hit");
+            assert!(!is_occluded(context, &inside, 1.0, Hiding::Opaque, None));
         });
     }
 }

@@ -6,7 +6,7 @@ use crate::scene::sphere::Sphere;
 /// Spheres (x, y, z, radius), not checked, in the precision of their source.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Points {
+pub enum SphereArray {
     /// In f32.
     F32(Vec<[f32; 4]>),
     /// In f64.
@@ -35,7 +35,7 @@ pub struct RadiiError {
     pub radii: usize,
 }
 
-impl Points {
+impl SphereArray {
     /// Spheres whose centres and radii stand apart, in f32.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl Points {
     }
 
     /// The spheres one by one, all of one colour.
-    pub fn spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
+    pub fn with_color(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let sphere = move |[x, y, z, radius]: [f64; 4]| Sphere::new([x, y, z], radius, color);
         let (narrow, wide): (&[[f32; 4]], &[[f64; 4]]) = match self {
             Self::F32(spheres) => (spheres, &[]),

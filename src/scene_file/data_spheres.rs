@@ -3,16 +3,16 @@
 use super::data::{Data, Element};
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Format, Labels, Loaded};
-use crate::scene::points::Points;
 use crate::scene::sphere::Sphere;
+use crate::scene::sphere_array::SphereArray;
 
 /// The spheres of a scene's data.
 #[derive(Clone, Debug)]
 pub enum DataSpheres {
-    /// With a colour and a finish for each.
+    /// Spheres with a colour and surface properties each.
     Spheres(Vec<Sphere>),
-    /// Centres and radii alone; the scene gives all of them one colour and one finish.
-    Points(Points),
+    /// Centres and radii alone; the scene gives all of them the same colour and surface properties.
+    Array(SphereArray),
 }
 
 /// Why a scene file cannot say how the spheres of its data look.
@@ -42,7 +42,7 @@ pub enum DataError {
 }
 
 impl Data {
-    /// Gives the spheres of a file the colours, radii and finishes that this scene file says, and leaves out those that
+    /// Gives the spheres of a file the colours, radii and surface properties that this scene file says, and leaves out those that
     /// it names. Also gives notes for the user: of elements, and of values to be left out, that do not occur.
     ///
     /// # Errors
@@ -51,8 +51,8 @@ impl Data {
         let mut notes = std::mem::take(&mut loaded.notes);
         if loaded.colors.is_none() {
             self.check_plain()?;
-            loaded.points.scale_radii(self.radius_scale);
-            return Ok((DataSpheres::Points(loaded.points), notes));
+            loaded.spheres.scale_radii(self.radius_scale);
+            return Ok((DataSpheres::Array(loaded.spheres), notes));
         }
         let species = ["species".to_owned()];
         let by = if self.elements_by.is_empty() { &species[..] } else { &self.elements_by };
@@ -71,12 +71,12 @@ impl Data {
         };
         let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mut spheres = Vec::new();
-        for (index, mut sphere) in loaded.spheres(LinearRgb::WHITE).enumerate() {
+        for (index, mut sphere) in loaded.colored_spheres(LinearRgb::WHITE).enumerate() {
             if is_left_out.get(index).copied().unwrap_or(false) {
                 continue;
             }
             let element = element_at(index);
-            sphere.finish = element.map_or(self.finish, |element| element.finish);
+            sphere.surface = element.map_or(self.surface, |element| element.surface);
             if let Some(Element { radius, color, .. }) = element {
                 sphere.radius = radius.unwrap_or(sphere.radius);
                 sphere.color = color.unwrap_or(sphere.color);
@@ -133,7 +133,7 @@ impl Data {
         let mut is_left_out = Vec::new();
         for (column, values) in &self.leave_out {
             let labels = self.labels(loaded, "leave_out", column)?;
-            is_left_out.resize(loaded.points.len(), false);
+            is_left_out.resize(loaded.spheres.len(), false);
             let is_named: Vec<bool> =
                 labels.names.iter().map(|name| values.contains(name)).collect();
             for (is_out, index) in is_left_out.iter_mut().zip(&labels.indices) {
