@@ -160,7 +160,12 @@ pub use scene::sphere::Sphere;
 pub use scene::sphere_array::{Radii, SphereArray};
 pub use scene::{Appearance, ColorMap, Colors, Scene};
 
-/// Compiles the example in the README.
+/// Compiles the examples of the README and of `docs`.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod pages {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[cfg(feature = "gpu")]
+    #[doc = include_str!("../docs/verify.md")]
+    struct Verify;
+}

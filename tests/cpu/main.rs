@@ -31,6 +31,7 @@ mod legal_paths;
 mod lens;
 mod light;
 mod npy;
+mod pages;
 mod perspective;
 mod pictures;
 mod rays;

@@ -16,7 +16,7 @@ use crate::support::View;
 use crate::verify_views as views;
 use crate::{headless, scenes};
 
-/// What the README shows for the tests of others.
+/// What docs/verify.md shows for the tests of others.
 #[path = "../../examples/legal.rs"]
 #[allow(dead_code, reason = "an example has a main function")]
 mod example;
