@@ -162,7 +162,7 @@ const ROUNDS: usize = 15;
 
 fn fences(fenced: &Headless) {
     let edit = |find: &str| ShaderEdit {
-        file: "fence.wgsl".to_owned(),
+        file: "math/fence.wgsl".to_owned(),
         find: find.to_owned(),
         replace: "v".to_owned(),
     };

@@ -406,6 +406,11 @@ pub(super) struct InfoArgs {
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME")]
     pub(super) adapter: Option<String>,
+    /// Write every shader as a device is given it, one WGSL file for each kernel, into this folder; it is created if it is
+    /// missing. Needs no adapter
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["self_test", "adapter", "json"])]
+    pub(super) dump_shaders: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

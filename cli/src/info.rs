@@ -6,6 +6,8 @@ use serde::Serialize;
 use super::args::InfoArgs;
 #[cfg(feature = "gpu")]
 use super::device::WantedAdapter;
+#[cfg(feature = "gpu")]
+use super::dump_shaders::dump;
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
 use super::self_test::SelfTested;
@@ -61,7 +63,9 @@ struct Features {
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]
-    if args.self_test {
+    if let Some(folder) = &args.dump_shaders {
+        return dump(folder);
+    } else if args.self_test {
         return run_self_test(args);
     } else if args.adapter.is_some() {
         return Err(Failure::usage(

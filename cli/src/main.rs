@@ -24,6 +24,8 @@ mod camera;
 mod data;
 mod demo;
 mod device;
+#[cfg(feature = "gpu")]
+mod dump_shaders;
 mod encoding;
 mod failure;
 mod generate;

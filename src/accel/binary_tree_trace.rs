@@ -1,4 +1,4 @@
-//! The walk through the two-child tree. Twin of `shaders/binary_tree.wgsl`.
+//! The walk through the two-child tree. Twin of `shaders/accel/binary_tree.wgsl`.
 
 use glam::Vec3;
 

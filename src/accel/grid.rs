@@ -62,7 +62,7 @@ pub enum ListLayout {
     Referenced,
 }
 
-/// Two levels of cells, as plain data. `shaders/grid.wgsl` reads the same words.
+/// Two levels of cells, as plain data. `shaders/accel/grid.wgsl` reads the same words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The corner with the smallest coordinates, in the scene's frame.

@@ -1,4 +1,4 @@
-//! Walks a grid in f32. Twin of `shaders/nested_grid.wgsl`, in the same order of cells and spheres; `grid.wgsl`
+//! Walks a grid in f32. Twin of `shaders/accel/nested_grid.wgsl`, in the same order of cells and spheres; `grid.wgsl`
 //! is that for one level, without the loops inside.
 
 use glam::{BVec3, Vec3};
@@ -112,7 +112,7 @@ impl Grid {
         self.cells.get(index).copied().unwrap_or(word::EMPTY)
     }
 
-    /// The nearest of a list replaces one that is as near; why, `shaders/list_copied.wgsl` says.
+    /// The nearest of a list replaces one that is as near; why, `shaders/accel/cell_list.wgsl` says.
     fn test_list(&self, spheres: &[[f32; 4]], ray: &RayF32, start: u32, found: &mut Found) {
         let mut best = Found { t: NO_HIT, shape_index: None };
         for shape_index in self.list(spheres, start) {

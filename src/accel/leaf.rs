@@ -1,4 +1,4 @@
-//! The spheres of one leaf. Twin of `shaders/leaf.wgsl`.
+//! The spheres of one leaf. Twin of `shaders/accel/leaf.wgsl`.
 
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::sphere::intersect_sphere;

@@ -1,4 +1,4 @@
-//! No structure: every sphere. Twin of `shaders/list.wgsl`.
+//! No structure: every sphere. Twin of `shaders/accel/list.wgsl`.
 
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::sphere::intersect_sphere;

@@ -1,5 +1,5 @@
 //! A ray as tests of boxes want it, and why no test of a box may lose a sphere. Twin of
-//! `shaders/slab.wgsl`.
+//! `shaders/accel/slab.wgsl`.
 //!
 //! # The margin
 //! A tree must answer what trying every sphere answers, to the bit, though both the sphere test and the
@@ -46,7 +46,7 @@ pub(super) struct SlabRay {
     pub(super) inverse: Vec3,
 }
 
-/// One over each component of a direction. Twin of the function in `shaders/enter.wgsl`.
+/// One over each component of a direction. Twin of the function in `shaders/scene/enter.wgsl`.
 pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
     let size = direction.abs().max(Vec3::splat(SMALLEST_COMPONENT));
     1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size)

@@ -1,4 +1,4 @@
-//! One ray against one sphere, in f32. Twin of `intersect_sphere` in `shaders/sphere.wgsl`, line by line.
+//! One ray against one sphere, in f32. Twin of `intersect_sphere` in `shaders/scene/sphere.wgsl`, line by line.
 
 use glam::Vec3;
 

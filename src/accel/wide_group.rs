@@ -1,5 +1,5 @@
 //! Which children of a node of the 8-wide tree are still to be visited, and in which order. Twin of
-//! `shaders/wide_group.wgsl`.
+//! `shaders/accel/wide_group.wgsl`.
 
 use super::wide_node::WideNode;
 
@@ -42,7 +42,7 @@ impl Group {
 }
 
 /// Moves bit s to bit `s ^ octant`: the first bit is then the child that a ray of this octant meets first.
-/// Twin of `octant_order` in `shaders/wide_group.wgsl`.
+/// Twin of `octant_order` in `shaders/accel/wide_group.wgsl`.
 #[inline]
 fn octant_order(mask: u32, octant: u32) -> u32 {
     let mut mask = mask;

@@ -138,7 +138,7 @@ impl WideNode {
     }
 
     /// Bit s says whether the ray enters the box of slot s at `t_max` or before. Twin of `wide_node` in
-    /// `shaders/wide_node.wgsl`.
+    /// `shaders/accel/wide_node.wgsl`.
     #[inline]
     pub(super) fn hits(&self, ray: &SlabRay, t_max: f32) -> u32 {
         let mut entry = [0.0_f32; 8];

@@ -1,4 +1,4 @@
-//! The walk through the compressed 8-wide tree. Twin of `shaders/wide_tree.wgsl`.
+//! The walk through the compressed 8-wide tree. Twin of `shaders/accel/wide_tree.wgsl`.
 
 use super::leaf::{any_in_leaf, offer_leaf};
 use super::query::{Nearest, RayF32};

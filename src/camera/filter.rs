@@ -3,7 +3,7 @@
 //! Samples are not weighted but placed as densely as the filter is high, and count for one pixel alone: filter
 //! importance sampling (M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE Symposium on
 //! Interactive Ray Tracing, 2006). All filters are products of one for each axis. Twin of [`offset`]:
-//! `shaders/filter.wgsl`.
+//! `shaders/camera/filter.wgsl`.
 
 use std::f64::consts::PI;
 

@@ -186,7 +186,7 @@ camera_table!(define_kind);
 impl CameraKind {
     /// Whether straight lines are straight in the picture, so that all of a box lies between its corners. The
     /// rays may then be taken up at any plane along `forward` instead of at the camera; see `Camera` in
-    /// `shaders/records.wgsl`.
+    /// `shaders/scene/records.wgsl`.
     pub(crate) const fn is_linear(self) -> bool {
         matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)
     }

@@ -7,7 +7,7 @@
 //! with N. Vegdahl's hash ("Building a Better LK Hash", psychopath.io, 2021) in place of that of Laine and
 //! Karras.
 //!
-//! Integers alone, so that any device gives the same bits. Twin: `shaders/sampling.wgsl`.
+//! Integers alone, so that any device gives the same bits. Twin: `shaders/math/sampling.wgsl`.
 
 /// What distinguishes a pixel's points from those of other pixels; `pixel` is column and row.
 ///

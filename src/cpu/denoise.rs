@@ -1,4 +1,4 @@
-//! An edge-avoiding filter, in f64. Twin of `shaders/denoise.wgsl`, where its sources are.
+//! An edge-avoiding filter, in f64. Twin of `shaders/primary/denoise.wgsl`, where its sources are.
 
 use crate::image::Image;
 use crate::image::denoise::{Guided, MissingGuide, PASSES};
@@ -83,5 +83,5 @@ fn spline(distance: i64) -> f64 {
 }
 
 fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    crate::image::color::luminance([r, g, b])
 }

@@ -1,4 +1,4 @@
-//! From a hit to a pixel. Twin of `shaders/shade.wgsl`.
+//! From a hit to a pixel. Twin of `shaders/primary/shade.wgsl`.
 
 use crate::geometry::ray::{Hit, Ray};
 use crate::image::Pixel;

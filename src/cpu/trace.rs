@@ -1,4 +1,4 @@
-//! Nearest hit by trying every sphere. Twin of `shaders/trace.wgsl`.
+//! Nearest hit by trying every sphere. Twin of `shaders/primary/trace.wgsl`.
 
 use glam::DVec3;
 

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec2;
 
 /// The point of the unit disk that belongs to a point of the unit square [0, 1)², by the concentric map, which
-/// keeps areas in proportion and neighbours together; (½, ½) is the centre. Twin of `shaders/disk.wgsl`.
+/// keeps areas in proportion and neighbours together; (½, ½) is the centre. Twin of `shaders/math/disk.wgsl`.
 ///
 /// P. Shirley and K. Chiu, *A low distortion map between disk and square*, Journal of Graphics Tools 2 (1997),
 /// with the signed radius of D. Cline that needs two cases instead of four.

@@ -1,4 +1,4 @@
-//! What spheres look like, as kernels read it. Twin of `shaders/appearance.wgsl`.
+//! What spheres look like, as kernels read it. Twin of `shaders/scene/appearance.wgsl`.
 
 use super::records::Color;
 use crate::image::color::LinearRgb;
@@ -117,7 +117,7 @@ mod tests {
         Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap()
     }
 
-    /// As `sphere_color` and `material_index` of `shaders/appearance.wgsl`.
+    /// As `sphere_color` and `material_index` of `shaders/scene/appearance.wgsl`.
     fn read(appearances: &AppearanceWords, palette: &[Color], shape_index: u32) -> ([f32; 4], u32) {
         let last = appearances.words.len() as u32 - 1;
         let word = appearances.words[shape_index.min(last) as usize];

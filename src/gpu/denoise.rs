@@ -6,10 +6,10 @@ use wgpu::{Buffer, BufferUsages, ComputePassDescriptor};
 use super::error::{GpuError, scoped};
 use super::headless::Headless;
 use super::layouts::{layout_of, storage, uniform};
-use super::pipeline::pipeline;
 use super::readback::ReadableBuffer;
 use super::scene_buffers::binding_limit;
-use super::shaders::{Kernel, part};
+use super::shader::pipeline;
+use super::shader::{Kernel, part};
 use crate::image::Image;
 use crate::image::denoise::{Guided, PASSES};
 
@@ -29,7 +29,10 @@ const REACH: u32 = 2 * ((1 << PASSES) - 1);
 const MOST_PIXELS: u64 = 1 << 21;
 
 pub(super) fn denoise_kernel() -> Kernel {
-    Kernel { entry_point: "denoise", parts: vec![part!("denoise.wgsl")] }
+    Kernel {
+        entry_point: "denoise",
+        parts: vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")],
+    }
 }
 
 impl Headless {

@@ -87,7 +87,7 @@ impl Keeper<'_> {
     }
 }
 
-/// `HIT` of `shaders/path_state.wgsl`.
+/// `HIT` of `shaders/path/state.wgsl`.
 const HIT: usize = 6;
 
 /// Where a slot of a [`PathState`] is.

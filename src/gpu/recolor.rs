@@ -7,10 +7,10 @@ use super::appearance::color_words;
 use super::brick_buffers::BrickBuffers;
 use super::error::{GpuError, scoped};
 use super::layouts::{layout_of, storage, uniform};
-use super::pipeline::pipeline;
 use super::scene_buffers::{SceneBuffers, binding_limit};
 use super::scene_summary::SceneSummary;
-use super::shaders::{Kernel, part};
+use super::shader::pipeline;
+use super::shader::{Kernel, part};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
@@ -35,7 +35,7 @@ pub struct Recolor {
 }
 
 pub(super) fn recolor_kernel() -> Kernel {
-    Kernel { entry_point: "recolor", parts: vec![part!("recolor.wgsl")] }
+    Kernel { entry_point: "recolor", parts: vec![part!("scene/recolor.wgsl")] }
 }
 
 impl Recolor {

@@ -91,7 +91,7 @@ pub(super) type Sphere = [f32; 4];
 /// Linear red, green and blue, and alpha: one `vec4f`.
 pub(super) type Color = [f32; 4];
 
-/// `NO_HIT` in `shaders/frame.wgsl`.
+/// `NO_HIT` in `shaders/scene/frame.wgsl`.
 pub(super) use crate::verify::NO_HIT;
 
 impl Camera {
@@ -200,10 +200,10 @@ mod tests {
     use super::*;
     use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::denoise::Denoise;
+    use crate::gpu::kernels;
     use crate::gpu::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
-    use crate::gpu::shaders;
 
     /// Name, offset and size of every field, and the size of the whole.
     type Layout = (Vec<(String, usize, usize)>, usize);
@@ -360,7 +360,7 @@ mod tests {
             }),
         ];
         let mut declared = BTreeSet::new();
-        for kernel in shaders::all_kernels() {
+        for kernel in kernels::all_kernels() {
             let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
             for (name, in_rust) in &records {
                 // A kernel that does not use a record has no part that declares it.
@@ -391,7 +391,7 @@ mod tests {
             forward: DVec3::NEG_Z,
             numbers: [0.0; 3],
         };
-        let source = include_str!("../../shaders/shading.wgsl");
+        let source = include_str!("../../shaders/primary/shading.wgsl");
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let primary = PrimarySettings { shading, ..PrimarySettings::default() };
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };

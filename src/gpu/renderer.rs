@@ -5,9 +5,9 @@ use wgpu::{ComputePipeline, Device};
 use super::error::{GpuError, scoped};
 use super::formats::ColorTarget;
 use super::layouts::Layouts;
-use super::pipeline::pipeline;
 use super::renderer_options::{Query, RendererOptions};
-use super::shaders::{self, BrickPass};
+use super::shader::pipeline;
+use super::shader::{self, BrickPass};
 use crate::accel::{BrickKind, Primitive};
 use crate::camera::CameraKind;
 
@@ -42,7 +42,7 @@ impl Renderer {
         for &camera in &options.cameras {
             let Layouts { frame, targets, .. } = &renderer.layouts;
             for &primitive in &options.primitives {
-                let kernel = shaders::shade_kernel(camera, primitive, color, data_layers)
+                let kernel = shader::shade_kernel(camera, primitive, color, data_layers)
                     .edited(&options.edits)?;
                 let surface = renderer.layouts.surface_of(primitive);
                 let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
@@ -53,9 +53,9 @@ impl Renderer {
                 let build = |brick_pass| {
                     let kernel = match query {
                         Query::Nearest => {
-                            shaders::trace_kernel(camera, *kind, brick_pass, keeps_rays)
+                            shader::trace_kernel(camera, *kind, brick_pass, keeps_rays)
                         }
-                        Query::Any => shaders::occluded_kernel(camera, *kind, brick_pass),
+                        Query::Any => shader::occluded_kernel(camera, *kind, brick_pass),
                     };
                     pipeline(device, &kernel.edited(&options.edits)?, &groups)
                 };
@@ -108,7 +108,7 @@ mod tests {
             Layouts::new(&device, &RendererOptions { structures, ..RendererOptions::default() });
         for broken in ["fn broken() -> f32 {\n    let x = 1.0;\n}\n", "\nfn broken() -> none {}\n"]
         {
-            let kernel = shaders::trace_kernel(
+            let kernel = shader::trace_kernel(
                 CameraKind::Pinhole,
                 layouts.brick[0].0,
                 BrickPass::First,

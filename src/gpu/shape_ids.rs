@@ -17,7 +17,6 @@ pub(super) enum ExcludeBy {
 
 impl ExcludeBy {
     /// Both.
-    #[cfg(test)]
     pub(super) const ALL: [Self; 2] = [Self::Index, Self::Id];
 }
 

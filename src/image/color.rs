@@ -95,9 +95,12 @@ pub enum ColorError {
     },
 }
 
-/// How bright linear light is (ITU-R BT.709).
+/// What red, green and blue count in how bright linear light looks (ITU-R BT.709).
+pub(crate) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// How bright linear light looks.
 pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
 /// Encodes linear light as 8-bit sRGB, rounded to the nearest byte; what lies outside [0, 1] is clamped,

@@ -1,6 +1,7 @@
 //! What a denoiser sees of a picture: light without colour, and shapes. Both denoisers, on the GPU and on the CPU,
 //! start from it.
 
+use super::color::LUMINANCE;
 use crate::image::{Image, Layer, LayerSet};
 
 /// How many passes a filter has; each reaches twice as far as the one before.
@@ -50,12 +51,13 @@ impl Guided {
                 [r, g, b, 0.0]
             })
             .collect();
+        let [red, green, blue] = LUMINANCE.map(|weight| weight as f32);
         let lights = image.color().iter().zip(&albedos).zip(variances);
         let shapes = normals.iter().zip(depths);
         Ok(Self {
             lights: lights
                 .map(|(([r, g, b], [x, y, z, _]), variance)| {
-                    let albedo = 0.2126 * x + 0.7152 * y + 0.0722 * z;
+                    let albedo = red * x + green * y + blue * z;
                     [r / x, g / y, b / z, variance / (albedo * albedo)]
                 })
                 .collect(),

@@ -2,6 +2,7 @@
 
 use super::studio::Studio;
 use crate::image::color::LinearRgb;
+use crate::light::codes;
 
 /// How rays become colours.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +95,17 @@ impl Default for PathTracing {
     /// Eight surfaces, roulette from the fourth, multiple importance sampling.
     fn default() -> Self {
         Self { max_depth: 8, roulette_from: 3, light_sampling: LightSampling::default() }
+    }
+}
+
+impl LightSampling {
+    /// The number that a device has.
+    pub(crate) const fn code(self) -> u32 {
+        match self {
+            Self::Chance => codes::sampling::CHANCE,
+            Self::Direct => codes::sampling::DIRECT,
+            Self::Multiple => codes::sampling::MULTIPLE,
+        }
     }
 }
 

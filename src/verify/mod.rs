@@ -15,7 +15,7 @@
 //! compared with the recording's, value by value; a pixel in which it is another is judged by itself, against every ray
 //! that a device may make of that pixel.
 //!
-//! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/fence.wgsl` keeps a compiler from
+//! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/math/fence.wgsl` keeps a compiler from
 //! looking through it, and the square root of zero is zero: both of which
 //! [`Headless::self_test`](crate::gpu::Headless::self_test) checks. And of spheres that are the same to the bit the
 //! smallest id wins, also where they are in different bricks: all kernels of a picture find the same for the same.

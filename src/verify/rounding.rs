@@ -4,7 +4,7 @@
 //! products are rounded to either neighbour, a quotient is within 2.5 ULP, an inverse square root within 2, and
 //! a square root within what follows from one over it; numbers below the normal ones may become zero. Products
 //! and sums may be fused, and the terms of a sum be taken in any order: so whatever stands between two fences
-//! (`shaders/fence.wgsl`) is bounded by γ(k) times the sum of its terms' magnitudes, where no term passes more
+//! (`shaders/math/fence.wgsl`) is bounded by γ(k) times the sum of its terms' magnitudes, where no term passes more
 //! than k roundings (Higham, *Accuracy and Stability of Numerical Algorithms*, second edition, section 3.1).
 
 /// One rounding to either neighbour, relative: 2⁻²³. An ULP is at most this.

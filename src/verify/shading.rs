@@ -1,4 +1,4 @@
-//! From a hit to a pixel's layers: what `shaders/shade.wgsl` may write. It makes the ray and the sphere test
+//! From a hit to a pixel's layers: what `shaders/primary/shade.wgsl` may write. It makes the ray and the sphere test
 //! anew, so that both may differ from those of the trace by a little.
 
 use glam::DVec3;

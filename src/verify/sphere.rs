@@ -1,4 +1,4 @@
-//! One ray against one sphere: everything that `intersect_sphere` in `shaders/sphere.wgsl` may answer.
+//! One ray against one sphere: everything that `intersect_sphere` in `shaders/scene/sphere.wgsl` may answer.
 //!
 //! The kernel's four lines that end in a fence are followed in f64, each with a bound of what its f32 value may
 //! differ by. With the vector l to the centre, b = l·d and the foot vector f = l − b d, the rounding of l and of

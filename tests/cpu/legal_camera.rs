@@ -112,7 +112,7 @@ impl LegalDevice {
         LegalRay { origin: view.origin, direction, distance: 0.0, is_seen: radius <= 1.0 }
     }
 
-    /// The function of shaders/disk.wgsl.
+    /// The function of shaders/math/disk.wgsl.
     pub(crate) fn concentric_disk(&mut self, square: [f32; 2]) -> [f32; 2] {
         let spot = square.map(|x| self.mul_add(2.0, x, -1.0));
         let is_wide = spot[0].abs() > spot[1].abs();
@@ -125,7 +125,7 @@ impl LegalDevice {
         point.map(|x| self.mul(radius, x))
     }
 
-    /// The functions of shaders/trigonometry.wgsl.
+    /// The functions of shaders/math/trigonometry.wgsl.
     pub(crate) fn sin_cos_half_turns(&mut self, half_turns: f32) -> [f32; 2] {
         let quarters = (2.0 * half_turns).round();
         let rest = half_turns - 0.5 * quarters;

@@ -108,7 +108,7 @@ impl LegalDevice {
         sum
     }
 
-    /// The lines of `intersect_sphere` in shaders/sphere.wgsl that lead to its roots.
+    /// The lines of `intersect_sphere` in shaders/scene/sphere.wgsl that lead to its roots.
     pub(crate) fn triangle(&mut self, ray: &TracedRay, [x, y, z, radius]: [f32; 4]) -> Triangle {
         let (center, d) = ([x, y, z], ray.direction);
         let l = [0, 1, 2].map(|k| self.add(center[k], -ray.origin[k]));
@@ -124,7 +124,7 @@ impl LegalDevice {
         Triangle { b, foot, discriminant, c, from_foot }
     }
 
-    /// `intersect_sphere` of shaders/sphere.wgsl.
+    /// `intersect_sphere` of shaders/scene/sphere.wgsl.
     pub(crate) fn intersect(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> f32 {
         let Triangle { b, discriminant, c, from_foot, .. } = self.triangle(ray, sphere);
         let t = if self.mul(b, from_foot) >= 0.0 {
@@ -155,7 +155,7 @@ impl LegalDevice {
         [0, 1, 2].map(|k| component(self, k))
     }
 
-    /// `relative_location` of shaders/film.wgsl.
+    /// `relative_location` of shaders/camera/film.wgsl.
     fn location(&mut self, film: &Film, pixel: [u32; 2]) -> [f32; 2] {
         let sign = if film.y_axis() == YAxis::Up { -1.0 } else { 1.0 };
         let along = |this: &mut Self, i: u32, side: u32| {
@@ -181,7 +181,7 @@ impl LegalDevice {
         (TracedRay { distance, ..entered }, ray.is_seen && is_inside)
     }
 
-    /// `enter_scene` of shaders/enter.wgsl, and whether the ray meets the box.
+    /// `enter_scene` of shaders/scene/enter.wgsl, and whether the ray meets the box.
     pub(crate) fn enter(
         &mut self,
         view: &UploadedView,
@@ -203,7 +203,7 @@ impl LegalDevice {
         (TracedRay { origin, direction, distance: near }, near <= far)
     }
 
-    /// `sphere_normal` of shaders/sphere.wgsl.
+    /// `sphere_normal` of shaders/scene/sphere.wgsl.
     fn normal(&mut self, ray: &TracedRay, sphere: [f32; 4]) -> [f32; 3] {
         let Triangle { foot, from_foot, .. } = self.triangle(ray, sphere);
         let d = ray.direction;

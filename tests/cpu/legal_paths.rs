@@ -131,7 +131,7 @@ const FULL: u32 = 32;
 const SCATTERED: u32 = 64;
 
 impl LegalDevice {
-    /// `start` of shaders/start.wgsl.
+    /// `start` of shaders/path/start.wgsl.
     fn start(&mut self, made: &PathRecording, pixel: [u32; 2], seed: u32) -> Path {
         let table = &made.lighting.filter_table;
         let u = pair(seed, 0, 0);
@@ -161,7 +161,7 @@ impl LegalDevice {
         }
     }
 
-    /// `trace` of shaders/trace.wgsl.
+    /// `trace` of shaders/primary/trace.wgsl.
     fn extend(&mut self, scene: &Scene, made: &PathRecording, path: &Path, last: Hit) -> Hit {
         let (ray, is_inside) = self.enter(&made.uploaded, path.origin, path.direction);
         let mut hit = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
@@ -192,7 +192,7 @@ impl LegalDevice {
         self.vector(|this, k| this.divide(v[k], length))
     }
 
-    /// `axes_around` of shaders/warp.wgsl.
+    /// `axes_around` of shaders/math/warp.wgsl.
     fn axes(&mut self, n: [f32; 3]) -> [[f32; 3]; 3] {
         let [x, y, z] = n;
         let s = if z >= 0.0 { 1.0 } else { -1.0 };
@@ -206,7 +206,7 @@ impl LegalDevice {
         [first, [b, self.add(s, ya), -y], n]
     }
 
-    /// `scatter` of shaders/scatter.wgsl, of a scene in which everything is matt and nothing is looked for.
+    /// `scatter` of shaders/path/scatter.wgsl, of a scene in which everything is matt and nothing is looked for.
     fn scatter(
         &mut self,
         scene: &Scene,
@@ -281,7 +281,7 @@ impl LegalDevice {
         next
     }
 
-    /// `accumulate` of shaders/accumulate.wgsl.
+    /// `accumulate` of shaders/path/accumulate.wgsl.
     fn accumulate(&mut self, path: &Path) -> [[u32; 4]; 2] {
         let [r, g, b, _] = path.radiance;
         let light = self.dot(&mut [(r, 0.2126), (g, 0.7152), (b, 0.0722)]);

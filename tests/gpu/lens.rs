@@ -28,7 +28,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 
 fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
     let edit = ShaderEdit {
-        file: "camera_entry.wgsl".into(),
+        file: "camera/entry.wgsl".into(),
         find: "vec2f(0.5)".into(),
         replace: format!("vec2f({:?}, {:?})", lens[0], lens[1]),
     };

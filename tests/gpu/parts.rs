@@ -26,13 +26,13 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-const SAMPLING: &str = include_str!("../../shaders/sampling.wgsl");
-const FILTER: &str = include_str!("../../shaders/filter.wgsl");
-const FENCE: &str = include_str!("../../shaders/fence.wgsl");
+const SAMPLING: &str = include_str!("../../shaders/math/sampling.wgsl");
+const FILTER: &str = include_str!("../../shaders/camera/filter.wgsl");
+const FENCE: &str = include_str!("../../shaders/math/fence.wgsl");
 
-const TURNS: &str = include_str!("../../shaders/turns.wgsl");
-const INVERSE: &str = include_str!("../../shaders/trigonometry_inverse.wgsl");
-const ENVIRONMENT: &str = include_str!("../../shaders/environment.wgsl");
+const TURNS: &str = include_str!("../../shaders/math/turns.wgsl");
+const INVERSE: &str = include_str!("../../shaders/math/trigonometry_inverse.wgsl");
+const ENVIRONMENT: &str = include_str!("../../shaders/scene/environment.wgsl");
 
 /// What `FENCE` asks for; the last word of each question is zero.
 const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";

@@ -25,7 +25,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         .collect()
 }
 
-/// `relative_location` of shaders/film.wgsl.
+/// `relative_location` of shaders/camera/film.wgsl.
 fn location(film: &Film, pixel: UVec2) -> Vec2 {
     let size = UVec2::new(film.width(), film.height()).as_ivec2();
     let location = (pixel.as_ivec2() * 2 + 1 - size).as_vec2() / size.as_vec2();
@@ -85,7 +85,7 @@ fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (Tra
     (ray, is_seen && near <= far)
 }
 
-/// `sin_cos_half_turns` and `sin_cos_eighth` of shaders/trigonometry.wgsl.
+/// `sin_cos_half_turns` and `sin_cos_eighth` of shaders/math/trigonometry.wgsl.
 fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
     let quarters = (2.0 * half_turns).round_ties_even();
     let rest = half_turns - 0.5 * quarters;
@@ -105,7 +105,7 @@ fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
     }
 }
 
-/// `surface_color` of shaders/shading.wgsl.
+/// `surface_color` of shaders/primary/shading.wgsl.
 fn color(primary: &PrimarySettings, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
     if primary.shading == Shading::Flat {
         return of.to_array();

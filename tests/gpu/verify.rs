@@ -92,7 +92,9 @@ fn none_without_one() -> Result<(), Failed> {
 
 fn is_found(fault: &Fault) -> Result<(), Failed> {
     let Fault { file, find, replace, .. } = *fault;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("shaders")
+        .join(file.split('#').next().unwrap_or(file));
     if !std::fs::read_to_string(path)?.contains(find) {
         return Err(format!("{file} has no `{find}`").into());
     }
@@ -140,7 +142,7 @@ const RENDER_FAULTS: &[RenderFault] = &[
 /// A fault that only a picture without a recording has.
 fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Failed> {
     let edit = ShaderEdit {
-        file: "entry_made.wgsl".into(),
+        file: "primary/entry.wgsl#made".into(),
         find: "return make_entry(pixel_in_tile);".into(),
         replace: replace.into(),
     };

@@ -14,6 +14,8 @@ mod good_input;
 mod interrupt;
 mod light;
 mod pictures;
+#[cfg(feature = "gpu")]
+mod shaders;
 mod stereo;
 mod support;
 mod verify;

@@ -6,7 +6,7 @@ use super::source::Sources;
 use super::surface_ray::Surface;
 use crate::camera::Camera;
 use crate::geometry::math::{unit, wide};
-use crate::image::color::LinearRgb;
+use crate::image::color::{LUMINANCE, LinearRgb};
 use crate::light::emitters::Emitters;
 use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
@@ -147,5 +147,5 @@ pub(super) fn rgb(color: LinearRgb) -> DVec3 {
 
 /// Of a linear colour with the Rec. 709 primaries.
 pub(super) fn luminance(color: DVec3) -> f64 {
-    color.dot(DVec3::new(0.2126, 0.7152, 0.0722))
+    color.dot(DVec3::from(LUMINANCE))
 }

@@ -64,7 +64,7 @@ pub(in crate::gpu) struct LitTile {
 }
 
 impl LitTile {
-    /// The sums of its pixels: `shaders/film_sums.wgsl`.
+    /// The sums of its pixels: `shaders/path/film_sums.wgsl`.
     pub(in crate::gpu) fn film(&self) -> &Buffer {
         &self.film
     }

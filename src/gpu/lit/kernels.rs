@@ -2,7 +2,7 @@
 
 use crate::accel::Structure;
 use crate::camera::CameraKind;
-use crate::gpu::shaders::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
+use crate::gpu::shader::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
 use crate::gpu::shape_ids::ExcludeBy;
 
 /// What of a lighting decides which kernels it needs.
@@ -21,6 +21,22 @@ impl Mode {
     /// Whether something may absorb light on the way.
     pub(in crate::gpu) fn has_medium(self) -> bool {
         matches!(self, Self::Path(Materials::Any, ..))
+    }
+
+    fn direct_light(self) -> Part {
+        if self.looks_for_light() {
+            part!("path/direct_light.wgsl", "any")
+        } else {
+            part!("path/direct_light.wgsl", "none")
+        }
+    }
+
+    fn medium(self) -> Part {
+        if self.has_medium() {
+            part!("path/medium.wgsl", "glass")
+        } else {
+            part!("path/medium.wgsl", "none")
+        }
     }
 }
 
@@ -57,8 +73,8 @@ pub(super) enum Schedule {
 impl Schedule {
     fn part(self) -> Part {
         match self {
-            Self::Pixels => part!("schedule_pixels.wgsl"),
-            Self::Queue => part!("schedule_queue.wgsl"),
+            Self::Pixels => part!("path/schedule.wgsl", "pixels"),
+            Self::Queue => part!("path/schedule.wgsl", "queue"),
         }
     }
 }
@@ -67,27 +83,14 @@ impl Schedule {
 pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
-        part!("path_address.wgsl"),
-        part!("lighting.wgsl"),
-        part!("sampling.wgsl"),
-        part!("filter.wgsl"),
-        part!("film_sample.wgsl"),
+        part!("path/address.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("camera/filter.wgsl"),
+        part!("camera/film_sample.wgsl"),
     ]);
     parts.extend(camera_parts(camera));
-    parts.extend(match mode {
-        Mode::Path(materials, sources, _) => [
-            match sources {
-                Sources::None => part!("start_no_light.wgsl"),
-                Sources::Any => part!("start_light.wgsl"),
-            },
-            match materials {
-                Materials::Matt => part!("start_no_medium.wgsl"),
-                Materials::Any => part!("start_medium.wgsl"),
-            },
-        ],
-        Mode::Studio => [part!("start_no_light.wgsl"), part!("start_no_medium.wgsl")],
-    });
-    parts.push(part!("start.wgsl"));
+    parts.extend([mode.direct_light(), mode.medium(), part!("path/start.wgsl")]);
     Kernel { entry_point: "start", parts }
 }
 
@@ -99,14 +102,14 @@ pub(super) fn extend_kernel(
     schedule: Schedule,
 ) -> Kernel {
     let mut parts = base(schedule);
-    parts.extend(origin_parts(exclude_by));
-    parts.extend([part!("spend.wgsl"), part!("brick.wgsl")]);
-    parts.push(match brick_pass {
-        BrickPass::First => part!("first_segment.wgsl"),
-        BrickPass::Later => part!("later_brick.wgsl"),
-    });
+    parts.extend(excluded_parts(exclude_by));
+    parts.extend([part!("accel/spend.wgsl"), part!("accel/brick.wgsl")]);
     parts.extend(structure_parts(structure));
-    parts.extend([part!("entry_path.wgsl"), part!("extend.wgsl")]);
+    parts.push(match brick_pass {
+        BrickPass::First => part!("path/hit_before.wgsl", "first-brick"),
+        BrickPass::Later => part!("path/hit_before.wgsl", "later-brick"),
+    });
+    parts.push(part!("path/extend.wgsl"));
     Kernel { entry_point: "extend", parts }
 }
 
@@ -114,57 +117,60 @@ pub(super) fn extend_kernel(
 pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = base(Schedule::Queue);
     parts.extend([
-        part!("spend.wgsl"),
-        part!("brick.wgsl"),
-        part!("lighting.wgsl"),
-        part!("emitter.wgsl"),
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("scene/emitter.wgsl"),
     ]);
     parts.extend(match exclude_by {
-        ExcludeBy::Index => {
-            vec![part!("own_shape.wgsl"), part!("origin_place_and_light.wgsl")]
-        }
-        ExcludeBy::Id => vec![part!("origin_id_and_light.wgsl")],
+        ExcludeBy::Index => vec![
+            part!("path/departed_shape.wgsl"),
+            part!("accel/excluded.wgsl", "by-index-and-light"),
+        ],
+        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id-and-light")],
     });
     parts.extend(structure_parts(structure));
-    parts.push(part!("occlude.wgsl"));
+    parts.push(part!("path/occlude.wgsl"));
     Kernel { entry_point: "occlude", parts }
 }
 
 /// In a studio, finds whether a light is hidden.
 pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = hidden_light(structure, exclude_by);
-    parts.extend([part!("lamp.wgsl"), part!("shadow.wgsl")]);
+    parts.extend([part!("scene/lamp.wgsl"), part!("studio/shadow.wgsl")]);
     Kernel { entry_point: "shadow", parts }
 }
 
 /// In a studio, finds whether something is near in a direction of ambient light.
 pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = hidden_light(structure, exclude_by);
-    parts.push(part!("ambient.wgsl"));
+    parts.push(part!("studio/ambient.wgsl"));
     Kernel { entry_point: "ambient", parts }
 }
 
 /// How rays that start on a shape are told apart from it.
-fn origin_parts(exclude_by: ExcludeBy) -> Vec<Part> {
+fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
     match exclude_by {
-        ExcludeBy::Index => vec![part!("own_shape.wgsl"), part!("origin_place.wgsl")],
-        ExcludeBy::Id => vec![part!("origin_id.wgsl")],
+        ExcludeBy::Index => {
+            vec![part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "by-index")]
+        }
+        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id")],
     }
 }
 
 fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     let mut parts = base(Schedule::Queue);
-    parts.extend(origin_parts(exclude_by));
+    parts.extend(excluded_parts(exclude_by));
     parts.extend([
-        part!("path_address.wgsl"),
-        part!("spend.wgsl"),
-        part!("brick.wgsl"),
-        part!("trigonometry.wgsl"),
-        part!("lighting.wgsl"),
-        part!("sampling.wgsl"),
-        part!("disk.wgsl"),
-        part!("warp.wgsl"),
-        part!("hidden_light.wgsl"),
+        part!("path/address.wgsl"),
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("math/trigonometry.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("studio/hidden_light.wgsl"),
     ]);
     parts.extend(structure_parts(structure));
     parts
@@ -174,10 +180,10 @@ fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
 pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
     let mut parts = shading(schedule);
     parts.extend([
-        part!("appearance.wgsl"),
-        part!("vertex.wgsl"),
-        part!("material.wgsl"),
-        part!("surface.wgsl"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("studio/surface.wgsl"),
     ]);
     Kernel { entry_point: "surface", parts }
 }
@@ -186,11 +192,11 @@ pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
-        part!("appearance.wgsl"),
-        part!("vertex.wgsl"),
-        part!("material.wgsl"),
-        part!("microfacet.wgsl"),
-        part!("illuminate.wgsl"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("path/microfacet.wgsl"),
+        part!("studio/illuminate.wgsl"),
     ]);
     Kernel { entry_point: "illuminate", parts }
 }
@@ -198,7 +204,7 @@ pub(super) fn illuminate_kernel() -> Kernel {
 /// In a studio, adds ambient light from some directions.
 pub(super) fn gather_kernel() -> Kernel {
     let mut parts = studio_light();
-    parts.push(part!("gather.wgsl"));
+    parts.push(part!("studio/gather.wgsl"));
     Kernel { entry_point: "gather", parts }
 }
 
@@ -211,44 +217,37 @@ pub(super) fn scatter_kernel(
 ) -> Kernel {
     let mut parts = shading(schedule);
     parts.extend([
-        part!("sampling.wgsl"),
-        part!("disk.wgsl"),
-        part!("warp.wgsl"),
-        part!("appearance.wgsl"),
-        part!("vertex.wgsl"),
-        part!("material.wgsl"),
-        part!("surface_point.wgsl"),
-        part!("emitter.wgsl"),
-        part!("emitters.wgsl"),
-        part!("lamp.wgsl"),
-        part!("by_chance.wgsl"),
-        part!("bounce.wgsl"),
-        part!("scatter.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("path/surface_point.wgsl"),
+        part!("scene/emitter.wgsl"),
+        part!("scene/emitters.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("path/by_chance.wgsl"),
+        part!("path/bounce.wgsl"),
+        part!("path/scatter.wgsl"),
     ]);
+    let mode = Mode::Path(materials, sources, sky);
+    parts.extend([mode.direct_light(), mode.medium()]);
     match materials {
-        Materials::Matt => {
-            parts.extend([part!("medium_none.wgsl"), part!("scatter_matt.wgsl")]);
-        }
+        Materials::Matt => parts.push(part!("path/scatter_light.wgsl", "matt")),
         Materials::Any => parts.extend([
-            part!("microfacet.wgsl"),
-            part!("bsdf.wgsl"),
-            part!("dielectric.wgsl"),
-            part!("medium_glass.wgsl"),
-            part!("scatter_any.wgsl"),
+            part!("path/microfacet.wgsl"),
+            part!("path/bsdf.wgsl"),
+            part!("path/dielectric.wgsl"),
+            part!("path/scatter_light.wgsl", "any"),
         ]),
     }
-    match sources {
-        Sources::None => {
-            parts.extend([part!("settle_plain.wgsl"), part!("direct_none.wgsl")]);
-        }
-        Sources::Any => parts.extend([
-            part!("settle_light.wgsl"),
-            part!("direct_light.wgsl"),
-            part!("direct.wgsl"),
-        ]),
-    }
+    parts.push(match sources {
+        Sources::None => part!("path/direct.wgsl", "none"),
+        Sources::Any => part!("path/direct.wgsl", "any"),
+    });
     match sky {
-        SkyKind::Plain => parts.push(part!("sky_plain.wgsl")),
+        SkyKind::Plain => parts.push(part!("scene/sky.wgsl", "plain")),
         SkyKind::Image => parts.extend(sky_image()),
     }
     Kernel { entry_point: "scatter", parts }
@@ -257,74 +256,83 @@ pub(super) fn scatter_kernel(
 /// Adds samples to pixels.
 pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
-    parts.push(match mode {
-        Mode::Path(_, Sources::Any, _) => part!("settle_light.wgsl"),
-        Mode::Path(..) | Mode::Studio => part!("settle_plain.wgsl"),
-    });
-    parts.extend([part!("film_sums.wgsl"), part!("accumulate.wgsl")]);
+    parts.extend([
+        mode.direct_light(),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("path/accumulate.wgsl"),
+    ]);
     Kernel { entry_point: "accumulate", parts }
 }
 
 /// Says how many workgroups the next dispatches need.
 pub(super) fn advance_kernel() -> Kernel {
     let mut parts = base(Schedule::Queue);
-    parts.extend([part!("advance.wgsl")]);
+    parts.extend([part!("path/advance.wgsl")]);
     Kernel { entry_point: "advance", parts }
 }
 
 /// Sums up how much samples vary.
 pub(super) fn noise_kernel() -> Kernel {
     let mut parts = base(Schedule::Pixels);
-    parts.extend([part!("film_sums.wgsl"), part!("noise.wgsl")]);
+    parts.extend([
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("path/noise.wgsl"),
+    ]);
     Kernel { entry_point: "noise", parts }
 }
 
 fn sky_image() -> Vec<Part> {
     vec![
-        part!("turns.wgsl"),
-        part!("trigonometry_inverse.wgsl"),
-        part!("environment.wgsl"),
-        part!("sky_image.wgsl"),
+        part!("math/turns.wgsl"),
+        part!("math/trigonometry_inverse.wgsl"),
+        part!("scene/environment.wgsl"),
+        part!("scene/sky.wgsl", "image"),
     ]
 }
 
 fn base(schedule: Schedule) -> Vec<Part> {
     vec![
-        part!("records.wgsl"),
-        part!("light_records.wgsl"),
-        part!("frame.wgsl"),
-        part!("fence.wgsl"),
-        part!("ray.wgsl"),
-        part!("enter.wgsl"),
-        part!("sphere.wgsl"),
-        part!("path_state.wgsl"),
-        part!("departure.wgsl"),
-        part!("queue.wgsl"),
-        part!("schedule.wgsl"),
+        part!("scene/records.wgsl"),
+        part!("scene/lighting_records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("camera/ray.wgsl"),
+        part!("scene/enter.wgsl"),
+        part!("scene/sphere.wgsl"),
+        part!("path/state.wgsl"),
+        part!("path/departure.wgsl"),
+        part!("path/queue.wgsl"),
+        part!("primary/schedule.wgsl"),
         schedule.part(),
     ]
 }
 
 fn shading(schedule: Schedule) -> Vec<Part> {
     let mut parts = base(schedule);
-    parts.extend([part!("path_address.wgsl"), part!("trigonometry.wgsl"), part!("lighting.wgsl")]);
+    parts.extend([
+        part!("path/address.wgsl"),
+        part!("math/trigonometry.wgsl"),
+        part!("scene/lighting.wgsl"),
+    ]);
     parts
 }
 
 fn studio_light() -> Vec<Part> {
     let mut parts = shading(Schedule::Queue);
     parts.extend([
-        part!("sampling.wgsl"),
-        part!("disk.wgsl"),
-        part!("warp.wgsl"),
-        part!("lamp.wgsl"),
-        part!("catcher.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("studio/catcher.wgsl"),
     ]);
     parts
 }
 
 /// Every kernel of lit pictures that can be composed.
-#[cfg(test)]
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
     let mut modes = vec![Mode::Studio];

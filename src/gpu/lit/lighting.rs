@@ -6,12 +6,13 @@ use bytemuck::Zeroable;
 use glam::DVec3;
 
 use super::kernels::{Materials, Mode, SkyKind, Sources};
-use super::records::{CATCHER, GROUND, LightingParameters, SHADOWS, SKY_SEEN, TRANSPARENT};
+use super::records::LightingParameters;
 use crate::camera::Camera;
 use crate::geometry::math::unit;
 use crate::gpu::records::NO_HIT;
 use crate::gpu::scene_summary::{EmissiveSphere, SceneSummary};
 use crate::image::color::LinearRgb;
+use crate::light::codes::{self, lighting as flags};
 use crate::light::emitters::Emitters;
 use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
@@ -171,10 +172,10 @@ fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingPar
         LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
     parameters.background = settings.background.to_array();
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    parameters.flags =
-        flag(settings.is_transparent, TRANSPARENT) | flag(settings.sky.is_visible, SKY_SEEN);
+    parameters.flags = flag(settings.is_transparent, flags::TRANSPARENT)
+        | flag(settings.sky.is_visible, flags::SKY_SEEN);
     if let Some(ground) = &settings.ground {
-        parameters.flags |= GROUND | flag(ground.is_shadow_catcher, CATCHER);
+        parameters.flags |= flags::GROUND | flag(ground.is_shadow_catcher, flags::CATCHER);
         parameters.ground_point = (ground.point - scene.origin).as_vec3().to_array();
         parameters.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
         parameters.ground_color = ground.color.to_array();
@@ -184,15 +185,11 @@ fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingPar
         Integrator::Primary(_) => {}
         Integrator::Path(path) => {
             parameters.roulette_from = path.roulette_from;
-            parameters.light_sampling = match path.light_sampling {
-                LightSampling::Chance => 0,
-                LightSampling::Direct => 1,
-                LightSampling::Multiple => 2,
-            };
+            parameters.light_sampling = path.light_sampling.code();
         }
         Integrator::Studio(studio) => {
             parameters.ambient = studio.ambient.to_array();
-            parameters.flags |= flag(studio.has_shadows, SHADOWS);
+            parameters.flags |= flag(studio.has_shadows, flags::SHADOWS);
             if let Some(occlusion) = &studio.occlusion {
                 parameters.occlusion_samples = occlusion.samples;
                 parameters.occlusion_radius =
@@ -237,28 +234,28 @@ fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
     [x, y, z, w]
 }
 
-/// As `shaders/lamp.wgsl` reads it.
+/// As `shaders/scene/lamp.wgsl` reads it.
 fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
-    let kind = |number: u32| f32::from_bits(number);
+    let kind = f32::from_bits(codes::of_light(light));
     let near = |position: DVec3| (position - origin).as_vec3().to_array();
     let [position, power] = match *light {
-        LightKind::Head { strength } => [four([0.0; 3], kind(0)), four(strength.to_array(), 0.0)],
+        LightKind::Head { strength } => [four([0.0; 3], kind), four(strength.to_array(), 0.0)],
         LightKind::Directional { toward, strength, angular_radius } => {
             // 1 minus the cosine, without cancellation.
             let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
-            [four(toward.as_vec3().to_array(), kind(1)), four(strength.to_array(), k as f32)]
+            [four(toward.as_vec3().to_array(), kind), four(strength.to_array(), k as f32)]
         }
         LightKind::Point { position, intensity } => {
-            [four(near(position), kind(2)), four(intensity.to_array(), 0.0)]
+            [four(near(position), kind), four(intensity.to_array(), 0.0)]
         }
         LightKind::Sphere { center, radius, radiance } => {
-            [four(near(center), kind(3)), four(radiance.to_array(), radius as f32)]
+            [four(near(center), kind), four(radiance.to_array(), radius as f32)]
         }
     };
     [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
 }
 
-/// As `shaders/emitters.wgsl` reads them.
+/// As `shaders/scene/emitters.wgsl` reads them.
 fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     let emitters = &scene.emitters;
     emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
@@ -277,15 +274,16 @@ fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     })
 }
 
-/// As `shaders/material.wgsl` reads it.
+/// As `shaders/scene/material.wgsl` reads it.
 fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32) -> [[f32; 4]; 2] {
-    let record = |kind: u32, parameter: f32, roughness: f32, absorption: [f32; 3]| {
+    let kind = codes::of_material(&surface.material);
+    let record = |parameter: f32, roughness: f32, absorption: [f32; 3]| {
         let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
         [[kind, parameter, roughness * roughness, energies], four(absorption, surface.opacity)]
     };
     match surface.material {
-        Material::Lambert { specular, roughness } => record(0, specular, roughness, [0.0; 3]),
-        Material::Conductor { roughness } => record(1, 1.0, roughness, [0.0; 3]),
+        Material::Lambert { specular, roughness } => record(specular, roughness, [0.0; 3]),
+        Material::Conductor { roughness } => record(1.0, roughness, [0.0; 3]),
         Material::Dielectric { ior, roughness, attenuation_distance } => {
             let absorption = attenuation_distance.map_or([0.0; 3], |distance| {
                 color.to_array().map(|c| {
@@ -293,8 +291,8 @@ fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32)
                     (-share.ln() / f64::from(distance)) as f32
                 })
             });
-            record(2, ior, roughness, absorption)
+            record(ior, roughness, absorption)
         }
-        Material::Emissive { strength } => record(3, strength, 0.0, [0.0; 3]),
+        Material::Emissive { strength } => record(strength, 0.0, [0.0; 3]),
     }
 }

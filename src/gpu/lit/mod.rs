@@ -1,6 +1,6 @@
 //! Lit pictures: many samples of every pixel, surface by surface.
 //!
-//! Between two dispatches a path is in a buffer (`shaders/path_state.wgsl`). A sample starts at the camera; then one
+//! Between two dispatches a path is in a buffer (`shaders/path/state.wgsl`). A sample starts at the camera; then one
 //! pass finds what all rays meet, one shades it and makes new rays, one finds whether lights are hidden. Which paths
 //! go on, and how many they are, only the device knows: passes write lists of them, and dispatches are as large as the
 //! lists are long. The sums of samples stay on the device, each pixel's in the order of its samples, so that a picture
@@ -30,7 +30,6 @@ use crate::render::RenderSettings;
 
 pub(super) use frame::{Frames, LitFrame, MOST_DISPATCHES};
 pub(super) use kernels::Mode;
-#[cfg(test)]
 pub(super) use kernels::all_kernels;
 pub(super) use lighting::LightingData;
 pub(super) use passes::{AllLitPasses, LitKey, LitPasses};

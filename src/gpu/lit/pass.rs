@@ -7,8 +7,8 @@ use wgpu::{
 
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
-use crate::gpu::pipeline::pipeline;
-use crate::gpu::shaders::Kernel;
+use crate::gpu::shader::Kernel;
+use crate::gpu::shader::pipeline;
 
 /// A kernel, ready to be recorded into any encoder of its device.
 #[derive(Debug)]

@@ -15,7 +15,7 @@ use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::records;
 use crate::gpu::renderer_options::RendererOptions;
-use crate::gpu::shaders::{BrickPass, Kernel};
+use crate::gpu::shader::{BrickPass, Kernel};
 use crate::gpu::shape_ids::ExcludeBy;
 
 /// What sets of passes differ in.

@@ -1,5 +1,5 @@
 //! Records of lit pictures that cross to WGSL. Twins: the structs of the same names in
-//! `shaders/light_records.wgsl`.
+//! `shaders/scene/lighting_records.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -18,16 +18,16 @@ pub(in crate::gpu) struct DispatchParameters {
     pub(in crate::gpu) first: [u32; 2],
 }
 
-/// `LIST_OF_LIGHT` in `shaders/queue.wgsl`: the paths that look for light, or surfaces that are to be lit.
+/// `LIST_OF_LIGHT` in `shaders/path/queue.wgsl`: the paths that look for light, or surfaces that are to be lit.
 pub(in crate::gpu) const LIST_OF_LIGHT: u32 = 2;
 
 /// How many lists of paths there are.
 pub(super) const LISTS: u64 = 3;
 
-/// Bytes before the lists in `shaders/queue.wgsl`: whether an invocation gave up, and how long each list is.
+/// Bytes before the lists in `shaders/path/queue.wgsl`: whether an invocation gave up, and how long each list is.
 pub(super) const QUEUE_HEAD: u64 = 4 * (1 + LISTS);
 
-/// Bytes of the numbers of workgroups that `shaders/advance.wgsl` writes: of a list, and of a slice of it.
+/// Bytes of the numbers of workgroups that `shaders/path/advance.wgsl` writes: of a list, and of a slice of it.
 pub(super) const GROUPS_NEEDED: u64 = 2 * GROUPS_OF_ONE;
 
 /// Bytes of one of these.
@@ -66,27 +66,20 @@ pub(in crate::gpu) struct LightingParameters {
     pub(in crate::gpu) filter_table: [[f32; 4]; 65],
 }
 
-/// `LOOK_…` in the same file.
-pub(in crate::gpu) const TRANSPARENT: u32 = 1;
-pub(in crate::gpu) const SKY_SEEN: u32 = 2;
-pub(in crate::gpu) const SHADOWS: u32 = 4;
-pub(in crate::gpu) const GROUND: u32 = 8;
-pub(in crate::gpu) const CATCHER: u32 = 16;
-
-/// `vec4f`s of a path's state that every path and every studio has: slots up to the hit in `shaders/path_state.wgsl`.
-pub(super) const COMMON_SLOTS: u64 = 7;
+/// `vec4f`s of a path's state that every path and every studio has: slots up to the hit in `shaders/path/state.wgsl`.
+pub(in crate::gpu) const COMMON_SLOTS: u64 = 7;
 
 /// With what a path that looks for light keeps.
-pub(super) const LIGHT_SLOTS: u64 = 9;
+pub(in crate::gpu) const LIGHT_SLOTS: u64 = 9;
 
 /// With what absorbs light on the way.
-pub(super) const MEDIUM_SLOTS: u64 = 10;
+pub(in crate::gpu) const MEDIUM_SLOTS: u64 = 10;
 
 /// With what a studio keeps.
-pub(super) const STUDIO_SLOTS: u64 = 10;
+pub(in crate::gpu) const STUDIO_SLOTS: u64 = 10;
 
-/// `vec4f`s of a pixel's sums: `shaders/film_sums.wgsl`.
+/// `vec4f`s of a pixel's sums: `shaders/path/film_sums.wgsl`.
 pub(in crate::gpu) const FILM_SLOTS: u64 = 3;
 
-/// How many pixels one number of `shaders/noise.wgsl` sums up.
+/// How many pixels one number of `shaders/path/noise.wgsl` sums up.
 pub(super) const PIXELS_PER_VARIATION: u64 = 64;

@@ -5,7 +5,7 @@ use crate::gpu::tiles::Tile;
 use crate::image::color::luminance;
 use crate::image::{Averages, Image};
 
-/// Sums of one pixel: the three vectors of `shaders/film_sums.wgsl`.
+/// Sums of one pixel: the three vectors of `shaders/path/film_sums.wgsl`.
 type Sums = [[f32; 4]; FILM_SLOTS as usize];
 
 /// Sums over all pixels.

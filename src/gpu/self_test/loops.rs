@@ -78,7 +78,7 @@ fn longest(answers: &[Looped]) -> Option<u32> {
     shortest.filter(|_| is_true && answers.len() == INVOCATIONS as usize)
 }
 
-/// What an invocation has after so many iterations of `step` in `shaders/self_test_loops.wgsl`, by squaring
+/// What an invocation has after so many iterations of `step` in `shaders/self_test/loops.wgsl`, by squaring
 /// its linear function.
 fn after(index: u32, count: u32) -> Looped {
     let (mut factor, mut summand) = (1_664_525_u32, 1_013_904_223_u32);

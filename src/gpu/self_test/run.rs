@@ -13,9 +13,9 @@ use super::{exactness, inputs, loops, rounding};
 use crate::gpu::error::{GpuError, scoped};
 use crate::gpu::frame::iteration_limit;
 use crate::gpu::layouts::{layout, storage, uniform};
-use crate::gpu::pipeline::pipeline;
 use crate::gpu::readback::ReadableBuffer;
-use crate::gpu::shaders::{Probe, self_test_kernel};
+use crate::gpu::shader::pipeline;
+use crate::gpu::shader::{Probe, self_test_kernel};
 
 /// Inputs of each operation: multiples of a workgroup.
 const QUICK: usize = 512;

@@ -7,7 +7,7 @@
 //! Sampling by luminance and solid angle, first the row and then the column, after M. Pharr, W. Jakob and
 //! G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniform in solid angle within a texel. The tables
 //! are f32, and all that is random in choosing a texel is exact in f32, so that a device chooses the same.
-//! Twin: `shaders/environment.wgsl`.
+//! Twin: `shaders/scene/environment.wgsl`.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,5 +1,5 @@
 //! Where a camera's ray enters the scene's box, and how far a device's may be from that. Twin of
-//! `shaders/enter.wgsl`.
+//! `shaders/scene/enter.wgsl`.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::Slack;
 use crate::verify::violation::ViolationKind;
 
-/// As in `shaders/enter.wgsl`.
+/// As in `shaders/scene/enter.wgsl`.
 pub(super) const SMALLEST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl CameraModel {

@@ -1,4 +1,4 @@
-//! Cameras whose rays meet in a point or in none. Twin of `shaders/camera_pinhole.wgsl`,
+//! Cameras whose rays meet in a point or in none. Twin of `shaders/camera/pinhole.wgsl`,
 //! `camera_orthographic.wgsl`, `camera_thin-lens.wgsl` and `disk.wgsl`.
 
 use std::f64::consts::{FRAC_PI_4, SQRT_2};

@@ -1,4 +1,4 @@
-//! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/film.wgsl` and
+//! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/camera/film.wgsl` and
 //! `camera_*.wgsl`.
 
 mod any;

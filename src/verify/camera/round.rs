@@ -1,4 +1,4 @@
-//! Cameras whose rays go by angles. Twin of `shaders/camera_panorama.wgsl` and `camera_fisheye.wgsl`.
+//! Cameras whose rays go by angles. Twin of `shaders/camera/panorama.wgsl` and `camera_fisheye.wgsl`.
 
 use glam::{DVec2, DVec3};
 
@@ -7,7 +7,7 @@ use super::{CameraModel, CameraRay, Computed, Location, Unit};
 use crate::verify::line::Line;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, error_of_length, gamma};
 
-/// As in `shaders/camera_fisheye.wgsl`.
+/// As in `shaders/camera/fisheye.wgsl`.
 const SMALLEST_SPOT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// a p + b q of a device, where each factor may be off by its error.

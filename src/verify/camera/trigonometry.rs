@@ -1,4 +1,4 @@
-//! Sines and cosines: how far a device's may be from the exact ones. Twin of `shaders/trigonometry.wgsl`.
+//! Sines and cosines: how far a device's may be from the exact ones. Twin of `shaders/math/trigonometry.wgsl`.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 

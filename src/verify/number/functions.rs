@@ -1,4 +1,4 @@
-//! Roots, exponentials, angles. Twins of `shaders/trigonometry.wgsl`, `turns.wgsl` and `trigonometry_inverse.wgsl`.
+//! Roots, exponentials, angles. Twins of `shaders/math/trigonometry.wgsl`, `turns.wgsl` and `trigonometry_inverse.wgsl`.
 
 use super::Number;
 use crate::verify::choices::Choices;

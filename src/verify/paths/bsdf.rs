@@ -1,4 +1,4 @@
-//! Where surfaces scatter light. Twin of `shaders/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl` and
+//! Where surfaces scatter light. Twin of `shaders/path/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl` and
 //! `scatter_matt.wgsl`.
 
 use super::kernel::{Kernel, Surface};

@@ -6,6 +6,7 @@ use super::kernel::{Address, Hit, Kernel, radiance_so_far};
 use super::recording::{NO_EMITTER, PathRecording, PathState, RecordedSample, flag, slot};
 use super::search::{self, Searched};
 use super::{start, upload};
+use crate::image::color::LUMINANCE;
 use crate::parallel::{map_parts, ranges};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
@@ -284,7 +285,7 @@ impl PathCheck<'_> {
         expected.vector(COLOR, [r, g, b], color)?;
         expected.number(ALPHA, alpha, Number::had(state.number(slot::RADIANCE)))?;
         expected.vector(ALBEDO, [x, y, z], Vector::had(state.vector(slot::FIRST)))?;
-        let weights = Vector([0.2126, 0.7152, 0.0722].map(Number::constant));
+        let weights = Vector(LUMINANCE.map(Number::constant));
         expected.number(SQUARE, square, color.dot(weights).squared())?;
         Ok(if expected.is_wide { StageOutcome::Undecided } else { StageOutcome::Decided })
     }

@@ -1,5 +1,5 @@
 //! The kernel that shades, followed number by number: what it is given, and what it may write. Twin of
-//! `shaders/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
+//! `shaders/path/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
 
 use super::certificate::PathStage;
 use super::expected::{Expected, Mismatch};

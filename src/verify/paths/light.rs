@@ -1,17 +1,14 @@
-//! The light that a surface looks for. Twin of `shaders/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
+//! The light that a surface looks for. Twin of `shaders/path/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
 
 use super::certificate::PathStage;
 use super::expected::Mismatch;
 use super::kernel::{Kernel, Surface, unit};
 use super::recording::{NO_EMITTER, flag, slot};
 use super::warp::{axes_around, cone_direction, cone_of_sphere, pi};
+use crate::light::codes::lamp::{DIRECTIONAL, HEAD, POINT};
+use crate::light::codes::sampling::{CHANCE, MULTIPLE};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
-
-pub(super) const HEAD: u32 = 0;
-pub(super) const DIRECTIONAL: u32 = 1;
-const POINT: u32 = 2;
-const MULTIPLE: u32 = 2;
 
 /// A light as a surface sees it.
 struct Found {
@@ -267,7 +264,7 @@ impl Kernel<'_> {
     pub(super) fn chance_weight(&mut self, looked_for: Number) -> Number {
         let sampling = self.lighting().light_sampling;
         let is_sought = !looked_for.is_zero() && self.choices.decide(looked_for.is_above_zero());
-        if self.before.has(flag::FULL) || sampling == 0 || !is_sought {
+        if self.before.has(flag::FULL) || sampling == CHANCE || !is_sought {
             return Number::ONE;
         }
         if sampling != MULTIPLE {

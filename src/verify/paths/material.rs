@@ -1,18 +1,14 @@
-//! What surfaces do with light, and the GGX distribution. Twin of `shaders/material.wgsl` and `microfacet.wgsl`.
+//! What surfaces do with light, and the GGX distribution. Twin of `shaders/scene/material.wgsl` and `microfacet.wgsl`.
 
 use super::kernel::Kernel;
 use super::vertex::Vertex;
 use super::warp::{disk, pi};
+use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, EMISSIVE, LAMBERT};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-const LAMBERT: u32 = 0;
-const CONDUCTOR: u32 = 1;
-const DIELECTRIC: u32 = 2;
-const EMISSIVE: u32 = 3;
-
 /// How many numbers a table of an energy has.
-pub(super) const ENERGIES: u32 = 256;
+pub(super) const ENERGIES: u32 = crate::light::energy::ENTRIES as u32;
 
 /// A material as kernels have it.
 #[derive(Clone, Copy, Debug)]

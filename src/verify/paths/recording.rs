@@ -57,7 +57,7 @@ pub struct RecordedSurface {
     pub open: Vec<u32>,
 }
 
-/// A path between two dispatches, as bits: the slots of `shaders/path_state.wgsl`.
+/// A path between two dispatches, as bits: the slots of `shaders/path/state.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathState {
     /// Slot by slot.
@@ -99,7 +99,7 @@ impl PathState {
     }
 }
 
-/// What a path leaves: `shaders/departure.wgsl`.
+/// What a path leaves: `shaders/path/departure.wgsl`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Departure {
     /// The sphere; [`NO_ID`](crate::image::NO_ID) for none.
@@ -128,25 +128,20 @@ pub(super) mod slot {
     pub(in crate::verify) const MEDIUM: usize = 8;
 }
 
-/// Flags of a path, and of a look.
+/// Flags of a path, and of a lighting.
 pub(super) mod flag {
-    pub(in crate::verify) const ALIVE: u32 = 1;
-    pub(in crate::verify) const INSIDE: u32 = 2;
-    pub(in crate::verify) const ON_GROUND: u32 = 4;
-    pub(in crate::verify) const FULL: u32 = 32;
-    pub(in crate::verify) const SCATTERED: u32 = 64;
-
-    pub(in crate::verify) const TRANSPARENT: u32 = 1;
-    pub(in crate::verify) const SKY_SEEN: u32 = 2;
-    pub(in crate::verify) const GROUND: u32 = 8;
+    pub(in crate::verify) use crate::light::codes::lighting::{GROUND, SKY_SEEN, TRANSPARENT};
+    pub(in crate::verify) use crate::light::codes::path::{
+        ALIVE, FULL, INSIDE, ON_GROUND, SCATTERED,
+    };
 }
 
-/// What of settings the kernels of paths are given: `Look` in `shaders/light_records.wgsl`.
+/// What of settings the kernels of paths are given: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UploadedLighting {
     /// What is seen where there is nothing.
     pub background: [f32; 3],
-    /// Sums of the `LOOK_` constants.
+    /// Sums of the `LIGHTING_` constants.
     pub flags: u32,
     /// How many lights the tables have.
     pub light_count: u32,

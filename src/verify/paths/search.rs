@@ -1,4 +1,4 @@
-//! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/trace.wgsl`,
+//! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/primary/trace.wgsl`,
 //! `entry_path.wgsl`, `first_segment.wgsl`, `occlude.wgsl` and the parts of names with `origin`.
 
 use glam::{DVec3, Vec4};

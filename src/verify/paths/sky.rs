@@ -1,11 +1,11 @@
-//! Light from infinitely far away. Twin of `shaders/by_chance.wgsl`, `sky_plain.wgsl`, `sky_image.wgsl` and
+//! Light from infinitely far away. Twin of `shaders/path/by_chance.wgsl`, `sky_plain.wgsl`, `sky_image.wgsl` and
 //! `environment.wgsl`.
 
 use super::kernel::Kernel;
-use super::light::DIRECTIONAL;
 use super::recording::{UploadedSky, flag, slot};
 use super::warp::pi;
 use crate::camera::sampling::unit;
+use crate::light::codes::lamp::DIRECTIONAL;
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 
 impl Kernel<'_> {

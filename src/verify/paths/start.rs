@@ -1,4 +1,4 @@
-//! The camera's ray of a sample. Twin of `shaders/start.wgsl`, `filter.wgsl` and `film_sample.wgsl`.
+//! The camera's ray of a sample. Twin of `shaders/path/start.wgsl`, `filter.wgsl` and `film_sample.wgsl`.
 
 use glam::{DVec2, DVec3};
 

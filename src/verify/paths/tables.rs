@@ -7,6 +7,8 @@ use glam::Vec4;
 use super::material::ENERGIES;
 use super::recording::{PathRecording, UploadedLighting};
 use super::upload::{PathUploadError, are_near, is_near};
+use crate::image::color::luminance;
+use crate::light::codes;
 use crate::light::energy::EnergyTables;
 use crate::light::{LightKind, SkyLight};
 use crate::render::{Integrator, LightSampling};
@@ -50,7 +52,7 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
     if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
         Ok(())
     } else {
-        Err(PathUploadError::Look { what: "the number of sources of light" })
+        Err(PathUploadError::Lighting { what: "the number of sources of light" })
     }
 }
 
@@ -75,7 +77,7 @@ fn check_lights(
         count = index + 1;
         let [position, power] = [tables.vector(3 * index), tables.vector(3 * index + 1)];
         let size = tables.numbers(3 * index + 1)[3];
-        let kind = tables.words(3 * index)[3];
+        let is_kind = tables.words(3 * index)[3] == codes::of_light(&light);
         let near = |color: crate::image::color::LinearRgb| {
             are_near(power, color.to_array().map(f64::from))
         };
@@ -88,21 +90,20 @@ fn check_lights(
             })
         };
         let (is_right, is_lamp) = match light {
-            LightKind::Head { strength } => (kind == 0 && near(strength), false),
+            LightKind::Head { strength } => (is_kind && near(strength), false),
             LightKind::Directional { toward, strength, angular_radius } => {
                 let k = 1.0 - angular_radius.cos();
                 // The difference cancels; the device's number does not.
                 let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
                 let is_right =
-                    kind == 1 && near(strength) && are_near(position, toward.to_array()) && is_size;
+                    is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
                 (is_right, angular_radius == 0.0 || is_looked_for(recording))
             }
             LightKind::Point { position, intensity } => {
-                (kind == 2 && near(intensity) && is_at(position), true)
+                (is_kind && near(intensity) && is_at(position), true)
             }
             LightKind::Sphere { center, radius, radiance } => {
-                let is_right =
-                    kind == 3 && near(radiance) && is_at(center) && is_near(size, radius);
+                let is_right = is_kind && near(radiance) && is_at(center) && is_near(size, radius);
                 (is_right, true)
             }
         };
@@ -114,7 +115,7 @@ fn check_lights(
         }
     }
     if tables.lighting.light_count != count {
-        return Err(PathUploadError::Look { what: "the number of lights" });
+        return Err(PathUploadError::Lighting { what: "the number of lights" });
     }
     Ok(lamps)
 }
@@ -139,7 +140,7 @@ fn check_emitters(
     let weight = |id: u32| {
         let [r, g, b] = radiance(id);
         let size = f64::from(scene.spheres()[id as usize][3]);
-        (0.2126 * r + 0.7152 * g + 0.0722 * b) * size * size
+        luminance([r, g, b]) * size * size
     };
     let mut ids: Vec<u32> = (0..scene.len() as u32).filter(|id| weight(*id) > 0.0).collect();
     keep_first_of_equals(&mut ids, scene.spheres());
@@ -204,19 +205,19 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadE
         let [_, parameter, alpha, _] = tables.numbers(at);
         let [x, y, z, opacity] = tables.numbers(at.saturating_add(1));
         let absorption = [x, y, z];
-        let (expected_kind, expected, roughness, absorbed) = match surface.material {
-            Material::Lambert { specular, roughness } => (0, specular, roughness, [0.0; 3]),
-            Material::Conductor { roughness } => (1, 1.0, roughness, [0.0; 3]),
+        let (expected, roughness, absorbed) = match surface.material {
+            Material::Lambert { specular, roughness } => (specular, roughness, [0.0; 3]),
+            Material::Conductor { roughness } => (1.0, roughness, [0.0; 3]),
             Material::Dielectric { ior, roughness, attenuation_distance } => {
                 let absorbed = attenuation_distance.map_or([0.0; 3], |distance| {
                     color.map(|c| -f64::from(c).max(1e-4).ln() / f64::from(distance))
                 });
-                (2, ior, roughness, absorbed)
+                (ior, roughness, absorbed)
             }
-            Material::Emissive { strength } => (3, strength, 0.0, [0.0; 3]),
+            Material::Emissive { strength } => (strength, 0.0, [0.0; 3]),
         };
         let expected_alpha = f64::from(roughness) * f64::from(roughness);
-        let is_right = kind == expected_kind
+        let is_right = kind == codes::of_material(&surface.material)
             && is_near(parameter, expected.into())
             && is_near(alpha, expected_alpha)
             && are_near(absorption, absorbed)

@@ -5,7 +5,7 @@ use super::tables;
 use crate::geometry::math::unit;
 use crate::light::SkyLight;
 use crate::light::environment::Environment;
-use crate::render::{Integrator, LightSampling, RenderSettings};
+use crate::render::{Integrator, RenderSettings};
 use crate::scene::Scene;
 use crate::verify::candidates::Candidates;
 use crate::verify::rounding::{FLUSH, U};
@@ -26,7 +26,7 @@ pub enum PathUploadError {
     },
     /// Of the settings.
     #[error("{what} on the device is not what was asked for")]
-    Look {
+    Lighting {
         /// What it is.
         what: &'static str,
     },
@@ -79,17 +79,12 @@ fn check_size(recording: &PathRecording) -> Result<(), PathUploadError> {
 fn check_lighting(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
     let PathRecording { settings, lighting, .. } = recording;
     let Integrator::Path(path) = &settings.integrator else {
-        return Err(PathUploadError::Look { what: "the integrator" });
+        return Err(PathUploadError::Lighting { what: "the integrator" });
     };
     let flags = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
     let expected_flags = flags(settings.is_transparent, flag::TRANSPARENT)
         | flags(settings.sky.is_visible, flag::SKY_SEEN)
         | flags(settings.ground.is_some(), flag::GROUND);
-    let sampling = match path.light_sampling {
-        LightSampling::Chance => 0,
-        LightSampling::Direct => 1,
-        LightSampling::Multiple => 2,
-    };
     let is_ground = settings.ground.as_ref().is_none_or(|ground| {
         let point = (ground.point - scene.origin()).to_array();
         let normal = unit(ground.normal).unwrap_or_default().to_array();
@@ -111,7 +106,7 @@ fn check_lighting(scene: &Scene, recording: &PathRecording) -> Result<(), PathUp
         ("the set of flags", lighting.flags == expected_flags),
         ("the seed", lighting.seed == settings.sampling.seed),
         ("the start of roulette", lighting.roulette_from == path.roulette_from),
-        ("how lights are sampled", lighting.light_sampling == sampling),
+        ("how lights are sampled", lighting.light_sampling == path.light_sampling.code()),
         ("the depth of paths", recording.max_depth == path.max_depth),
         ("the ground", is_ground),
         ("the pixel filter", lighting.filter_table[..] == filter[..]),
@@ -119,7 +114,7 @@ fn check_lighting(scene: &Scene, recording: &PathRecording) -> Result<(), PathUp
     ];
     match all.into_iter().find(|(_, is_right)| !is_right) {
         None => Ok(()),
-        Some((what, _)) => Err(PathUploadError::Look { what }),
+        Some((what, _)) => Err(PathUploadError::Lighting { what }),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/vertex.wgsl`.
+//! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/path/vertex.wgsl`.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! From the unit square to directions. Twin of `shaders/warp.wgsl` and `disk.wgsl`.
+//! From the unit square to directions. Twin of `shaders/math/warp.wgsl` and `disk.wgsl`.
 
 use std::f64::consts::PI;
 

@@ -123,7 +123,9 @@ fn is_found(
     record: impl Fn(&Headless, &LitView) -> Result<PathRecording, Failed>,
 ) -> Result<(), Failed> {
     let Fault { file, find, replace, stage, .. } = *fault;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("shaders")
+        .join(file.split('#').next().unwrap_or(file));
     if !std::fs::read_to_string(path)?.contains(find) {
         return Err(format!("{file} has no `{find}`").into());
     }

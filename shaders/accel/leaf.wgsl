@@ -1,0 +1,30 @@
+// The spheres of one leaf. Twin of src/accel/leaf.rs.
+// provides: any_in_leaf, offer_leaf
+// needs: NO_HIT, Nearest, Search, distance_to, offer
+
+// Offers the nearest sphere of a leaf. Ids ascend within a leaf, so `<` leaves a tie to the smaller one,
+// and one offer is enough.
+fn offer_leaf(search: Search, first: u32, count: u32, nearest: ptr<function, Nearest>) {
+    var t = NO_HIT;
+    var shape_index = first;
+    for (var i = first; i < first + count; i++) {
+        let found = distance_to(search, i);
+        if (found < t) {
+            t = found;
+            shape_index = i;
+        }
+    }
+    if (t < NO_HIT) {
+        offer(nearest, t, shape_index);
+    }
+}
+
+// Whether a sphere of a leaf is hit before `t_max`.
+fn any_in_leaf(search: Search, first: u32, count: u32, t_max: f32) -> bool {
+    for (var i = first; i < first + count; i++) {
+        if (distance_to(search, i) < t_max) {
+            return true;
+        }
+    }
+    return false;
+}

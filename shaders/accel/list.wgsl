@@ -1,0 +1,26 @@
+// No structure: every sphere of the brick. Twin: src/accel/list.rs.
+// provides: find_any, find_nearest
+// needs: NO_HIT, Nearest, Search, brick, distance_to, offer
+
+fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
+    // Ids ascend, so that `<` leaves a tie to the smaller id.
+    var t = NO_HIT;
+    var shape_index = 0u;
+    for (var i = 0u; i < brick.shape_count; i++) {
+        let here = distance_to(search, i);
+        if (here < t) {
+            t = here;
+            shape_index = i;
+        }
+    }
+    offer(nearest, t, shape_index);
+}
+
+fn find_any(search: Search, t_max: f32) -> bool {
+    for (var i = 0u; i < brick.shape_count; i++) {
+        if (distance_to(search, i) < t_max) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,98 @@
+// Walks two levels of cells: a grid, and the grids inside its crowded cells. Twin: src/accel/grid_walk.rs.
+//
+// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
+// planes are computed from the plane's number and never added up, so that their error does not grow.
+// An empty cell knows how many ahead of it are empty, and all of them are crossed in one step.
+// provides: walk
+// needs: EMPTY, Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, REACH,
+//   REACH_BITS, Search, brick, cells, first_cell, grid_ray, least, spend, test_list
+
+fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
+    let along = grid_ray(search.ray, search.inverse);
+    var t = along.t_enter;
+    if (t > along.t_leave || t > (*found).t) {
+        return;
+    }
+    let counts = vec3f(brick.cell_counts);
+    let strides = vec3f(1.0, counts.x, counts.x * counts.y);
+    // Bit i of the octant is set for a ray that descends along axis i.
+    let behind = vec3u(1.0 - along.ahead);
+    let octant = REACH_BITS * (behind.x + 2u * behind.y + 4u * behind.z);
+    var cell = first_cell(along);
+    var word = EMPTY;
+    var t_leave = 0.0;
+    loop {
+        // Up to the next cell with spheres, in a loop of its own: rays that run together on a software
+        // device then walk their cells together, and not each while others cross empty space.
+        loop {
+            word = cells[u32(dot(cell, strides))];
+            // An empty cell's word is, for each octant, how many cells ahead are empty.
+            let reach = select(0.0, f32((word >> octant) & REACH), (word & KIND) == EMPTY);
+            t_leave = least(leaving(along, cell, reach));
+            if ((word & KIND) != EMPTY || t_leave >= along.t_leave || !spend(1u)) {
+                break;
+            }
+            t = t_leave;
+            cell = next_cell(along, cell, reach, t);
+        }
+        if ((word & KIND) != EMPTY) {
+            walk_cell(search, along, word, cell, t, t_leave, found, stop_at_first);
+        }
+        let is_done = (*found).t <= t_leave || (stop_at_first && (*found).shape_index != NO_SHAPE);
+        if (is_done || t_leave >= along.t_leave || !spend(1u)) {
+            break;
+        }
+        t = t_leave;
+        cell = next_cell(along, cell, 0.0, t);
+    }
+}
+
+// The distances at which the ray leaves `cell` and the `reach` cells ahead of it.
+fn leaving(along: GridRay, cell: vec3f, reach: f32) -> vec3f {
+    return along.base + (cell + along.step * reach + along.ahead) * along.delta;
+}
+
+// The cell that the ray enters when it leaves them at the distance `t`.
+fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
+    let there = floor(along.start + t * along.speed);
+    let last = vec3f(brick.cell_counts) - 1.0;
+    let farthest = cell + along.step * reach;
+    let ahead = clamp(there, min(cell, farthest), max(cell, farthest));
+    let kept = clamp(ahead, vec3f(0.0), last);
+    let is_left = leaving(along, cell, reach) <= vec3f(t);
+    return select(kept, cell + along.step * (reach + 1.0), is_left);
+}
+
+// A cell with a list counts as a grid of one cell.
+fn walk_cell(
+    search: Search,
+    along: GridRay,
+    word: u32,
+    cell: vec3f,
+    t_enter: f32,
+    t_leave: f32,
+    found: ptr<function, Found>,
+    stop_at_first: bool,
+) {
+    let is_grid = (word & KIND) == GRID;
+    let side = f32(1u << select(0u, (word >> LEVEL_SHIFT) & LEVEL, is_grid));
+    let strides = vec3f(1.0, side, side * side);
+    let there = floor((along.start + t_enter * along.speed - cell) * side);
+    var inner = clamp(there, vec3f(0.0), vec3f(side - 1.0));
+    loop {
+        var inner_word = word;
+        if (is_grid) {
+            inner_word = cells[(word & INNER_START) * INNER_UNIT + u32(dot(inner, strides))];
+        }
+        let planes = along.base + (cell + (inner + along.ahead) / side) * along.delta;
+        let t_inner = least(planes);
+        if ((inner_word & KIND) == LIST) {
+            test_list(search, inner_word & ~KIND, found);
+        }
+        let is_done = (*found).t <= t_inner || (stop_at_first && (*found).shape_index != NO_SHAPE);
+        if (is_done || t_inner >= t_leave || !spend(1u)) {
+            break;
+        }
+        inner = select(inner, inner + along.step, planes <= vec3f(t_inner));
+    }
+}

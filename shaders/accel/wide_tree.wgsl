@@ -1,0 +1,92 @@
+// The compressed 8-wide tree, walked in octant order. Twin: src/accel/wide_tree_trace.rs.
+// provides: find_any, find_nearest
+// needs: LEAF_COUNT_SHIFT, LEAF_FIRST, Nearest, Search, SlabRay, WIDE_ROOT, WideNode, any_in_leaf, first_of_group,
+//   octant_of, octant_order, offer_leaf, rest_of_group, spend, wide_node
+
+// What is left of a node's children is one entry, and only nodes below the root leave something: a tree of
+// WIDE_LEVELS levels needs one entry less. The host builds no deeper tree.
+const WIDE_LEVELS: u32 = 16u;
+
+// At most four iterations a leaf, its own included, and one of the node.
+fn spend_on_node(leaves: u32) -> bool {
+    return spend(1u + 4u * countOneBits(leaves));
+}
+
+// The byte of the leaf in a slot.
+fn leaf_byte(node: WideNode, slot: u32) -> u32 {
+    return (select(node.leaves.x, node.leaves.y, slot >= 4u) >> (8u * (slot & 3u))) & 0xffu;
+}
+
+fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
+    var stack: array<vec2u, WIDE_LEVELS>;
+    var top = 0u;
+    let slab = SlabRay(search.ray.origin, search.inverse);
+    let octant = octant_of(slab);
+    var group = WIDE_ROOT;
+    var leaves = 0u;
+    loop {
+        let index = first_of_group(group, octant);
+        let rest = rest_of_group(group);
+        if ((rest.y >> 24u) != 0u) {
+            stack[top] = rest;
+            top++;
+        }
+        let node = wide_node(slab, index, (*nearest).t);
+        leaves = node.hits & ~node.inner_mask;
+        if (!spend_on_node(leaves)) {
+            return;
+        }
+        while (leaves != 0u) {
+            let leaf = leaf_byte(node, firstTrailingBit(leaves));
+            leaves &= leaves - 1u;
+            offer_leaf(search, node.first_sphere + (leaf & LEAF_FIRST), leaf >> LEAF_COUNT_SHIFT, nearest);
+        }
+        let order = octant_order(node.hits & node.inner_mask, octant);
+        group = vec2u(node.first_child, node.inner_mask | (order << 24u));
+        if (order == 0u) {
+            if (top == 0u) {
+                return;
+            }
+            top--;
+            group = stack[top];
+        }
+    }
+}
+
+fn find_any(search: Search, t_max: f32) -> bool {
+    var stack: array<vec2u, WIDE_LEVELS>;
+    var top = 0u;
+    let slab = SlabRay(search.ray.origin, search.inverse);
+    var group = WIDE_ROOT;
+    var leaves = 0u;
+    loop {
+        let index = first_of_group(group, 0u);
+        let rest = rest_of_group(group);
+        if ((rest.y >> 24u) != 0u) {
+            stack[top] = rest;
+            top++;
+        }
+        let node = wide_node(slab, index, t_max);
+        leaves = node.hits & ~node.inner_mask;
+        if (!spend_on_node(leaves)) {
+            break;
+        }
+        while (leaves != 0u) {
+            let leaf = leaf_byte(node, firstTrailingBit(leaves));
+            leaves &= leaves - 1u;
+            if (any_in_leaf(search, node.first_sphere + (leaf & LEAF_FIRST), leaf >> LEAF_COUNT_SHIFT, t_max)) {
+                return true;
+            }
+        }
+        let hits = node.hits & node.inner_mask;
+        group = vec2u(node.first_child, node.inner_mask | (hits << 24u));
+        if (hits == 0u) {
+            if (top == 0u) {
+                break;
+            }
+            top--;
+            group = stack[top];
+        }
+    }
+    return false;
+}

@@ -1,0 +1,13 @@
+// Twin of src/camera/pinhole.rs. `right` and `up` reach from the middle of the view plane to its
+// edges; `forward` reaches from the eye to the middle of the view plane.
+// provides: camera_ray
+// needs: CameraRay, Ray, fence3, frame
+
+fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
+    let camera = frame.camera;
+    let aside = fence3(location.x * camera.right + location.y * camera.up);
+    let toward = aside + camera.forward;
+    let length = sqrt(dot(toward, toward));
+    let ray = Ray(camera.origin + camera.advance * aside, fence3(toward * (1.0 / length)));
+    return CameraRay(ray, camera.advance * length, true);
+}

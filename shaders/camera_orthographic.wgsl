@@ -1,8 +1,0 @@
-// Twin of src/camera/orthographic.rs. `right` and `up` reach from the middle of the view plane to
-// its edges; `forward` is the unit direction of every ray.
-
-fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {
-    let camera = frame.camera;
-    let aside = fence3(location.x * camera.right + location.y * camera.up);
-    return CameraRay(Ray(camera.origin + aside, camera.forward), camera.advance, true);
-}

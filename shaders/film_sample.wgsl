@@ -1,9 +1,0 @@
-// The relative location, in [-1, 1]^2 and a little beyond, of a point beside a pixel's centre, in pixels to the
-// right and down.
-
-fn sample_location(pixel_in_film: vec2u, offset: vec2f) -> vec2f {
-    let size = vec2i(frame.film_size);
-    let doubled = vec2i(pixel_in_film) * 2 + 1 - size;
-    let location = (vec2f(doubled) + 2.0 * offset) / vec2f(size);
-    return vec2f(fence(location.x), fence(-frame.y_sign * location.y));
-}

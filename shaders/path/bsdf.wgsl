@@ -1,0 +1,59 @@
+// Surfaces that reflect: Lambert's, with or without a lobe, and metals. Twin: src/cpu/light/bsdf/mod.rs.
+// provides: reflect_toward, scatter_reflection
+// needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
+//   mirrors_brdf, reflected_density, visible_mirror
+
+fn schlick(color: vec3f, cosine: f32) -> vec3f {
+    let m = clamp(1.0 - cosine, 0.0, 1.0);
+    let m2 = m * m;
+    return color + (vec3f(1.0) - color) * (m2 * m2 * m);
+}
+
+// What single reflections lose, given back (Turquin, "Practical multiple scattering compensation for microfacet
+// models", 2019).
+fn given_back(color: vec3f, kept: f32) -> vec3f {
+    return vec3f(1.0) + color * ((1.0 - kept) / kept);
+}
+
+// Both directions point away from the surface, in the frame of its normal.
+fn reflect_toward(material: Material, color: vec3f, out: vec3f, toward: vec3f) -> Reflection {
+    if (toward.z <= 0.0 || out.z <= 0.0 || material.kind >= DIELECTRIC) {
+        return Reflection(vec3f(0.0), 0.0);
+    }
+    let is_metal = material.kind == CONDUCTOR;
+    let share = select(material.parameter, 1.0, is_metal);
+    let matt = (1.0 - share) * toward.z / PI;
+    if (share == 0.0) {
+        return Reflection(color * matt, matt);
+    }
+    let half = normalize(out + toward);
+    let kept = energy(material.energies, out.z);
+    let mirrors = mirrors_brdf(material.alpha, out, toward, half);
+    let metal = schlick(color, dot(half, out)) * given_back(color, kept);
+    let lobe = select(vec3f(1.0 / kept), metal, is_metal);
+    let density = matt + share * reflected_density(material.alpha, out, half);
+    return Reflection(color * matt + share * mirrors * lobe, density);
+}
+
+fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u: vec2u) -> Scattered {
+    let is_metal = material.kind == CONDUCTOR;
+    if (is_metal || lobe < material.parameter) {
+        let half = visible_mirror(material.alpha, out, u);
+        let toward = 2.0 * dot(half, out) * half - out;
+        let r = reflect_toward(material, color, out, toward);
+        if (is_metal) {
+            // The quotient of value and density, without what is in both.
+            let kept = energy(material.energies, out.z);
+            let seen = 1.0 + ggx_lambda(material.alpha, out.z);
+            let ratio = seen / (seen + ggx_lambda(material.alpha, toward.z));
+            let weight = schlick(color, dot(half, out)) * given_back(color, kept) * ratio;
+            return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
+        }
+        return Scattered(toward, r.value / max(r.density, 1e-30), r.density);
+    }
+    let toward = cosine_direction(u);
+    let r = reflect_toward(material, color, out, toward);
+    let mixed = r.value / max(r.density, 1e-30);
+    let weight = select(mixed, color, material.parameter == 0.0);
+    return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
+}

@@ -1,0 +1,77 @@
+// One pass of an edge-avoiding filter: a mean of 25 pixels, `step` apart, of which those count that look like the one
+// in the middle. Twin: src/cpu/denoise.rs.
+//
+// Dammertz, Sewtz, Hanika and Lensch, "Edge-Avoiding A-Trous Wavelet Transform for Fast Global Illumination
+// Filtering", HPG 2010; with the noise's variance as in Schied et al., "Spatiotemporal Variance-Guided Filtering",
+// HPG 2017.
+// dispatched: five times for each strip of a finished picture: 8x8 pixels a workgroup.
+// provides: denoise
+// needs: luminance
+
+struct Denoise {
+    size: vec2u,
+    step: u32,
+    // Zero; see fence.wgsl.
+    zero: u32,
+}
+
+// Which of the five passes.
+@group(0) @binding(0) var<uniform> denoise_pass: Denoise;
+// Light, which is colour over albedo; and the variance of its luminance.
+@group(0) @binding(1) var<storage, read> lights: array<vec4f>;
+// Normal, zero for a miss; depth.
+@group(0) @binding(2) var<storage, read> shapes: array<vec4f>;
+// Albedo of each pixel.
+@group(0) @binding(3) var<storage, read> albedos: array<vec4f>;
+// The filtered light, and the variance of its luminance.
+@group(0) @binding(4) var<storage, read_write> filtered: array<vec4f>;
+
+// Of a B3 spline, by the distance from the middle.
+fn spline(distance: i32) -> f32 {
+    return select(select(0.0625, 0.25, distance == 1), 0.375, distance == 0);
+}
+
+// How alike two pixels are in shape and colour, whatever light is on them.
+fn likeness(a: u32, b: u32, distance: f32) -> f32 {
+    let shape = shapes[a];
+    let other = shapes[b];
+    let cosine = dot(shape.xyz, other.xyz);
+    // Misses have no normal, and are alike.
+    let are_misses = dot(shape.xyz, shape.xyz) == 0.0 && dot(other.xyz, other.xyz) == 0.0;
+    let c2 = max(cosine, 0.0) * max(cosine, 0.0);
+    let c4 = c2 * c2;
+    let c16 = c4 * c4 * c4 * c4;
+    let depth = abs(shape.w - other.w) / (0.005 * distance * max(min(shape.w, other.w), 1e-30));
+    let tint = albedos[a].rgb - albedos[b].rgb;
+    let alike = c16 * c16 / (1.0 + depth * depth);
+    return select(alike, 1.0, are_misses) / (1.0 + 400.0 * dot(tint, tint));
+}
+
+@compute @workgroup_size(8, 8)
+fn denoise(@builtin(global_invocation_id) pixel: vec3u) {
+    if (any(pixel.xy >= denoise_pass.size)) {
+        return;
+    }
+    let middle = pixel.y * denoise_pass.size.x + pixel.x;
+    let light = lights[middle];
+    var sum = vec3f(0.0);
+    var variance = 0.0;
+    var weights = 0.0;
+    for (var dy = -2; dy <= 2; dy++) {
+        for (var dx = -2; dx <= 2; dx++) {
+            let at = vec2i(pixel.xy) + vec2i(dx, dy) * i32(denoise_pass.step);
+            let is_in = all(at >= vec2i(0)) && all(at < vec2i(denoise_pass.size));
+            let index = select(middle, u32(at.y) * denoise_pass.size.x + u32(at.x), is_in);
+            let other = lights[index];
+            let distance = f32(denoise_pass.step) * length(vec2f(f32(dx), f32(dy)));
+            let change = luminance(other.rgb - light.rgb);
+            let noise = 4.0 * (light.w + other.w) + 1e-8;
+            let same = likeness(middle, index, max(distance, 1.0)) * exp(-change * change / noise);
+            let weight = select(spline(abs(dx)) * spline(abs(dy)) * same, 0.0, !is_in);
+            sum += weight * other.rgb;
+            variance += weight * weight * other.w;
+            weights += weight;
+        }
+    }
+    filtered[middle] = vec4f(sum / weights, variance / (weights * weights));
+}

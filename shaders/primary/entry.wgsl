@@ -1,0 +1,42 @@
+// The ray of a pixel, from where it enters the scene's box.
+
+//// made
+// The ray of a pixel, made where it is used.
+// provides: entry_of
+// needs: Entry, make_entry
+
+fn entry_of(pixel_in_tile: vec2u) -> Entry {
+    return make_entry(pixel_in_tile);
+}
+
+//// recorded
+// The ray of a pixel, made where it is used, and kept for src/verify.
+// provides: entry_of
+// needs: Entry, hit_index, make_entry
+
+// Two a pixel: origin and distance; direction, and 1 for a ray that misses the scene's box or 2 for one that meets it.
+@group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
+
+fn entry_of(pixel_in_tile: vec2u) -> Entry {
+    let entry = make_entry(pixel_in_tile);
+    let first = 2u * hit_index(pixel_in_tile);
+    rays[first] = vec4f(entry.ray.origin, entry.distance);
+    rays[first + 1u] = vec4f(entry.ray.direction, select(1.0, 2.0, entry.is_inside));
+    return entry;
+}
+
+//// replayed
+// The ray of a pixel as the first brick had it: another kernel's might differ in the last bit.
+// provides: entry_of
+// needs: Entry, Ray, hit_index, inverse_direction
+
+// As recorded.
+@group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
+
+fn entry_of(pixel_in_tile: vec2u) -> Entry {
+    let first = 2u * hit_index(pixel_in_tile);
+    let origin = rays[first];
+    let direction = rays[first + 1u];
+    let inverse = inverse_direction(direction.xyz);
+    return Entry(Ray(origin.xyz, direction.xyz), inverse, origin.w, direction.w > 1.5);
+}

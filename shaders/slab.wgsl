@@ -1,7 +1,0 @@
-// A ray as tests of boxes want it. Twin: src/accel/slab.rs, which says why no test loses a sphere.
-
-struct SlabRay {
-    origin: vec3f,
-    // One over the direction.
-    inverse: vec3f,
-}

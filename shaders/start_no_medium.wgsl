@@ -1,3 +1,0 @@
-// Where there is no glass, nothing absorbs light.
-
-fn start_medium(index: u32) {}

@@ -1,0 +1,26 @@
+// In a studio: whether something hides a light from a surface.
+// provides: hide, is_hidden
+// needs: CameraRay, Excluded, NORMAL, PATH_BACK, PATH_ON_GROUND, Ray, Search, Start, enter_scene, find_any,
+//   ground_distance, has, paths, slot
+
+// Searches the brick; `excluded` must be the shape on which the ray starts, `to_center` the way to its centre.
+fn is_hidden(start: Start, excluded: Excluded, to_center: vec3f, direction: vec3f, distance: f32) -> bool {
+    let ray = Ray(start.position, direction);
+    let to_far_side = max(2.0 * dot(to_center, direction), 0.0);
+    let is_in_own = has(start.flags, PATH_BACK) && to_far_side < distance;
+    let is_below = !has(start.flags, PATH_ON_GROUND) && ground_distance(ray, 0.0) < distance;
+    let entry = enter_scene(CameraRay(ray, 0.0, true));
+    let rest = distance - entry.distance;
+    var is_hidden = is_in_own || is_below;
+    if (!is_hidden && rest > 0.0 && entry.is_inside) {
+        is_hidden = find_any(Search(entry.ray, entry.inverse, excluded), rest);
+    }
+    return is_hidden;
+}
+
+// Keeps which of 32 lights are hidden, each in a bit.
+fn hide(index: u32, lights: u32) {
+    if (lights != 0u) {
+        paths[slot(index, NORMAL)].w |= lights;
+    }
+}

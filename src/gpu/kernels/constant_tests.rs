@@ -1,0 +1,145 @@
+//! Constants that kernels and the host must agree on, as naga evaluates them in the composed kernels.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use naga::{Expression, Handle, Literal, Module};
+
+use super::all_kernels;
+use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_ROOT, word};
+use crate::accel::{self, BinaryChild, BinaryNode, WideNode};
+use crate::gpu::{lit, records, tiles};
+use crate::image::NO_ID;
+use crate::image::color::LUMINANCE;
+use crate::light::codes;
+
+/// Of every component, the bits.
+type Bits = Vec<u32>;
+
+/// The constants that the host has as well, by their names in WGSL.
+fn of_the_host() -> Vec<(&'static str, Bits)> {
+    let vectors = |bytes: usize| (bytes / size_of::<[u32; 4]>()) as u32;
+    let words = [
+        ("NO_ID", NO_ID),
+        ("WORKGROUP_SIDE", tiles::WORKGROUP_SIDE),
+        ("KIND", word::KIND),
+        ("EMPTY", word::EMPTY),
+        ("LIST", word::LIST),
+        ("GRID", word::GRID),
+        ("REACH", word::REACH),
+        ("REACH_BITS", word::REACH_BITS),
+        ("LEVEL", word::LEVEL),
+        ("LEVEL_SHIFT", word::LEVEL_SHIFT),
+        ("INNER_START", word::INNER_START),
+        ("INNER_UNIT", word::INNER_UNIT),
+        ("SHAPE_INDEX", !LAST),
+        ("LEAF_FIRST", LEAF_FIRST),
+        ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
+        ("WIDE_LEVELS", accel::WIDE_LEVELS),
+        ("WIDE_NODE_VECTORS", vectors(size_of::<WideNode>())),
+        ("BINARY_LEVELS", accel::BINARY_LEVELS),
+        ("BINARY_INNER", accel::BINARY_INNER),
+        ("BINARY_NODE_VECTORS", vectors(size_of::<BinaryNode>())),
+        ("BINARY_CHILD_VECTORS", vectors(size_of::<BinaryChild>())),
+        ("LIGHTING_TRANSPARENT", codes::lighting::TRANSPARENT),
+        ("LIGHTING_SKY_SEEN", codes::lighting::SKY_SEEN),
+        ("LIGHTING_SHADOWS", codes::lighting::SHADOWS),
+        ("LIGHTING_GROUND", codes::lighting::GROUND),
+        ("LIGHTING_CATCHER", codes::lighting::CATCHER),
+        ("LAMBERT", codes::material::LAMBERT),
+        ("CONDUCTOR", codes::material::CONDUCTOR),
+        ("DIELECTRIC", codes::material::DIELECTRIC),
+        ("EMISSIVE", codes::material::EMISSIVE),
+        ("LAMP_HEAD", codes::lamp::HEAD),
+        ("LAMP_DIRECTIONAL", codes::lamp::DIRECTIONAL),
+        ("LAMP_POINT", codes::lamp::POINT),
+        ("LAMP_SPHERE", codes::lamp::SPHERE),
+        ("LIGHT_CHANCE", codes::sampling::CHANCE),
+        ("LIGHT_DIRECT", codes::sampling::DIRECT),
+        ("LIGHT_MULTIPLE", codes::sampling::MULTIPLE),
+        ("PATH_ALIVE", codes::path::ALIVE),
+        ("PATH_INSIDE", codes::path::INSIDE),
+        ("PATH_ON_GROUND", codes::path::ON_GROUND),
+        ("PATH_FULL", codes::path::FULL),
+        ("PATH_SCATTERED", codes::path::SCATTERED),
+        // The last slot of each kind of path: the host says how many there are.
+        ("HIT", lit::records::COMMON_SLOTS as u32 - 1),
+        ("PENDING", lit::records::LIGHT_SLOTS as u32 - 1),
+        ("MEDIUM", lit::records::MEDIUM_SLOTS as u32 - 1),
+        ("LOBE", lit::records::STUDIO_SLOTS as u32 - 1),
+        ("LIST_OF_LIGHT", lit::records::LIST_OF_LIGHT),
+        ("ENERGIES", crate::light::energy::ENTRIES as u32),
+    ];
+    let floats = [
+        // Each has a name of its own for it.
+        ("NO_HIT", records::NO_HIT),
+        ("NO_HIT", accel::NO_HIT),
+        ("NO_ENTRY", NO_ENTRY),
+        ("SMALLEST_COMPONENT", accel::SMALLEST_COMPONENT),
+        ("PI", std::f32::consts::PI),
+    ];
+    words
+        .into_iter()
+        .chain(floats.map(|(name, value)| (name, value.to_bits())))
+        .map(|(name, bits)| (name, vec![bits]))
+        .chain([
+            ("WIDE_ROOT", PACKED_ROOT.to_vec()),
+            ("LUMINANCE", LUMINANCE.map(|weight| (weight as f32).to_bits()).to_vec()),
+        ])
+        .collect()
+}
+
+/// Constants that kernels alone know, and the shadings, which a test of `records.rs` compares.
+const OF_KERNELS_ALONE: &[&str] = &[
+    "NO_SHAPE",
+    "NO_PATH",
+    "SHADING_FLAT",
+    "SHADING_HEADLIGHT",
+    "SMALLEST_SPOT",
+    // Slots of a path's state, and flags in it.
+    "ORIGIN",
+    "DIRECTION",
+    "DEPARTURE",
+    "THROUGHPUT",
+    "RADIANCE",
+    "FIRST",
+    "SHADOW",
+    "NORMAL",
+    "NO_EMITTER",
+    "ALBEDO",
+    "PATH_BACK",
+    // Whose turn it is to go on with a path.
+    "NOBODY",
+    "NOTHING_MET",
+    "GROUND_MET",
+    "SPHERE_MET",
+];
+
+fn bits(module: &Module, expression: Handle<Expression>) -> Bits {
+    match &module.global_expressions[expression] {
+        Expression::Literal(Literal::U32(value)) => vec![*value],
+        Expression::Literal(Literal::F32(value)) => vec![value.to_bits()],
+        Expression::Compose { components, .. } => {
+            components.iter().flat_map(|component| bits(module, *component)).collect()
+        }
+        other => panic!("{other:?} is not evaluated"),
+    }
+}
+
+#[test]
+fn constants_are_the_same_in_rust_and_wgsl() {
+    let mut met: BTreeMap<String, BTreeSet<Bits>> = BTreeMap::new();
+    for kernel in all_kernels() {
+        let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
+        for (_, constant) in module.constants.iter() {
+            let name = constant.name.clone().unwrap();
+            met.entry(name).or_default().insert(bits(&module, constant.init));
+        }
+    }
+    let of_the_host = of_the_host();
+    for (name, expected) in &of_the_host {
+        assert_eq!(met.get(*name), Some(&BTreeSet::from([expected.clone()])), "{name}");
+    }
+    let known: BTreeSet<&str> =
+        of_the_host.iter().map(|(name, _)| *name).chain(OF_KERNELS_ALONE.iter().copied()).collect();
+    assert_eq!(met.keys().map(String::as_str).collect::<BTreeSet<_>>(), known);
+}

@@ -1,0 +1,65 @@
+//! Every kernel that there is, and what tests say of all of them.
+
+use std::collections::BTreeMap;
+
+use super::formats::ColorTarget;
+use super::shader::{
+    BrickPass, Kernel, Probe, occluded_kernel, self_test_kernel, shade_kernel, trace_kernel,
+};
+use crate::accel::{BrickKind, Primitive, Structure};
+use crate::camera::CameraKind;
+
+#[cfg(test)]
+mod constant_tests;
+#[cfg(test)]
+mod declarations;
+#[cfg(test)]
+mod page_tests;
+#[cfg(test)]
+mod tests;
+
+/// A kernel as a device is given it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ComposedKernel {
+    /// The entry point and the parts that distinguish it from the other kernels with this entry point, with blanks in
+    /// between; unique among all kernels.
+    pub name: String,
+    /// The WGSL of all its parts; before each, a comment names its file in the folder `shaders`.
+    pub source: String,
+}
+
+/// Every kernel of this crate, ordered by name: for readers, and for other compilers of WGSL.
+pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
+    // Some settings of lit pictures need the same kernel.
+    let sources: BTreeMap<String, String> =
+        all_kernels().iter().map(|kernel| (kernel.name(), kernel.source())).collect();
+    sources.into_iter().map(|(name, source)| ComposedKernel { name, source })
+}
+
+/// Every kernel that can be composed.
+pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
+    let mut kernels =
+        [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();
+    for &camera in CameraKind::ALL {
+        for kind in BrickKind::of(Structure::ALL, Primitive::ALL) {
+            for brick_pass in [BrickPass::First, BrickPass::Later] {
+                for keeps_rays in [false, true] {
+                    kernels.push(trace_kernel(camera, kind, brick_pass, keeps_rays));
+                }
+                kernels.push(occluded_kernel(camera, kind, brick_pass));
+            }
+        }
+        for &primitive in Primitive::ALL {
+            for &color in ColorTarget::ALL {
+                for data_layers in [false, true] {
+                    kernels.push(shade_kernel(camera, primitive, color, data_layers));
+                }
+            }
+        }
+    }
+    kernels.extend(super::lit::all_kernels());
+    kernels.push(super::denoise::denoise_kernel());
+    kernels.push(super::recolor::recolor_kernel());
+    kernels
+}

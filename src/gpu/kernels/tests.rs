@@ -1,0 +1,149 @@
+//! Every kernel, without a device.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::all_kernels;
+use super::declarations::Declarations;
+use crate::accel::{BrickKind, Primitive, Structure};
+use crate::camera::CameraKind;
+use crate::gpu::formats::ColorTarget;
+use crate::gpu::shader::{Kernel, Part, part, variants};
+
+fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
+    let source = kernel.source();
+    let readable = |message: String| kernel.with_positions_in_files(&message);
+    let module = naga::front::wgsl::parse_str(&source)
+        .map_err(|error| readable(error.emit_to_string(&source)))?;
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        // Nothing beyond WebGPU's core.
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .map_err(|error| readable(error.emit_to_string(&source)))?;
+    Ok(module)
+}
+
+#[test]
+fn every_kernel_composes_and_validates() {
+    let kernels = all_kernels();
+    assert_eq!(
+        kernels.len(),
+        CameraKind::ALL.len()
+            * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
+                + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
+            + 5
+            + crate::gpu::lit::all_kernels().len()
+    );
+    for kernel in kernels {
+        let module = validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));
+        let entry = &module.entry_points[0];
+        assert_eq!(module.entry_points.len(), 1, "{}", kernel.name());
+        assert_eq!(entry.name, kernel.entry_point);
+        assert_eq!(entry.workgroup_size.iter().product::<u32>(), 64);
+    }
+}
+
+/// Names are file names of `pinhole info --dump-shaders`, and labels in messages.
+#[test]
+fn no_two_kernels_have_the_same_name() {
+    let mut sources = BTreeMap::new();
+    for kernel in all_kernels() {
+        let source = kernel.source();
+        let before = sources.insert(kernel.name(), source.clone());
+        assert!(before.is_none_or(|before| before == source), "{}", kernel.name());
+    }
+}
+
+/// A zero that a kernel has not set is one that the compiler knows.
+#[test]
+fn every_kernel_sets_what_fences_need() {
+    let uses_frame =
+        |kernel: &Kernel| kernel.parts.iter().any(|part| part.name == "scene/frame.wgsl");
+    for kernel in all_kernels().iter().filter(|kernel| uses_frame(kernel)) {
+        let source = kernel.source();
+        let entry = source.split(&format!("fn {}(", kernel.entry_point)).nth(1).unwrap();
+        let first = entry.lines().nth(1).unwrap();
+        assert_eq!(first.trim(), "start_fences();", "{}", kernel.name());
+    }
+}
+
+/// Parts talk by arguments: what one keeps in a variable of the module, no other part reads or writes.
+#[test]
+fn no_part_uses_a_private_variable_of_another() {
+    for kernel in all_kernels() {
+        let parts: Vec<_> =
+            kernel.parts.iter().map(|part| (part, Declarations::of(&part.source))).collect();
+        for (owner, declared) in &parts {
+            for variable in &declared.private_variables {
+                let others = parts.iter().filter(|(part, _)| part.name != owner.name);
+                for (part, other) in others {
+                    assert!(!other.used.contains(variable), "{} uses {variable}", part.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_error_names_the_file_and_its_line() {
+    let broken = Part::whole("broken.wgsl", "// first\n// second\nconst x: f32 = y;\n");
+    let parts = vec![part!("camera/ray.wgsl"), broken, part!("camera/film.wgsl")];
+    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    assert!(message.contains("broken.wgsl:3:"), "{message}");
+    let file = "// Head.\n\n//// a\nconst x: f32 = 1.0;\n//// b\n\nconst x: f32 = y;\n";
+    let parts = vec![part!("camera/ray.wgsl"), Part::variant("broken.wgsl#b", file)];
+    let message = validate(&Kernel { entry_point: "none", parts }).unwrap_err();
+    assert!(message.contains("broken.wgsl:7:"), "{message}");
+}
+
+/// Paths of all files below `shaders`.
+pub(super) fn files() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut found = BTreeMap::new();
+    for folder in std::fs::read_dir(&root).unwrap() {
+        let folder = folder.unwrap().path();
+        if !folder.is_dir() {
+            continue;
+        }
+        for file in std::fs::read_dir(folder).unwrap() {
+            let path = file.unwrap().path();
+            let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
+            found.insert(name, std::fs::read_to_string(&path).unwrap());
+        }
+    }
+    found
+}
+
+#[test]
+fn every_file_and_variant_is_used_and_short() {
+    let kernels = all_kernels();
+    let used: BTreeSet<String> =
+        kernels.iter().flat_map(|k| k.parts.iter().map(|p| p.name.to_owned())).collect();
+    let mut there = BTreeSet::new();
+    for (file, text) in files() {
+        let lines = text.lines().count();
+        assert!(lines <= 105, "{file} has {lines} lines; one idea per file");
+        let variants: Vec<_> = variants(&text).map(|(name, ..)| format!("{file}#{name}")).collect();
+        there.extend(if variants.is_empty() { vec![file] } else { variants });
+    }
+    assert_eq!(used, there);
+}
+
+/// A part with a twin says where it is.
+#[test]
+fn twins_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut twins = 0;
+    for (file, text) in files() {
+        for line in text.lines().filter(|line| line.contains("win: ") || line.contains("win of ")) {
+            let words = line.split([' ', ',', '`']).map(|word| word.trim_end_matches('.'));
+            for path in words.filter(|word| word.starts_with("src/")) {
+                assert!(root.join(path).exists(), "{file}: {path} is missing");
+                twins += 1;
+            }
+        }
+    }
+    assert!(twins > 10, "{twins}");
+}

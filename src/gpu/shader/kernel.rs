@@ -1,0 +1,103 @@
+//! Kernels: lists of parts, put one behind the other.
+
+use super::part::Part;
+use crate::camera::CameraKind;
+use crate::gpu::edit::ShaderEdit;
+use crate::gpu::error::GpuError;
+
+/// An entry point, and the parts that it is composed of.
+#[derive(Clone, Debug)]
+pub(in crate::gpu) struct Kernel {
+    pub(in crate::gpu) entry_point: &'static str,
+    pub(in crate::gpu) parts: Vec<Part>,
+}
+
+/// The structures, which are alternatives of each other in files of their own.
+const STRUCTURES: &[&str] = &[
+    "accel/list.wgsl",
+    "accel/grid.wgsl",
+    "accel/nested_grid.wgsl",
+    "accel/wide_tree.wgsl",
+    "accel/binary_tree.wgsl",
+];
+
+/// Whether other kernels with the same entry point may have another part in place of this one.
+fn is_choice(part: &str) -> bool {
+    let camera = part.strip_prefix("camera/").and_then(|file| file.strip_suffix(".wgsl"));
+    part.contains('#')
+        || STRUCTURES.contains(&part)
+        || CameraKind::ALL.iter().any(|kind| Some(kind.name()) == camera)
+}
+
+impl Kernel {
+    /// The entry point and the parts that distinguish this kernel from others.
+    pub(in crate::gpu) fn name(&self) -> String {
+        let chosen = self.parts.iter().map(|part| part.name).filter(|name| is_choice(name));
+        chosen.fold(self.entry_point.to_owned(), |name, part| {
+            let (_, file) = part.split_once('/').unwrap_or(("", part));
+            name + " " + &file.replace(".wgsl", "")
+        })
+    }
+
+    /// The kernel with one more part.
+    #[cfg(test)]
+    pub(in crate::gpu) fn with_part(mut self, file: &'static str, source: &'static str) -> Self {
+        self.parts.push(Part::whole(file, source));
+        self
+    }
+
+    /// The kernel with the changes that concern its parts.
+    pub(in crate::gpu) fn edited(mut self, edits: &[ShaderEdit]) -> Result<Self, GpuError> {
+        for edit in edits {
+            for part in self.parts.iter_mut().filter(|part| part.name == edit.file) {
+                if !part.source.contains(&edit.find) {
+                    return Err(GpuError::NoSuchText { edit: edit.clone() });
+                }
+                part.source = part.source.replace(&edit.find, &edit.replace).into();
+            }
+        }
+        Ok(self)
+    }
+
+    /// The composed WGSL; a comment names each part.
+    pub(in crate::gpu) fn source(&self) -> String {
+        self.parts.iter().flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
+    }
+
+    /// Replaces every position in the composed WGSL, in a message of naga's or wgpu's, by one in a file.
+    ///
+    /// The parser calls the text `wgsl`, the validator by its label, which is the kernel's name.
+    pub(in crate::gpu) fn with_positions_in_files(&self, message: &str) -> String {
+        let positions = self.replace_positions("wgsl:", message);
+        self.replace_positions(&format!("{}:", self.name()), &positions)
+    }
+
+    fn replace_positions(&self, prefix: &str, message: &str) -> String {
+        let mut pieces = message.split(prefix);
+        let mut text = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+            match piece[..digits].parse().ok().and_then(|line| self.position(line)) {
+                Some((file, line)) => text += &format!("{file}:{line}{}", &piece[digits..]),
+                None => text += &format!("{prefix}{piece}"),
+            }
+        }
+        text
+    }
+
+    /// The file, and the line in it, that a line of the composed WGSL comes from; lines count from 1.
+    fn position(&self, line: usize) -> Option<(&'static str, usize)> {
+        // The first line of a part is the comment that names it.
+        let mut comment = 1;
+        for part in &self.parts {
+            // One more for the line end that `source` adds.
+            let lines = part.source.matches('\n').count() + 1;
+            if (comment..=comment + lines).contains(&line) {
+                let in_source = line.saturating_sub(comment).max(1);
+                return Some((part.file(), part.line_in_file(in_source)));
+            }
+            comment += 1 + lines;
+        }
+        None
+    }
+}

@@ -1,0 +1,192 @@
+//! The kernels of primary rays and of the self-test, as lists of parts.
+
+use super::kernel::Kernel;
+use super::part::{Part, part};
+use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
+use crate::camera::{CameraKind, camera_table};
+use crate::gpu::formats::ColorTarget;
+
+/// Whether a brick is the first that a picture's rays meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum BrickPass {
+    First,
+    Later,
+}
+
+/// What a kernel of the self-test tries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum Probe {
+    /// Operations that may round.
+    Arithmetic,
+    /// Operations that may not.
+    Exact,
+    Loops,
+}
+
+/// Finds the nearest sphere of every ray; the rays may be kept.
+pub(in crate::gpu) fn trace_kernel(
+    camera: CameraKind,
+    kind: BrickKind,
+    brick_pass: BrickPass,
+    keeps_rays: bool,
+) -> Kernel {
+    let mut parts = walk_parts(camera, kind, brick_pass);
+    parts.push(match (keeps_rays, brick_pass) {
+        (false, _) => part!("primary/entry.wgsl", "made"),
+        (true, BrickPass::First) => part!("primary/entry.wgsl", "recorded"),
+        (true, BrickPass::Later) => part!("primary/entry.wgsl", "replayed"),
+    });
+    parts.push(part!("primary/trace.wgsl"));
+    Kernel { entry_point: "trace", parts }
+}
+
+/// Finds whether every ray hits anything.
+pub(in crate::gpu) fn occluded_kernel(
+    camera: CameraKind,
+    kind: BrickKind,
+    brick_pass: BrickPass,
+) -> Kernel {
+    let mut parts = walk_parts(camera, kind, brick_pass);
+    parts.extend([part!("primary/entry.wgsl", "made"), part!("primary/occluded.wgsl")]);
+    Kernel { entry_point: "occluded", parts }
+}
+
+fn walk_parts(
+    camera: CameraKind,
+    BrickKind { structure, primitive }: BrickKind,
+    brick_pass: BrickPass,
+) -> Vec<Part> {
+    let mut parts = common_parts(camera, primitive);
+    parts.extend([
+        part!("primary/schedule.wgsl"),
+        part!("primary/status.wgsl"),
+        part!("accel/spend.wgsl"),
+        part!("accel/excluded.wgsl", "none"),
+        part!("accel/brick.wgsl"),
+    ]);
+    parts.push(match brick_pass {
+        BrickPass::First => part!("primary/hit_before.wgsl", "first-brick"),
+        BrickPass::Later => part!("primary/hit_before.wgsl", "later-brick"),
+    });
+    parts.extend(structure_parts(structure));
+    parts
+}
+
+/// What walks a structure.
+pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
+    match structure {
+        Structure::List => vec![part!("accel/list.wgsl")],
+        Structure::WideTree => vec![
+            part!("accel/slab.wgsl"),
+            part!("accel/leaf.wgsl"),
+            part!("accel/wide_group.wgsl"),
+            part!("accel/wide_node.wgsl"),
+            part!("accel/wide_tree.wgsl"),
+        ],
+        Structure::BinaryTree => vec![
+            part!("accel/slab.wgsl"),
+            part!("accel/leaf.wgsl"),
+            part!("accel/binary_node.wgsl"),
+            part!("accel/binary_tree.wgsl"),
+        ],
+        Structure::Grid(layout) => {
+            vec![part!("accel/grid_ray.wgsl"), part!("accel/grid.wgsl"), list_part(layout)]
+        }
+        Structure::NestedGrid(layout) => {
+            vec![part!("accel/grid_ray.wgsl"), part!("accel/nested_grid.wgsl"), list_part(layout)]
+        }
+    }
+}
+
+/// Turns hits into colour and, if wanted, data layers.
+pub(in crate::gpu) fn shade_kernel(
+    camera: CameraKind,
+    primitive: Primitive,
+    color: ColorTarget,
+    data_layers: bool,
+) -> Kernel {
+    let mut parts = common_parts(camera, primitive);
+    parts.extend([
+        part!("scene/appearance.wgsl"),
+        part!("primary/shade.wgsl"),
+        part!("primary/shading.wgsl"),
+        match color {
+            ColorTarget::Srgb8 => part!("primary/color_target.wgsl", "rgba8unorm"),
+            ColorTarget::Linear16 => part!("primary/color_target.wgsl", "rgba16float"),
+            ColorTarget::Linear32 => part!("primary/color_target.wgsl", "rgba32float"),
+        },
+        if data_layers {
+            part!("primary/data_layers.wgsl", "all")
+        } else {
+            part!("primary/data_layers.wgsl", "none")
+        },
+    ]);
+    Kernel { entry_point: "shade", parts }
+}
+
+/// Does what the self-test judges.
+pub(in crate::gpu) fn self_test_kernel(probe: Probe) -> Kernel {
+    let (entry_point, part) = match probe {
+        Probe::Arithmetic => ("arithmetic", part!("self_test/arithmetic.wgsl")),
+        Probe::Exact => ("exact", part!("self_test/exact.wgsl")),
+        Probe::Loops => ("loops", part!("self_test/loops.wgsl")),
+    };
+    Kernel {
+        entry_point,
+        parts: vec![part!("self_test/records.wgsl"), part!("math/fence.wgsl"), part],
+    }
+}
+
+fn list_part(layout: ListLayout) -> Part {
+    match layout {
+        ListLayout::Copied => part!("accel/cell_list.wgsl", "copied"),
+        ListLayout::Referenced => part!("accel/cell_list.wgsl", "referenced"),
+    }
+}
+
+/// What a primitive is: `Shape`, `intersect` and `shape_normal`.
+fn primitive_part(primitive: Primitive) -> Part {
+    match primitive {
+        Primitive::Sphere => part!("scene/sphere.wgsl"),
+    }
+}
+
+fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
+    let mut parts = vec![
+        part!("scene/records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("primary/hits.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("camera/film.wgsl"),
+        part!("camera/ray.wgsl"),
+        part!("scene/enter.wgsl"),
+        part!("camera/entry.wgsl"),
+        primitive_part(primitive),
+    ];
+    parts.extend(camera_parts(camera));
+    parts
+}
+
+/// A camera, and what cameras compute with.
+pub(in crate::gpu) fn camera_parts(camera: CameraKind) -> [Part; 3] {
+    [part!("math/trigonometry.wgsl"), part!("math/disk.wgsl"), camera_part(camera)]
+}
+
+macro_rules! define_camera_part {
+    ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
+        fn camera_part(camera: CameraKind) -> Part {
+            match camera {
+                $(CameraKind::$variant => Part::whole(
+                    concat!("camera/", $name, ".wgsl"),
+                    include_str!(concat!(
+                        env!("CARGO_MANIFEST_DIR"),
+                        "/shaders/camera/",
+                        $name,
+                        ".wgsl"
+                    )),
+                ),)+
+            }
+        }
+    };
+}
+camera_table!(define_camera_part);
