@@ -1,5 +1,5 @@
-//! Reading TOML more strictly than serde does by itself: it takes lists for tables, and drops what an
-//! array has too many of.
+//! Reads TOML more strictly than serde does: serde accepts lists in place of tables, and ignores surplus elements of
+//! arrays.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, Expected, MapAccess, SeqAccess, Visitor};
 
-/// All elements of a list that must have exactly `N`.
+/// Reads all elements of a list, which must have exactly `N`.
 pub(crate) fn elements<
     'de,
     A: SeqAccess<'de>,
@@ -28,7 +28,7 @@ pub(crate) fn elements<
     if count == N { Ok(elements) } else { Err(Error::invalid_length(count, expected)) }
 }
 
-/// Exactly `N` numbers.
+/// Reads a list of exactly `N` numbers.
 pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<[f64; N], D::Error> {
@@ -49,14 +49,14 @@ pub(crate) fn array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer.deserialize_seq(Numbers)
 }
 
-/// As [`array`], for a key that may be left out.
+/// Reads a list of exactly `N` numbers for a key that may be left out.
 pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<Option<[f64; N]>, D::Error> {
     array(deserializer).map(Some)
 }
 
-/// What is a table in the file.
+/// A value that must be a table in the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Table<T>(pub(crate) T);
 

@@ -10,9 +10,10 @@
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
 //! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly |
 //!
-//! Three things make a picture. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which answers
-//! which ray belongs to a place in the picture, with a [`Film`], which has the picture's size. [`RenderSettings`] say how
-//! rays become colours: by what they meet first, by the lights of a studio, or along paths.
+//! A picture needs three things. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which
+//! says which ray belongs to a location in the picture, with a [`Film`], which is the picture's size.
+//! [`RenderSettings`] say how rays become colours: from the surface that they hit first, by the lights of a studio, or
+//! by path tracing.
 //!
 //! # Render a file
 //! ```no_run
@@ -107,17 +108,17 @@
 //! ```
 //!
 //! # Features
-//! `gpu` (default) is the compute-shader renderer; `parallel` (default) runs builders, readers of arrays
-//! and the CPU reference on all cores; `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
-//! writers; `run-file` keeps what a device rendered; `all-formats` is all of these. An embedder wants
-//! `default-features = false, features = ["gpu"]`. The program is the package `pinhole-cli`.
+//! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, array readers and the CPU
+//! reference on all cores. `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
+//! writers. `run-file` stores what a device rendered. `all-formats` is all readers and writers. To embed only the
+//! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
 //! # Units
-//! World space is right-handed, lengths are in scene units, angles in radians. Colours are linear
-//! light. Depth is measured along the ray. `CONTRIBUTING.md` has the rest.
+//! World space is right-handed, lengths are in scene units, and angles are in radians. Colours are linear light. Depth
+//! is measured along the ray. `CONTRIBUTING.md` lists all conventions.
 #![cfg_attr(not(feature = "gpu"), allow(rustdoc::broken_intra_doc_links, reason = "gpu is off"))]
 
-// Scenes that tests share name this crate from outside.
+// Test scenes that are shared with `tests` refer to this crate by its name.
 #[cfg(test)]
 extern crate self as pinhole;
 

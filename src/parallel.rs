@@ -1,10 +1,10 @@
-//! Work on all cores with the feature `parallel`, and on one without it, with the same answers.
+//! Loops that run on all cores with the feature `parallel`, and on one core without it, with the same results.
 
 use std::collections::TryReserveError;
 use std::ops::Range;
 
-/// How many items a thread takes at a time: enough to be worth it, few enough for short lists to stay on
-/// one thread.
+/// The number of items that a thread takes at a time: large enough to be worth a task, small enough that short lists
+/// stay on one thread.
 const CHUNK: usize = 1 << 16;
 
 /// The results of `f` for `0..count`, in order.
@@ -18,10 +18,10 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -
     (0..count).map(f).collect()
 }
 
-/// As [`map`], for cheap results.
+/// The results of `f` for `0..count`, in order, like [`map`], but for cheap results.
 ///
 /// # Errors
-/// If there is no memory for so many.
+/// If there is not enough memory for `count` results.
 pub(crate) fn try_map<R: Send>(
     count: usize,
     f: impl Fn(usize) -> R + Sync + Send,
@@ -38,7 +38,7 @@ pub(crate) fn try_map<R: Send>(
     Ok(list)
 }
 
-/// What `f` makes of every chunk and the index of its first item, in order.
+/// The results of `f` for every chunk and the index of its first item, in order.
 pub(crate) fn map_chunks<T: Sync, R: Send>(
     items: &[T],
     f: impl Fn(usize, &[T]) -> R + Sync + Send,
@@ -46,7 +46,7 @@ pub(crate) fn map_chunks<T: Sync, R: Send>(
     map_parts(ranges(items.len(), CHUNK), |range| f(range.start, &items[range]))
 }
 
-/// What `f` makes of every element of `parts`, in order.
+/// The results of `f` for every element of `parts`, in order.
 pub(crate) fn map_parts<T: Send, R: Send>(
     parts: Vec<T>,
     f: impl Fn(T) -> R + Sync + Send,
@@ -71,7 +71,7 @@ pub(crate) fn for_each<T: Send>(parts: Vec<T>, f: impl Fn(T) + Sync + Send) {
     parts.into_iter().for_each(f);
 }
 
-/// Changes every item.
+/// Calls `f` with every item of a slice.
 pub(crate) fn for_each_mut<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync + Send) {
     for_each(items.chunks_mut(CHUNK).collect(), |chunk| chunk.iter_mut().for_each(&f));
 }
@@ -90,12 +90,12 @@ pub(crate) fn both<A: Send, B: Send>(
     (first(), second())
 }
 
-/// The ranges of at most `size` that make up `0..count`.
+/// Splits `0..count` into ranges of at most `size`.
 pub(crate) fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
 
-/// Cuts a slice at ascending `ends`, of which the last is its length.
+/// Splits a slice at the ascending indices `ends`, the last of which is the length of the slice.
 pub(crate) fn split_mut<T>(
     mut slice: &mut [T],
     ends: impl IntoIterator<Item = usize>,

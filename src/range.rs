@@ -1,25 +1,25 @@
-//! A number that is out of its range, in words that every parameter shares.
+//! The error for a number that is out of range, shared by all parameters.
 
 /// A parameter is out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{parameter}` is {}; it must be {range}", self.value())]
 pub struct RangeError {
-    /// The key of a scene file.
+    /// The name of the parameter, which is its key in a scene file.
     pub parameter: &'static str,
-    /// As given.
+    /// The value as given.
     pub value: f64,
-    /// What it must be.
+    /// The valid range, in words that follow "it must be".
     pub range: &'static str,
 }
 
 impl RangeError {
-    /// The number as people write it: a whole number has no point.
+    /// The value in decimal; whole numbers are written without a decimal point.
     #[must_use]
     pub fn value(&self) -> String {
         format!("{:?}", self.value).trim_end_matches(".0").to_owned()
     }
 
-    /// The number, if it is at least `low` and at most `high`; NaN is not.
+    /// Returns the value if it is at least `low` and at most `high`. NaN is always out of range.
     pub(crate) fn unless_within(
         parameter: &'static str,
         value: f64,

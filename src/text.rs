@@ -1,6 +1,6 @@
-//! Fitting foreign text into a one-line message.
+//! Fits text from files into one-line messages.
 
-/// The text on one line, whatever white space it has; control characters are escaped.
+/// The text on one line: runs of white space become one space, and control characters are escaped.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     let mut line = String::new();
@@ -14,7 +14,7 @@ pub fn one_line(text: &str) -> String {
     line
 }
 
-/// The text, cut off where it becomes too long for a message.
+/// The text, shortened to 40 characters and an ellipsis if it is longer.
 #[cfg(any(feature = "scene-file", feature = "xyz", feature = "npy", feature = "run-file"))]
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;

@@ -14,7 +14,7 @@ pub enum YAxis {
 }
 
 impl YAxis {
-    /// The name in files.
+    /// The name of this direction in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ pub struct Film {
     y_axis: YAxis,
 }
 
-/// Why a size is no film.
+/// Why a width and height do not make a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {
@@ -55,7 +55,7 @@ pub enum FilmError {
 }
 
 impl Default for Film {
-    /// 800 by 600, y up.
+    /// A film of 800 by 600 pixels with y up.
     fn default() -> Self {
         Self { width: 800, height: 600, y_axis: YAxis::Up }
     }
@@ -79,7 +79,7 @@ impl Film {
         Ok(Self { width, height, y_axis: YAxis::Up })
     }
 
-    /// The same film with another direction of y.
+    /// The same film with `y_axis` as its direction of y.
     #[must_use]
     pub fn with_y_axis(self, y_axis: YAxis) -> Self {
         Self { y_axis, ..self }
@@ -103,13 +103,13 @@ impl Film {
         self.y_axis
     }
 
-    /// Width times height.
+    /// The number of pixels: width times height.
     #[must_use]
     pub fn pixel_count(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Width over height.
+    /// The aspect ratio: width over height.
     #[must_use]
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)

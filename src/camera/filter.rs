@@ -1,21 +1,21 @@
-//! Pixel filters, and how samples are placed by them.
+//! Pixel filters, and how they place samples.
 //!
-//! Samples are not weighted but placed as densely as the filter is high, and count for one pixel alone: filter
+//! Samples are not weighted. They are placed with the density of the filter, and each counts for one pixel only: filter
 //! importance sampling (M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE Symposium on
-//! Interactive Ray Tracing, 2006). All filters are products of one for each axis. Twin of [`offset`]:
-//! `shaders/camera/filter.wgsl`.
+//! Interactive Ray Tracing, 2006). Every filter is separable: a product of the same function of x and of y. [`offset`]
+//! has a WGSL twin in `shaders/camera/filter.wgsl`.
 
 use std::f64::consts::PI;
 
-/// How far around a pixel's centre samples count for it, and how much. Distances are in pixels, along each axis.
+/// A pixel filter: how much the samples around a pixel's centre count for it. Distances are in pixels, along each axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PixelFilter {
-    /// The pixel itself: the same for all within 0.5.
+    /// The same weight everywhere within 0.5, which is the pixel itself.
     Box,
-    /// A normal distribution with a standard deviation of 0.5, less its value at the radius of 1.5, where it
-    /// ends: the default of pbrt-v4.
+    /// A normal distribution with a standard deviation of 0.5, cut off at a radius of 1.5 and lowered by its value
+    /// there, so that it ends at zero: the default of pbrt-v4.
     Gaussian,
     /// The Blackman-Harris window of four terms (F. J. Harris, "On the Use of Windows for Harmonic Analysis with
     /// the Discrete Fourier Transform", 1978) with a radius of 1.5: the default of Cycles.
@@ -23,17 +23,17 @@ pub enum PixelFilter {
     BlackmanHarris,
 }
 
-/// The parts into which a filter's half is cut for quadrature.
+/// The number of parts into which half of a filter is cut for quadrature.
 const CELLS: usize = 1024;
 
-/// Entries of a table of offsets less one.
+/// One less than the number of entries of an offset table.
 const STEPS: usize = 256;
 
 impl PixelFilter {
-    /// All of them.
+    /// All filters.
     pub const ALL: &'static [Self] = &[Self::Box, Self::Gaussian, Self::BlackmanHarris];
 
-    /// The name in files.
+    /// The name of the filter in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -43,7 +43,7 @@ impl PixelFilter {
         }
     }
 
-    /// The distance in pixels, along an axis, from which on nothing counts.
+    /// The distance in pixels, along an axis, beyond which samples do not count.
     #[must_use]
     pub const fn radius(self) -> f64 {
         match self {
@@ -52,7 +52,7 @@ impl PixelFilter {
         }
     }
 
-    /// How much a sample at a distance in pixels along an axis counts, relative to others.
+    /// The relative weight of a sample at a distance in pixels along an axis; it is not normalized.
     #[must_use]
     pub fn weight(self, distance: f64) -> f64 {
         let radius = self.radius();
@@ -73,18 +73,18 @@ impl PixelFilter {
         }
     }
 
-    /// For [`offset`]: the distance in pixels from the centre, along an axis, to the left of which k/256 of the
-    /// filter lies; from −radius to +radius, and symmetric to the bit.
+    /// The table that [`offset`] interpolates: entry k is the distance in pixels from the centre, along an axis, to the
+    /// left of which k/256 of the filter lies. Entries go from −radius to +radius and are symmetric to the bit.
     #[must_use]
     pub fn offset_table(&self) -> [f32; STEPS + 1] {
         let width = self.radius() / CELLS as f64;
-        // Simpson's rule. A cell's error is of the order of 10⁻¹⁵ of the whole.
+        // Simpson's rule: the error of a cell is of the order of 10⁻¹⁵ of the whole integral.
         let integral = |from: f64, to: f64| {
             let middle = self.weight(0.5 * (from + to));
             (to - from) / 6.0 * (self.weight(from) + 4.0 * middle + self.weight(to))
         };
         let edge = |cell: usize| cell as f64 * width;
-        // Of the filter between the centre and the end of each cell.
+        // The integral of the filter from the centre to the end of each cell.
         let mut total = 0.0;
         let sums: Vec<f64> = (0..CELLS)
             .map(|cell| {
@@ -97,7 +97,7 @@ impl PixelFilter {
             let wanted = total * k as f64 / (STEPS / 2) as f64;
             let cell = sums.partition_point(|sum| *sum < wanted).min(CELLS - 1);
             let before = if cell == 0 { 0.0 } else { sums[cell - 1] };
-            // Halved until f64 resolves no more.
+            // Bisection until f64 resolves no more.
             let (mut low, mut high) = (edge(cell), edge(cell + 1));
             for _ in 0..50 {
                 let middle = 0.5 * (low + high);
@@ -115,12 +115,12 @@ impl PixelFilter {
     }
 }
 
-/// A sample's distance in pixels from its pixel's centre, along an axis: the inverse of the filter's cumulative
-/// distribution, for `u`/2³².
+/// The distance in pixels from a pixel's centre, along an axis, at which a sample lies: the inverse of the filter's
+/// cumulative distribution at `u`/2³².
 ///
-/// Between entries of the table it is interpolated, of `u` in steps of 2⁻²⁴. So the filter that samples follow is
-/// piecewise constant: 256 pieces have 1/256 each, as those of the true one. Its cumulative distribution is off
-/// by less than 1/512, and by as much only in the tails, where pieces are long.
+/// Between entries, the table is interpolated linearly, with `u` in steps of 2⁻²⁴. The filter that samples follow is
+/// therefore piecewise constant: each of 256 pieces has 1/256 of the weight, as with the exact filter. The cumulative
+/// distribution is off by less than 1/512, and by that much only in the tails, where pieces are long.
 #[must_use]
 pub fn offset(table: &[f32; STEPS + 1], u: u32) -> f64 {
     let index = (u >> 24) as usize;
@@ -133,8 +133,8 @@ pub fn offset(table: &[f32; STEPS + 1], u: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// The part of a filter to the left of x, by the closed form, and of Gauss's by an alternating series of its
-    /// own: ∫ exp(−2t²) = ∑ (−2)ⁿ x²ⁿ⁺¹/(n! (2n + 1)).
+    /// The part of a filter to the left of x. For the Gaussian by an alternating series, ∫ exp(−2t²) = ∑ (−2)ⁿ
+    /// x²ⁿ⁺¹/(n! (2n + 1)); for the others by the closed form.
     fn cumulative(filter: PixelFilter, x: f64) -> f64 {
         let radius = filter.radius();
         let from_center = |x: f64| match filter {
@@ -151,7 +151,7 @@ mod tests {
             }
             PixelFilter::BlackmanHarris => {
                 let angle = PI * x / radius;
-                // Odd cosines have changed sign, because angles count from the centre.
+                // Cosines of odd multiples have the opposite sign, because angles are measured from the centre here.
                 let sines = 0.48829 * angle.sin()
                     + 0.14128 / 2.0 * (2.0 * angle).sin()
                     + 0.01168 / 3.0 * (3.0 * angle).sin();
@@ -178,7 +178,8 @@ mod tests {
         }
     }
 
-    /// Entries are as exact as f32: what the distribution gains over half of an entry's last place.
+    /// Entries are as exact as f32 allows: the bound is the change of the distribution over half a unit in the last
+    /// place.
     #[test]
     fn tables_invert_the_distribution() {
         for &filter in PixelFilter::ALL {
@@ -192,7 +193,7 @@ mod tests {
         }
     }
 
-    /// The slope of that, from its difference around the centre.
+    /// The density of the filter at x: its weight, scaled by the slope of [`cumulative`] at the centre.
     fn density(filter: PixelFilter, x: f64) -> f64 {
         let highest = (cumulative(filter, 1e-4) - cumulative(filter, -1e-4)) / 2e-4;
         filter.weight(x) / filter.weight(0.0) * highest
@@ -210,15 +211,15 @@ mod tests {
         }
     }
 
-    /// Where a piece has h in length and a filter's density rises or falls from a to b, the distribution is off by
-    /// h |a − b|/4 at most: as if it jumped half-way.
+    /// Where the density of a filter rises or falls from a to b over a piece of length h, the distribution is off by at
+    /// most h |a − b|/4, which is the error if the density jumped half-way.
     #[test]
     fn samples_follow_the_filter() {
         for &filter in PixelFilter::ALL {
             let table = filter.offset_table();
             let mut largest = 0.0_f64;
             for i in 0..1 << 16 {
-                // In the middle of its share.
+                // The middle of the i-th of 2¹⁶ equal parts.
                 let u = (i << 16) + (1 << 15);
                 let piece = (u >> 24) as usize;
                 let [a, b] = [table[piece], table[piece + 1]].map(f64::from);

@@ -1,4 +1,4 @@
-//! The camera whose picture is a disk: the distance from the middle is the angle from the view.
+//! The fisheye camera: its picture is a disk, and the distance from the middle is the angle from the direction of view.
 
 use std::f64::consts::TAU;
 
@@ -15,24 +15,25 @@ use crate::geometry::ray::Ray;
 
 /// An equidistant fisheye camera.
 ///
-/// The picture is the largest disk on the film: its diameter is the film's shorter side. A location at the part r of
-/// its radius has a ray at the angle r·angle/2 from the view, towards the side on which it lies. Outside of the disk
-/// there are no rays.
+/// The picture is the largest disk that fits on the film: its diameter is the shorter side of the film. A location at r
+/// times the radius of the disk has a ray at the angle r·angle/2 from the direction of view, tilted towards that
+/// location. Outside the disk there are no rays.
 ///
-/// It is for the middle of things: f32 no longer tells where a ray meets a scene from beyond some ten times its size.
+/// The camera is meant to stand inside the scene: from farther away than about ten times the size of the scene, f32 no
+/// longer resolves where a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FisheyeCamera {
     pose: Pose,
     half_angle: f64,
-    /// Of the film's half sides, in radii of the disk.
+    /// Half width and half height of the film, as multiples of the radius of the disk.
     scale: DVec2,
 }
 
 impl FisheyeCamera {
-    /// The whole angle where none is given: 180 degrees.
+    /// The angle across the whole disk if none is given: 180 degrees.
     pub const DEFAULT_ANGLE_RADIANS: f64 = std::f64::consts::PI;
 
-    /// A camera with a whole angle, on a film of the given aspect ratio (width over height).
+    /// A camera whose disk spans `angle_radians`, on a film of the given aspect ratio (width over height).
     ///
     /// # Errors
     /// If the angle is not greater than 0 and at most 2π, or the aspect ratio is not greater than zero.
@@ -52,7 +53,7 @@ impl Camera for FisheyeCamera {
         CameraKind::Fisheye
     }
 
-    /// Outside of the disk, that of its edge.
+    /// Outside the disk, this is the ray at the nearest point of its edge.
     fn ray_in_world(&self, location: DVec2) -> Ray {
         let basis = self.pose.basis();
         let spot = location * self.scale;
@@ -72,13 +73,14 @@ impl Camera for FisheyeCamera {
         let across = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
         let ahead = -toward.dot(basis.w());
         let r = across.length().atan2(ahead) / self.half_angle;
-        // Exactly behind, every side is as right as any other; at the eye there is no direction.
-        let is_told = ahead > 0.0 || across != DVec2::ZERO;
-        (is_told && r <= 1.0).then(|| across.normalize_or_zero() * r / self.scale)
+        // Exactly behind the camera the direction across the view is undefined; at the eye there is no direction at
+        // all.
+        let is_defined = ahead > 0.0 || across != DVec2::ZERO;
+        (is_defined && r <= 1.0).then(|| across.normalize_or_zero() * r / self.scale)
     }
 
-    /// `right`, `up` and `forward` are unit vectors. The numbers are the film's half sides in radii of the disk, and
-    /// half of the angle in half turns.
+    /// `right`, `up` and `forward` are unit vectors. The numbers are half the width and half the height of the film as
+    /// multiples of the radius of the disk, and half of `angle` divided by π.
     fn vectors(&self) -> CameraVectors {
         let basis = self.pose.basis();
         CameraVectors {
@@ -96,19 +98,19 @@ impl Camera for FisheyeCamera {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FisheyeParameters {
-    /// Where the camera is; without it, the camera frames the scene.
+    /// Position of the camera; without it, the camera frames the scene.
     #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
-    /// The point it looks at.
+    /// The point at which the camera looks.
     #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of `look_at`.
+    /// The direction in which the camera looks, instead of `look_at`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
-    /// Which way is up.
+    /// The direction that is up in the picture.
     #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
-    /// The whole angle that the disk spans, in degrees.
+    /// The angle across the whole disk, in degrees.
     pub angle: Option<f64>,
 }
 
@@ -121,7 +123,8 @@ impl Default for FisheyeParameters {
 
 #[cfg(feature = "scene-file")]
 impl FisheyeParameters {
-    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
+    /// `bounds`.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.

@@ -1,4 +1,4 @@
-//! Placing a camera so that it sees a whole box.
+//! Places a camera so that it sees a whole box.
 
 use glam::{DVec2, DVec3};
 
@@ -8,7 +8,7 @@ use crate::geometry::bounds::Bounds;
 /// How much of the picture's half width and height the box may fill.
 const FILL: f64 = 0.95;
 
-/// The corners of a box, seen from its middle, along u, v and w.
+/// The corners of a box relative to its centre, along u, v and w.
 fn corners_in_camera(bounds: &Bounds, basis: &OrthonormalBasis) -> [DVec3; 8] {
     let center = bounds.center();
     bounds.corners().map(|corner| {
@@ -17,8 +17,8 @@ fn corners_in_camera(bounds: &Bounds, basis: &OrthonormalBasis) -> [DVec3; 8] {
     })
 }
 
-/// How far back from the middle of the box an eye must stand to see all eight corners, if the view
-/// plane at distance 1 reaches to `tangents`.
+/// How far behind the centre of the box an eye must stand to see all eight corners, for a view plane at distance 1
+/// whose half width and half height are `tangents`.
 pub(super) fn perspective_distance(
     bounds: &Bounds,
     basis: &OrthonormalBasis,
@@ -31,8 +31,8 @@ pub(super) fn perspective_distance(
         .fold(0.0, f64::max)
 }
 
-/// The half extent, of the given aspect ratio, that shows the whole box, and how far back from its
-/// middle the view plane must stand so that the box lies in front of it.
+/// The half extent, of the given aspect ratio, that shows the whole box, and how far behind the centre of the box the
+/// view plane must stand so that the box lies in front of it.
 pub(super) fn parallel_extent(
     bounds: &Bounds,
     basis: &OrthonormalBasis,
@@ -46,8 +46,8 @@ pub(super) fn parallel_extent(
     (DVec2::new(half_height * aspect, half_height), 2.0 * half.z)
 }
 
-/// How far back from the middle of the box an eye must stand so that the ball around it lies within a cone of
-/// this half angle; just outside of the ball if the cone is wider than a half space.
+/// How far behind the centre of the box an eye must stand so that the bounding sphere of the box lies within a cone of
+/// this half angle. If the cone is wider than a half space, this is just outside the bounding sphere.
 #[cfg(feature = "scene-file")]
 pub(super) fn round_distance(bounds: &Bounds, half_angle: f64) -> f64 {
     let within = (half_angle * FILL).min(std::f64::consts::FRAC_PI_2);

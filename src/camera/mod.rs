@@ -1,7 +1,7 @@
-//! Cameras: which ray belongs to a relative location?
+//! Cameras: each says which ray belongs to a relative location in the picture.
 //!
-//! Each camera is one Rust file here, one WGSL part `shaders/camera_NAME.wgsl`, and one row of
-//! `camera_table`. `ARCHITECTURE.md` says how to add one.
+//! Each camera is one Rust file here, one WGSL part `shaders/camera_NAME.wgsl`, and one row of `camera_table`.
+//! `ARCHITECTURE.md` explains how to add one.
 
 use glam::{DVec2, DVec3};
 
@@ -46,20 +46,20 @@ pub use thin_lens::ThinLensCamera;
 pub use thin_lens::ThinLensParameters;
 pub use view::View;
 
-/// A camera answers one question: which ray belongs to a relative location in [−1, 1]²?
+/// A camera says which ray belongs to a relative location in [−1, 1]².
 ///
 /// The trait is sealed: a camera consists of its Rust type and its WGSL part, and only this crate can
 /// join the two.
 pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
-    /// Which row of the camera table this is.
+    /// The kind of the camera: its row of the camera table.
     fn kind(&self) -> CameraKind;
 
-    /// The ray that belongs to `location`, in the world; its direction has unit length. Of a camera with a
-    /// lens, that through the lens's centre.
+    /// The ray that belongs to `location`, in world space; its direction has unit length. For a camera with a lens,
+    /// this is the ray through the centre of the lens.
     fn ray_in_world(&self, location: DVec2) -> Ray;
 
-    /// The ray that belongs to `location` through a point of the lens: `lens` lies in the unit square
-    /// [0, 1)², and (½, ½) is the lens's centre. Without a lens, the same ray for all points.
+    /// The ray that belongs to `location` through a point of the lens: `lens` lies in the unit square [0, 1)², and (½,
+    /// ½) is the centre of the lens. A camera without a lens returns the same ray for all points.
     fn ray_through_lens(&self, location: DVec2, lens: DVec2) -> Ray {
         let _ = lens;
         self.ray_in_world(location)
@@ -70,82 +70,83 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether there is a ray at all. Where there is none, the pixel is a miss, and what
-    /// [`Camera::ray_in_world`] says has no meaning.
+    /// Whether the camera has a ray at `location`. If not, the pixel is a miss, and the result of
+    /// [`Camera::ray_in_world`] has no meaning.
     fn sees(&self, location: DVec2) -> bool {
         let _ = location;
         true
     }
 
-    /// The relative location of a point in the world, perhaps outside [−1, 1]²: that of the ray that meets
-    /// it. `None` if no ray does, or none can be told.
+    /// The relative location of the ray that hits a point in world space; it may lie outside [−1, 1]². `None` if no ray
+    /// hits the point, or if the camera cannot tell.
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2>;
 
-    /// What the WGSL part of this camera needs to answer the same question.
+    /// The data from which the WGSL part of this camera computes the same rays.
     fn vectors(&self) -> CameraVectors;
 }
 
-/// Vectors in the world and numbers, in f64, that say everything about a camera once its kind is known.
+/// Vectors in world space and numbers, in f64, that describe a camera completely once its kind is known.
 ///
-/// What `right`, `up`, `forward` and `numbers` mean is for the camera's own two files to agree on.
+/// The exact meaning of `right`, `up`, `forward` and `numbers` is defined by the Rust file and the WGSL part of each
+/// camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CameraVectors {
-    /// Where the camera is.
+    /// Position of the camera.
     pub origin: DVec3,
-    /// From the middle of the view plane to its edge at x = +1.
+    /// Vector from the middle of the view plane to its edge at x = +1.
     pub right: DVec3,
-    /// From the middle of the view plane to its edge at y = +1.
+    /// Vector from the middle of the view plane to its edge at y = +1.
     pub up: DVec3,
-    /// Into the picture.
+    /// Vector into the picture.
     pub forward: DVec3,
-    /// What else there is to say; zeros if nothing.
+    /// Further parameters of the camera; unused ones are zero.
     pub numbers: [f64; 3],
 }
 
 #[cfg(feature = "run-file")]
 impl CameraVectors {
-    /// Vectors as [`Camera::vectors`] gives them, in the order of the fields, checked as far as every camera
-    /// keeps to it.
+    /// Vectors in the order of the fields, as [`Camera::vectors`] returns them, after the checks that hold for cameras
+    /// of every kind.
     pub(crate) fn checked(rows: [DVec3; 5]) -> Result<Self, CameraError> {
         let [origin, right, up, forward, numbers] = rows;
         pose::checked_point("the origin", origin)?;
         for (parameter, value) in
             [("length of right", right), ("length of up", up), ("length of forward", forward)]
         {
-            // They are products of a length in range and a vector of unit length up to rounding.
+            // Each is a length in range times a vector that has unit length up to rounding.
             let length = value.length();
             if !(0.5 * MIN_LENGTH..=2.0 * MAX_LENGTH).contains(&length) {
                 return Err(CameraError::Length { parameter, value: length });
             }
         }
-        // They are lengths, or quotients of two.
+        // The numbers are lengths, or quotients of two lengths.
         const LARGEST: f64 = 2.0 * MAX_LENGTH * MAX_LENGTH;
         let numbers = numbers.to_array();
         match numbers.into_iter().find(|number| !(-LARGEST..=LARGEST).contains(number)) {
             None => Ok(Self { origin, right, up, forward, numbers }),
             Some(value) => {
-                let (parameter, low, high) = ("camera's number", -LARGEST, LARGEST);
+                let (parameter, low, high) = ("number of the camera", -LARGEST, LARGEST);
                 Err(CameraError::Range { parameter, value, low, high })
             }
         }
     }
 }
 
-/// The one list of cameras. A row is: variant, type, name in files and of the WGSL part, and the
-/// type that reads the camera's table in a scene file.
+/// The one list of cameras. A row is: variant, type, name (in scene files and of the WGSL part), and the type that
+/// reads the camera's table in a scene file.
 macro_rules! camera_table {
     ($apply:ident) => {
         $apply! {
-            /// Every ray starts at the eye; things shrink with distance.
+            /// Every ray starts at the eye; objects shrink with distance.
             Pinhole, PinholeCamera, "pinhole", PinholeParameters;
-            /// Every ray has the same direction; things keep their size.
+            /// Every ray has the same direction; objects keep their size.
             Orthographic, OrthographicCamera, "orthographic", OrthographicParameters;
             /// Rays start anywhere on a lens; what is not in focus is blurred.
             ThinLens, ThinLensCamera, "thin-lens", ThinLensParameters;
-            /// Rays go in all directions; longitude and latitude are the picture's two sides.
+            /// Rays go in all directions; longitude runs across the picture and latitude up it.
             Panorama, PanoramaCamera, "panorama", PanoramaParameters;
-            /// Rays fill a cone, perhaps more than half of all directions; the picture is a disk.
+            /// Rays fill a cone, which may be wider than a half space; the picture is a disk.
             Fisheye, FisheyeCamera, "fisheye", FisheyeParameters;
         }
     };
@@ -160,7 +161,7 @@ macro_rules! define_kind {
             $(impl Sealed for super::$camera {})+
         }
 
-        /// The cameras that exist.
+        /// The kinds of camera.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum CameraKind {
@@ -168,10 +169,10 @@ macro_rules! define_kind {
         }
 
         impl CameraKind {
-            /// All of them.
+            /// All kinds of camera.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The name in scene files.
+            /// The name of the camera in scene files.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -184,15 +185,15 @@ macro_rules! define_kind {
 camera_table!(define_kind);
 
 impl CameraKind {
-    /// Whether straight lines are straight in the picture, so that all of a box lies between its corners. The
-    /// rays may then be taken up at any plane along `forward` instead of at the camera; see `Camera` in
+    /// Whether straight lines stay straight in the picture, so that a box lies between the images of its corners. The
+    /// rays of such a camera may start on any plane along `forward` instead of at the camera; see `Camera` in
     /// `shaders/scene/records.wgsl`.
     pub(crate) const fn is_linear(self) -> bool {
         matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)
     }
 }
 
-/// Refuses a length that kernels could not square.
+/// Returns an error for a length whose square is not a normal f32.
 fn checked_length(parameter: &'static str, value: f64) -> Result<f64, CameraError> {
     if (MIN_LENGTH..=MAX_LENGTH).contains(&value) {
         Ok(value)
@@ -212,11 +213,11 @@ fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
     checked_length("aspect ratio", aspect)
 }
 
-/// The separation of two eyes, and the distance at which they converge, which may be infinite.
+/// Checks the separation of two eyes, and the distance at which they converge, which may be infinite.
 fn stereo_lengths(separation: f64, convergence: f64) -> Result<(f64, f64), CameraError> {
-    checked_length("eyes' `separation`", separation)?;
+    checked_length("`separation` of the eyes", separation)?;
     if convergence != f64::INFINITY {
-        checked_length("eyes' `convergence`", convergence)?;
+        checked_length("`convergence` of the eyes", convergence)?;
     }
     Ok((separation, convergence))
 }

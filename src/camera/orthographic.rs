@@ -1,4 +1,4 @@
-//! The parallel camera: every ray has the same direction.
+//! The orthographic camera: every ray has the same direction.
 
 use glam::{DVec2, DVec3};
 
@@ -30,8 +30,8 @@ impl OrthographicCamera {
         Ok(Self { pose, half_extent: checked_half_extent(half_extent)? })
     }
 
-    /// A camera that keeps the orientation of `pose` and moves and widens so that it sees the whole
-    /// box on a film of the given aspect ratio (width over height).
+    /// A camera with the orientation of `pose`, moved and widened so that it sees the whole box on a film of the given
+    /// aspect ratio (width over height).
     ///
     /// # Errors
     /// If the aspect ratio is not greater than zero, or the camera would be too far away or too wide.
@@ -86,13 +86,13 @@ pub struct OrthographicParameters {
     /// The middle of the view plane; without it, the camera frames the scene.
     #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
-    /// The point it looks at.
+    /// The point at which the camera looks.
     #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of `look_at`.
+    /// The direction in which the camera looks, instead of `look_at`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
-    /// Which way is up.
+    /// The direction that is up in the picture.
     #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
     /// Half width and half height of the view plane.
@@ -109,7 +109,8 @@ impl Default for OrthographicParameters {
 
 #[cfg(feature = "scene-file")]
 impl OrthographicParameters {
-    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
+    /// `bounds`.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.

@@ -1,4 +1,4 @@
-//! The camera that sees all directions: longitude across the picture, latitude up it.
+//! The panorama camera: it sees all directions, with longitude across the picture and latitude up it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -13,23 +13,24 @@ use crate::exact;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::ray::Ray;
 
-/// An equirectangular camera: 360 degrees by 180. A film twice as wide as high has square pixels in the middle.
+/// An equirectangular camera: 360 degrees by 180. On a film twice as wide as high, pixels in the middle are square.
 ///
 /// The ray of the relative location (x, y) has the longitude λ = πx, which is 0 forwards along −w and positive to the
 /// right, and the latitude φ = πy/2, which is +π/2 along v: the direction cos φ (sin λ·u − cos λ·w) + sin φ·v.
 ///
-/// For one of two eyes it starts aside of the camera, on a circle in the plane of u and w (omni-directional stereo:
-/// S. Peleg, M. Ben-Ezra and Y. Pritch, *Omnistereo: panoramic stereo imaging*, IEEE PAMI 23, 2001), and is turned
-/// inwards so that the rays of both eyes meet at the distance of convergence. Straight up and down, where there is no
-/// aside, the picture is as twisted as with any such camera.
+/// For one eye of a stereo pair, rays do not start at the camera but on a circle around it in the plane of u and w
+/// (omni-directional stereo: S. Peleg, M. Ben-Ezra and Y. Pritch, *Omnistereo: panoramic stereo imaging*, IEEE PAMI 23,
+/// 2001), and are turned inwards so that the rays of both eyes intersect at the distance of convergence. Straight up
+/// and down the picture is distorted, as with every camera of this type.
 ///
-/// It is for the middle of things: f32 no longer tells where a ray meets a scene from beyond some ten times its size.
+/// The camera is meant to stand inside the scene: from farther away than about ten times the size of the scene, f32 no
+/// longer resolves where a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PanoramaCamera {
     pose: Pose,
-    /// How far to the right of the camera rays start.
+    /// How far to the right of the camera rays start, in scene units; zero for a single eye.
     aside: f64,
-    /// Cosine and sine of how far they are turned to the left.
+    /// Cosine and sine of the angle by which rays are turned to the left.
     inwards: [f64; 2],
 }
 
@@ -40,8 +41,8 @@ impl PanoramaCamera {
         Self { pose, aside: 0.0, inwards: [1.0, 0.0] }
     }
 
-    /// The cameras of the left and of the right eye, whose rays start half of `separation` aside and of which two of
-    /// the same location meet at the distance `convergence`, which may be infinite.
+    /// The cameras of the left and of the right eye. Rays start half of `separation` to the left and to the right; two
+    /// rays of the same location intersect at the distance `convergence`, which may be infinite.
     ///
     /// # Errors
     /// If a length is out of range.
@@ -72,7 +73,7 @@ impl Camera for PanoramaCamera {
         Ray { origin, direction: toward / toward.length() }
     }
 
-    /// Of one eye of two nothing is said.
+    /// Returns `None` for one eye of a stereo pair.
     fn location_of(&self, point_in_world: DVec3) -> Option<DVec2> {
         let basis = self.pose.basis();
         let toward = point_in_world - self.pose.origin();
@@ -82,7 +83,7 @@ impl Camera for PanoramaCamera {
     }
 
     /// `right`, `up` and `forward` are unit vectors. The numbers are how far to the right rays start, and the cosine
-    /// and sine of how far they are turned to the left.
+    /// and the sine of the angle by which they are turned to the left.
     fn vectors(&self) -> CameraVectors {
         let (basis, [straight, left]) = (self.pose.basis(), self.inwards);
         CameraVectors {
@@ -100,7 +101,7 @@ impl Camera for PanoramaCamera {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PanoramaParameters {
-    /// Where the camera is; without it, in the middle of the scene.
+    /// Position of the camera; without it, the middle of the scene.
     #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
     /// The point in the middle of the picture.
@@ -109,10 +110,10 @@ pub struct PanoramaParameters {
     /// The direction in the middle of the picture, instead of `look_at`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
-    /// Which way is up.
+    /// The direction that is up in the picture.
     #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
-    /// Two eyes instead of one.
+    /// Parameters of a stereo pair, if there are two eyes.
     pub stereo: Option<StereoParameters>,
 }
 
@@ -125,7 +126,8 @@ impl Default for PanoramaParameters {
 
 #[cfg(feature = "scene-file")]
 impl PanoramaParameters {
-    /// The camera, for a box in whose middle it stands if it has no place. Of two eyes, that in the middle.
+    /// The camera; without an `eye` it stands in the middle of `bounds`. For two eyes, this is the camera halfway
+    /// between them.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.
@@ -139,7 +141,7 @@ impl PanoramaParameters {
         }
     }
 
-    /// Left and right eye, if there are two.
+    /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
     /// As [`PanoramaParameters::camera`].

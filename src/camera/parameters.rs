@@ -1,4 +1,4 @@
-//! The parameters of whichever camera, as a scene file's table or flags give them.
+//! The parameters of a camera of any kind, as a scene file or command-line flags give them.
 
 use serde::Deserialize;
 
@@ -13,15 +13,15 @@ pub struct CameraParameters(ByKind);
 
 macro_rules! define_camera_parameters {
     ($($(#[$doc:meta])* $variant:ident, $camera:ident, $name:literal, $parameters:ident;)+) => {
-        /// By kind of camera.
+        /// The parameters of each kind of camera.
         #[derive(Clone, Copy, Debug, Deserialize)]
         enum ByKind {
             $(#[serde(rename = $name)] $variant(Table<super::$parameters>),)+
         }
 
         impl CameraParameters {
-            /// The camera (between two eyes, the one in the middle) for a film of this aspect ratio. It frames `bounds`
-            /// if the parameters give it no place.
+            /// The camera for a film of this aspect ratio; for two eyes, the camera halfway between them. It frames
+            /// `bounds` if the parameters give no position.
             ///
             /// # Errors
             /// If a parameter is out of range, or parameters exclude each other.
@@ -42,7 +42,7 @@ macro_rules! define_camera_parameters {
 camera_table!(define_camera_parameters);
 
 impl CameraParameters {
-    /// The cameras of the left and of the right eye, if there are two.
+    /// The cameras of the left and of the right eye; `None` unless the parameters ask for two eyes.
     ///
     /// # Errors
     /// As [`CameraParameters::camera`].

@@ -16,10 +16,9 @@ use crate::geometry::ray::Ray;
 
 /// A pinhole camera.
 ///
-/// The ray of the relative location (x, y) starts at the eye and has the direction
-/// `(x·hx + shift)·u + y·hy·v − distance·w`, where (hx, hy) is the half extent of the view plane, `distance`
-/// is how far the view plane is from the eye, and `shift`, which is zero but for one eye of two, how far its
-/// middle lies aside.
+/// The ray of the relative location (x, y) starts at the eye and has the direction `(x·hx + shift)·u + y·hy·v −
+/// distance·w`, where (hx, hy) is the half extent of the view plane, `distance` is its distance from the eye, and
+/// `shift` is how far its middle lies to the right. `shift` is zero except for one eye of a stereo pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinholeCamera {
     pose: Pose,
@@ -29,7 +28,7 @@ pub struct PinholeCamera {
 }
 
 impl PinholeCamera {
-    /// The vertical field of view where none is given: 30 degrees.
+    /// The vertical field of view if none is given: 30 degrees.
     pub const DEFAULT_FOV_RADIANS: f64 = std::f64::consts::FRAC_PI_6;
 
     /// A camera with every parameter given, in scene units.
@@ -88,12 +87,12 @@ impl PinholeCamera {
         Self::new(pose, 1.0, tangents)
     }
 
-    /// The cameras of the left and of the right eye, `separation` apart along u: both look along −w, with
-    /// view planes that are shifted so that all that lies `convergence` along −w before them is at the same
-    /// place in both pictures, and seems to lie in the screen. An infinite `convergence` shifts nothing.
+    /// The cameras of the left and of the right eye, `separation` apart along u. Both look along −w. Their view planes
+    /// are shifted so that a point at the depth `convergence` along −w has the same location in both pictures, and
+    /// seems to lie in the screen. An infinite `convergence` shifts nothing.
     ///
-    /// Asymmetric frusta, as P. Bourke, *Calculating stereo pairs* (1999), has them: turning the cameras
-    /// inwards instead would also move things up and down.
+    /// These are asymmetric frusta (P. Bourke, *Calculating stereo pairs*, 1999): turning the cameras inwards instead
+    /// would also move objects up and down in the picture.
     ///
     /// # Errors
     /// If a length is out of range.
@@ -114,7 +113,7 @@ impl PinholeCamera {
         self.pose
     }
 
-    /// The same rays, by a view plane at another distance.
+    /// The same rays, described by a view plane at another distance.
     pub(super) fn with_distance(&self, distance: f64) -> Result<Self, CameraError> {
         let scale = distance / self.distance;
         let shift = self.shift * scale;
@@ -155,7 +154,7 @@ impl Camera for PinholeCamera {
         let basis = self.pose.basis();
         let toward = point_in_world - self.pose.origin();
         let depth = -toward.dot(basis.w());
-        // From the eye, or behind it, there is no ray.
+        // No ray hits the eye itself or a point behind it.
         let aside = DVec2::new(toward.dot(basis.u()), toward.dot(basis.v()));
         let in_plane = aside * (self.distance / depth) - DVec2::new(self.shift, 0.0);
         let location = in_plane / self.half_extent;
@@ -179,26 +178,26 @@ impl Camera for PinholeCamera {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PinholeParameters {
-    /// Where the camera is; without it, the camera frames the scene.
+    /// Position of the camera; without it, the camera frames the scene.
     #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
-    /// The point it looks at.
+    /// The point at which the camera looks.
     #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of `look_at`.
+    /// The direction in which the camera looks, instead of `look_at`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
-    /// Which way is up.
+    /// The direction that is up in the picture.
     #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
-    /// How far the view plane is from the eye.
+    /// Distance of the view plane from the eye.
     pub distance: Option<f64>,
     /// Half width and half height of the view plane.
     #[serde(deserialize_with = "exact::optional_array")]
     pub half_extent: Option<[f64; 2]>,
     /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
     pub vertical_fov: Option<f64>,
-    /// Two eyes instead of one.
+    /// Parameters of a stereo pair, if there are two eyes.
     pub stereo: Option<StereoParameters>,
 }
 
@@ -220,8 +219,8 @@ impl Default for PinholeParameters {
 
 #[cfg(feature = "scene-file")]
 impl PinholeParameters {
-    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box. Of two eyes,
-    /// that in the middle.
+    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
+    /// `bounds`. For two eyes, this is the camera halfway between them.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.
@@ -252,7 +251,8 @@ impl PinholeParameters {
             }
         }
     }
-    /// Left and right eye, if there are two.
+
+    /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
     /// As [`PinholeParameters::camera`].

@@ -1,4 +1,4 @@
-//! Where a camera is and how it is turned.
+//! Position and orientation of a camera.
 
 use glam::DVec3;
 
@@ -6,24 +6,24 @@ use crate::geometry::basis::{BasisError, OrthonormalBasis};
 use crate::geometry::bounds::Bounds;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 
-/// Position and orientation of a camera.
+/// The position and the orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     origin: DVec3,
     basis: OrthonormalBasis,
 }
 
-/// Why there is no such camera.
+/// Why parameters do not make a camera.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
-    /// The eye and the point it looks at are one point.
+    /// The eye and the point at which it looks are the same.
     #[error("the eye and the look-at point are both at {:?}; move one of them", eye.to_array())]
     EyeAtTarget {
         /// The point.
         eye: DVec3,
     },
-    /// `up` points along the view, so it does not say which way is up.
+    /// `up` is parallel to the direction of view, so the roll of the camera is undefined.
     #[error("up {:?} is parallel to the direction of view; tilt it", up.to_array())]
     UpParallelToView {
         /// The vector as given.
@@ -63,9 +63,9 @@ pub enum CameraError {
         parameter: &'static str,
         /// The value as given.
         value: f64,
-        /// The least that it may be.
+        /// The smallest valid value.
         low: f64,
-        /// The most.
+        /// The largest valid value.
         high: f64,
     },
     /// A field of view is not an angle between 0 and π.
@@ -86,16 +86,17 @@ pub enum CameraError {
     /// Two parameters that exclude each other were given, or one was left out.
     #[error("{message}")]
     Parameters {
-        /// Which, and what to do.
+        /// Which parameters, and what to do.
         message: &'static str,
     },
 }
 
 impl Pose {
-    /// Where a camera looks that is told nothing: along −z, as molecule viewers do.
+    /// The direction of view if none is given: along −z, as in molecule viewers.
     pub(super) const DEFAULT_DIRECTION: [f64; 3] = [0.0, 0.0, -1.0];
 
-    /// At `eye`, turned towards `look_at`; `up` fixes the roll and need not be perpendicular or unit.
+    /// A camera at `eye` that looks at `look_at`; `up` fixes the roll and need be neither a unit vector nor
+    /// perpendicular.
     ///
     /// # Errors
     /// If the two points coincide, `up` is zero or parallel to the view, or a component is NaN,
@@ -118,7 +119,7 @@ impl Pose {
         Ok(Self { origin: eye, basis })
     }
 
-    /// At `eye`, looking along `direction`.
+    /// A camera at `eye` that looks along `direction`.
     ///
     /// # Errors
     /// As [`Pose::looking_at`], and if `direction` is zero.
@@ -137,27 +138,27 @@ impl Pose {
         Ok(Self { origin: eye, basis })
     }
 
-    /// The same orientation, as far behind the middle of a box.
+    /// The same orientation at `distance` behind the centre of a box.
     pub(super) fn framing(self, bounds: &Bounds, distance: f64) -> Result<Self, CameraError> {
         let origin = bounds.center() + self.basis.w() * distance;
         checked_point("the eye", origin).map_err(|_| CameraError::Framing { bounds: *bounds })?;
         Ok(Self { origin, ..self })
     }
 
-    /// The same orientation elsewhere.
+    /// The same orientation, moved by a vector.
     pub(super) fn moved(self, by: DVec3) -> Result<Self, CameraError> {
         let origin = self.origin + by;
         checked_point("the eye", origin)?;
         Ok(Self { origin, ..self })
     }
 
-    /// Where the camera is.
+    /// Position of the camera.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// u right, v up, w backwards.
+    /// The axes of the camera: u points right, v up and w backwards.
     #[must_use]
     pub fn basis(&self) -> OrthonormalBasis {
         self.basis
@@ -165,7 +166,7 @@ impl Pose {
 }
 
 pub(super) fn checked_point(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
-    // False for NaN as well.
+    // The comparison is false for NaN as well.
     if value.to_array().iter().all(|x| x.abs() <= MAX_LENGTH) {
         Ok(())
     } else {
@@ -173,7 +174,7 @@ pub(super) fn checked_point(parameter: &'static str, value: DVec3) -> Result<(),
     }
 }
 
-/// Refuses a vector that says no direction.
+/// Returns an error for a vector that has no direction.
 fn checked_direction(parameter: &'static str, value: DVec3) -> Result<(), CameraError> {
     if !value.is_finite() {
         return Err(CameraError::Vector { parameter, value });
@@ -195,12 +196,12 @@ pub(super) struct PoseParameters {
     pub(super) up: [f64; 3],
 }
 
-/// What [`PoseParameters`] come to.
+/// The pose that [`PoseParameters`] describe.
 #[cfg(feature = "scene-file")]
 pub(super) enum Placement {
-    /// The camera stands where the file says.
+    /// The file gives position and orientation.
     Fixed(Pose),
-    /// The file gives the orientation; the place follows from what must be seen.
+    /// The file gives the orientation; the position follows from what the camera must see.
     Framed(Pose),
 }
 

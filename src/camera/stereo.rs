@@ -1,12 +1,12 @@
-//! Two eyes, as a scene file gives them.
+//! The parameters of a stereo pair in a scene file.
 
-/// The table `stereo` of a camera's: a picture for each eye.
+/// The table `stereo` of a camera, which asks for one picture for each eye.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StereoParameters {
-    /// How far the eyes are apart, in scene units.
+    /// Distance between the eyes, in scene units.
     pub separation: f64,
-    /// How far away things seem to lie in the screen, in scene units; without it, infinitely far.
+    /// Distance, in scene units, at which objects seem to lie in the screen; infinite if left out.
     #[serde(default = "infinitely_far")]
     pub convergence: f64,
 }

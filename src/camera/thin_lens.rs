@@ -1,4 +1,4 @@
-//! The camera with a lens: what is not in focus is blurred.
+//! The thin-lens camera: what is not in focus is blurred.
 
 use glam::{DVec2, DVec3};
 
@@ -16,22 +16,23 @@ use crate::geometry::ray::Ray;
 
 /// A camera with a thin lens.
 ///
-/// The rays of a relative location start on a disk around the eye, across the view, and all meet in the point in
-/// which the ray of the pinhole camera meets the plane of focus: the plane across the view that is `focus_distance`
-/// away. The lens bends no ray, so the ray through its centre is the pinhole camera's.
+/// The rays of a relative location start on a disk around the eye, perpendicular to the view, and all intersect at one
+/// point: where the pinhole camera's ray hits the plane of focus, which is `focus_distance` away along the view. The
+/// lens does not bend the ray through its centre, so that ray is the pinhole camera's.
 ///
-/// A point at the distance s from the lens, with the plane of focus at f, is blurred to a disk that, in the plane of
-/// focus, has the diameter 2·radius·|s − f|/s, the *circle of confusion* (M. Potmesil and I. Chakravarty, *Synthetic
+/// With the plane of focus at f, a point at the distance s from the lens is blurred to a disk that has the diameter
+/// 2·radius·|s − f|/s in the plane of focus, the *circle of confusion* (M. Potmesil and I. Chakravarty, *Synthetic
 /// image generation with a lens and aperture camera model*, ACM Transactions on Graphics 1, 1982).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLensCamera {
-    /// Its view plane is the plane of focus.
+    /// The pinhole camera through the centre of the lens; its view plane is the plane of focus.
     pinhole: PinholeCamera,
     aperture_radius: f64,
 }
 
 impl ThinLensCamera {
-    /// A pinhole camera with a lens in place of the hole; lengths are in scene units, the distance along the view.
+    /// A pinhole camera with a lens in place of the hole. Lengths are in scene units; the distance is measured along
+    /// the view.
     ///
     /// # Errors
     /// If the distance is not a length greater than zero, or the radius is not a length up to the distance.
@@ -48,7 +49,7 @@ impl ThinLensCamera {
         Ok(Self { pinhole: pinhole.with_distance(focus_distance)?, aperture_radius })
     }
 
-    /// The same, with the plane of focus through a point.
+    /// The same as [`ThinLensCamera::new`], with the plane of focus through a point.
     ///
     /// # Errors
     /// As [`ThinLensCamera::new`], and if the point does not lie before the camera.
@@ -65,8 +66,8 @@ impl ThinLensCamera {
         Self::new(pinhole, aperture_radius, distance)
     }
 
-    /// The radius of the aperture of a lens: N = f/D is its f-number (ISO 517), f its focal length in scene units,
-    /// and D its diameter. The focal length says nothing else here: the field of view is the pinhole camera's.
+    /// The aperture radius of a lens: its f-number (ISO 517) is N = f/D, where f is the focal length in scene units and
+    /// D the diameter. The focal length has no other effect: the field of view is the pinhole camera's.
     ///
     /// # Errors
     /// If the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
@@ -90,7 +91,7 @@ impl Camera for ThinLensCamera {
         let basis = self.pinhole.pose().basis();
         let on_lens = self.aperture_radius * concentric_disk(lens);
         let offset = on_lens.x * basis.u() + on_lens.y * basis.v();
-        // Along the view as long as the distance of the focus, so never zero.
+        // The component along the view is the focus distance, so the vector is never zero.
         let toward = location.x * right + location.y * up + forward - offset;
         Ray { origin: origin + offset, direction: toward / toward.length() }
     }
@@ -103,8 +104,8 @@ impl Camera for ThinLensCamera {
         self.pinhole.location_of(point_in_world)
     }
 
-    /// As of the pinhole camera with the plane of focus as view plane. The first two numbers are the radius of the
-    /// lens in lengths of `right` and of `up`.
+    /// The vectors of the pinhole camera whose view plane is the plane of focus. The first two numbers are the radius
+    /// of the lens as a multiple of the lengths of `right` and of `up`.
     fn vectors(&self) -> CameraVectors {
         let [first, second] = (self.aperture_radius / self.pinhole.half_extent()).to_array();
         CameraVectors { numbers: [first, second, 0.0], ..self.pinhole.vectors() }
@@ -119,16 +120,16 @@ pub struct ThinLensParameters {
     /// The middle of the lens; without it, the camera frames the scene.
     #[serde(deserialize_with = "exact::optional_array")]
     pub eye: Option<[f64; 3]>,
-    /// The point it looks at.
+    /// The point at which the camera looks.
     #[serde(deserialize_with = "exact::optional_array")]
     pub look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of `look_at`.
+    /// The direction in which the camera looks, instead of `look_at`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub direction: Option<[f64; 3]>,
-    /// Which way is up.
+    /// The direction that is up in the picture.
     #[serde(deserialize_with = "exact::array")]
     pub up: [f64; 3],
-    /// How far the view plane is from the eye.
+    /// Distance of the view plane from the eye.
     pub distance: Option<f64>,
     /// Half width and half height of the view plane.
     #[serde(deserialize_with = "exact::optional_array")]
@@ -137,13 +138,13 @@ pub struct ThinLensParameters {
     pub vertical_fov: Option<f64>,
     /// Radius of the lens in scene units.
     pub aperture_radius: Option<f64>,
-    /// Instead of `aperture_radius`, with `focal_length`: focal length over diameter.
+    /// F-number (focal length over diameter), given together with `focal_length` instead of `aperture_radius`.
     pub f_stop: Option<f64>,
-    /// In scene units; it only makes `f_stop` a length.
+    /// Focal length in scene units; it only turns `f_stop` into a length.
     pub focal_length: Option<f64>,
-    /// How far along the view things are sharp; without it, as far as `look_at` or the scene's middle.
+    /// Distance along the view at which objects are sharp; without it, that of `look_at` or of the scene's middle.
     pub focus_distance: Option<f64>,
-    /// A point that is sharp, instead of `focus_distance`.
+    /// A point that is in focus, instead of `focus_distance`.
     #[serde(deserialize_with = "exact::optional_array")]
     pub focus_on: Option<[f64; 3]>,
 }
@@ -172,7 +173,8 @@ impl Default for ThinLensParameters {
 
 #[cfg(feature = "scene-file")]
 impl ThinLensParameters {
-    /// The camera, for a film of the given aspect ratio and, if it has to frame the scene, a box.
+    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
+    /// `bounds`.
     ///
     /// # Errors
     /// If a value is out of range, or values exclude each other.
@@ -202,8 +204,7 @@ impl ThinLensParameters {
                 return Err(CameraError::Parameters { message });
             }
             (None, Some(_), None) | (None, None, Some(_)) => {
-                let message =
-                    "`f_stop` and `focal_length` need each other: together they are a length";
+                let message = "`f_stop` and `focal_length` need each other: together they give the aperture radius";
                 return Err(CameraError::Parameters { message });
             }
         };
@@ -219,7 +220,7 @@ impl ThinLensParameters {
                 ThinLensCamera::focused_on(pinhole, radius, bounds.center())
             }
             (None, None, None, Some(_)) => Err(CameraError::Parameters {
-                message: "a `direction` says not how far things are sharp; give a `focus_distance` or `focus_on`",
+                message: "a `direction` does not say at which distance objects are sharp; give a `focus_distance` or `focus_on`",
             }),
         }
     }

@@ -1,7 +1,7 @@
-//! Made-up scenes for measuring and trying things out: spheres from a kind, a number and a seed.
+//! Generated scenes for measurements and experiments: spheres from a kind, a count and a seed.
 //!
-//! The same three give the same bytes on every machine: whatever is not an integer is computed in f64
-//! with +, −, ·, / and √ alone, which IEEE 754 rounds in one way, and is rounded to f32 at the end.
+//! The same kind, count and seed give the same bytes on every machine: whatever is not an integer is computed in f64
+//! with only +, −, ·, / and √, whose rounding IEEE 754 defines, and is rounded to f32 at the end.
 
 mod sphereflake;
 mod standard;
@@ -14,52 +14,52 @@ use crate::parallel;
 use sphereflake::Sphereflake;
 use uniform::power_of_two;
 
-/// What the spheres look like. All lie in the unit cube [0, 1]³, up to their radii and, of clusters,
-/// their tails.
+/// The arrangement of generated spheres. All centres lie in the unit cube [0, 1]³, except for those in the tails of
+/// clusters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
     /// Centres are uniform in the cube, radii uniform between a half and all of 0.5/∛n.
     Random,
-    /// Touching spheres on a face-centred cubic lattice of m³ cells, with the smallest m for which
-    /// 4·m³ ≥ n. Cells come in the order x, then y, then z; in each, the corner, and the middles of the
-    /// faces across x, y and z; what is beyond n is left out. The seed has no effect.
+    /// Touching spheres on a face-centred cubic lattice of m³ cells, with the smallest m for which 4·m³ ≥ n. Cells are
+    /// ordered by x, then y, then z; each has the corner and the middles of the faces across x, y and z. Spheres beyond
+    /// the n-th are left out. The seed has no effect.
     Lattice,
-    /// n/1000 clusters, at least one, whose centres are uniform in the cube; sphere i belongs to cluster
-    /// i modulo their number. Offsets are nearly normal, the sum of twelve uniform numbers (Irwin–Hall),
-    /// with standard deviations log-uniform in [0.005, 0.08]; radii are log-uniform in [10⁻⁶, 10⁻²].
+    /// n/1000 clusters, at least one, whose centres are uniform in the cube; sphere i belongs to cluster i modulo the
+    /// number of clusters. Offsets are nearly normal, the sum of twelve uniform numbers (Irwin–Hall), with standard
+    /// deviations log-uniform in [0.005, 0.08]; radii are log-uniform in [10⁻⁶, 10⁻²].
     Clusters,
-    /// Haines' sphereflake: nine children of a third of the radius on every sphere, breadth first; what is
-    /// beyond n is left out. The seed has no effect.
+    /// Haines' sphereflake: every sphere has nine children of a third of its radius, in breadth-first order. Spheres
+    /// beyond the n-th are left out. The seed has no effect.
     Sphereflake,
 }
 
-/// Why there are no such spheres.
+/// Why spheres cannot be generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GenerateError {
-    /// More spheres than ids.
-    #[error("{count} spheres are too many; the most are {}", MAX_COUNT)]
+    /// More spheres are requested than a scene can have.
+    #[error("{count} spheres are too many; a scene has at most {}", MAX_COUNT)]
     TooMany {
-        /// How many were asked for.
+        /// The number of spheres requested.
         count: u64,
     },
-    /// There is no memory for so many.
-    #[error("there is no memory for {count} spheres; they need {} bytes", count * BYTES_PER_SPHERE)]
+    /// There is not enough memory.
+    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * BYTES_PER_SPHERE)]
     Memory {
-        /// How many were asked for.
+        /// The number of spheres requested.
         count: u64,
     },
 }
 
-/// The most spheres of a scene.
+/// The largest number of spheres in a scene.
 pub const MAX_COUNT: u64 = u32::MAX as u64 - 1;
 
-/// Bytes that a sphere takes.
+/// The number of bytes of a sphere.
 pub const BYTES_PER_SPHERE: u64 = 16;
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: &'static [Self] =
         &[Self::Random, Self::Lattice, Self::Clusters, Self::Sphereflake];
 
@@ -74,10 +74,10 @@ impl Kind {
         }
     }
 
-    /// `count` spheres (x, y, z, radius). None is no error.
+    /// Generates `count` spheres (x, y, z, radius); a count of zero is not an error.
     ///
     /// # Errors
-    /// If there are more than [`MAX_COUNT`], or more than memory holds.
+    /// If `count` exceeds [`MAX_COUNT`], or if there is not enough memory.
     pub fn spheres(self, count: u64, seed: u64) -> Result<Vec<[f32; 4]>, GenerateError> {
         if count > MAX_COUNT {
             return Err(GenerateError::TooMany { count });
@@ -94,7 +94,7 @@ impl Kind {
             }
             Self::Clusters => {
                 let clusters = (count / 1000).max(1);
-                // Made once, and not for each of their thousand spheres.
+                // Computed once, not for each sphere of a cluster.
                 let clusters: Vec<_> = (0..clusters).map(|c| cluster(&uniform, c)).collect();
                 filled(count, |i| in_cluster(&uniform, i, clusters[i as usize % clusters.len()]))
             }
@@ -123,19 +123,19 @@ fn random(uniform: &Uniform, i: u64, largest: f64) -> [f64; 4] {
 fn lattice(i: u64, cells: u64) -> [f64; 4] {
     let (cell, site) = (i / 4, i % 4);
     let cell = [cell % cells, cell / cells % cells, cell / cells / cells];
-    // The corner, and the middles of the faces across x, y, z, which have two halves.
+    // The corner, and the middles of the faces across x, y and z, which have two coordinates of one half.
     let halves = [[0.0; 3], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]][site as usize];
     let edge = 1.0 / cells as f64;
-    // A quarter of a cell puts the lattice in the middle of the cube.
+    // An offset of a quarter of a cell centres the lattice in the cube.
     let [x, y, z] = [0, 1, 2].map(|axis| (cell[axis] as f64 + halves[axis] + 0.25) * edge);
-    // Neighbours are half a face's diagonal apart.
+    // The distance of neighbours is half the diagonal of a face.
     [x, y, z, edge * std::f64::consts::SQRT_2 / 4.0]
 }
 
-/// Centre and standard deviation.
+/// The centre and the standard deviation of a cluster.
 fn cluster(uniform: &Uniform, cluster: u64) -> [f64; 4] {
-    // Places of its own, beside those of the sphere with its number.
-    let [x, y, z, size] = [16, 17, 18, 19].map(|place| uniform.number(cluster, place));
+    // These slots differ from those of the sphere with the same index.
+    let [x, y, z, size] = [16, 17, 18, 19].map(|slot| uniform.number(cluster, slot));
     // 0.08 is 2⁴ times 0.005.
     [x, y, z, 0.005 * power_of_two(4.0 * size)]
 }
@@ -147,7 +147,7 @@ fn in_cluster(uniform: &Uniform, i: u64, [x, y, z, deviation]: [f64; 4]) -> [f64
     [x + offset(0), y + offset(1), z + offset(2), radius]
 }
 
-/// The smallest m for which 4·m³ ≥ n, and 1 for none.
+/// The smallest m for which 4·m³ ≥ n; 1 for n = 0.
 fn cells_per_side(count: u64) -> u64 {
     let mut cells = 1_u64;
     while 4 * cells * cells * cells < count {
@@ -156,7 +156,7 @@ fn cells_per_side(count: u64) -> u64 {
     cells
 }
 
-/// By Newton's method from above; ∛1 for none.
+/// The cube root of a count by Newton's method, from above; 1 for a count of 0.
 fn cube_root(count: u64) -> f64 {
     let n = count.max(1) as f64;
     let mut root = n;

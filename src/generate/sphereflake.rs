@@ -1,21 +1,21 @@
 //! The sphereflake of Eric Haines' Standard Procedural Databases.
 //!
-//! E. Haines, "A proposal for standard graphics environments", IEEE Computer Graphics and Applications
-//! 7(11), 1987; the directions of the children are those of its program `balls`. Changed: the first sphere
-//! is in the middle of the unit cube and has the radius ¼, so that the whole flake, which reaches twice
-//! its radius, fits into the cube; and spheres come breadth first.
+//! E. Haines, "A proposal for standard graphics environments", IEEE Computer Graphics and Applications 7(11), 1987; the
+//! directions of the children are those of its program `balls`. Two things differ: the first sphere is in the middle of
+//! the unit cube and has the radius ¼, so that the whole flake, which extends to twice its radius, fits into the cube;
+//! and spheres are in breadth-first order.
 
 use glam::DVec3;
 
-/// Every sphere has nine children: sphere i has 9·i + 1 to 9·i + 9.
+/// The number of children of every sphere: sphere i has the children 9·i + 1 to 9·i + 9.
 const CHILDREN: u64 = 9;
 
-/// The radius of a child, in its parent's.
+/// The radius of a child relative to its parent.
 const SCALE: f64 = 1.0 / 3.0;
 
-/// A flake that never ends.
+/// The generator of a sphereflake of any number of spheres.
 pub(super) struct Sphereflake {
-    /// Where the children sit on a parent whose axis is z.
+    /// Directions of the children from a parent whose axis is z.
     directions: [DVec3; CHILDREN as usize],
 }
 
@@ -26,7 +26,7 @@ impl Sphereflake {
 
     /// Centre and radius of the i-th sphere.
     pub(super) fn sphere(&self, i: u64) -> [f64; 4] {
-        // Which child to take, from the last to the first; fewer than 2⁶⁴ spheres are 21 levels.
+        // The child to choose at each level, from the last level to the first; 2⁶⁴ spheres have fewer than 24 levels.
         let mut path = [0_usize; 24];
         let mut depth = 0;
         let mut sphere = i;
@@ -45,29 +45,29 @@ impl Sphereflake {
     }
 }
 
-/// Where a child sits on a parent whose axis is z: three trios, a third of a turn apart.
+/// Direction of a child from a parent whose axis is z: three groups of three, a third of a turn apart.
 fn direction(child: usize) -> DVec3 {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let corner =
         [DVec3::new(half, half, 0.0), DVec3::new(half, 0.0, -half), DVec3::new(0.0, half, -half)]
             [child % 3];
-    // About (1, −1, 0)/√2 by the angle whose sine is 2/√6, after which the trio's middle lies flat.
+    // Rotation about (1, −1, 0)/√2 by the angle whose sine is 2/√6, which makes the middle of the group horizontal.
     let about = DVec3::new(half, -half, 0.0);
     let (sine, cosine) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
     let v =
         corner * cosine + about.cross(corner) * sine + about * (about.dot(corner) * (1.0 - cosine));
-    // About z by 0, 1/3 and 2/3 of a turn.
+    // Rotation about z by 0, 1/3 or 2/3 of a turn.
     let root = 0.75_f64.sqrt();
     let (sine, cosine) = [(0.0, 1.0), (root, -0.5), (-root, -0.5)][child / 3];
     DVec3::new(v.x * cosine - v.y * sine, v.x * sine + v.y * cosine, v.z)
 }
 
-/// A vector after the rotation that takes z to `axis` by the shortest way.
+/// Applies the rotation that takes z to `axis` by the shortest way to a vector.
 fn turned(v: DVec3, axis: DVec3) -> DVec3 {
     if axis.z <= -1.0 {
         return DVec3::new(-v.x, v.y, -v.z);
     }
-    // Rodrigues' formula with the sine in the length of `about`.
+    // Rodrigues' formula; the length of `about` is the sine.
     let about = DVec3::Z.cross(axis);
     v * axis.z + about.cross(v) + about * (about.dot(v) / (1.0 + axis.z))
 }
@@ -88,7 +88,7 @@ mod tests {
         }
     }
 
-    /// Six around the equator, three above it.
+    /// Six children lie around the equator and three above it.
     #[test]
     fn nine_directions() {
         let height = |child| direction(child).z;

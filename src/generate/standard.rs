@@ -1,10 +1,10 @@
-//! The scenes that timings are reported of.
+//! The standard scenes of the benchmarks.
 
 use super::{GenerateError, Kind};
 use crate::camera::film::{Film, FilmError};
 use crate::camera::{CameraError, PinholeCamera, Pose};
 
-/// A scene that is measured, with its view.
+/// A standard scene of the benchmarks, with its view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Standard {
@@ -19,13 +19,13 @@ pub enum Standard {
 }
 
 impl Standard {
-    /// All of them.
+    /// All standard scenes.
     pub const ALL: &'static [Self] = &[Self::R1M, Self::R10M, Self::L1M, Self::C200k];
 
-    /// The seed of all.
+    /// The seed of all standard scenes.
     pub const SEED: u64 = 1;
 
-    /// Its name.
+    /// The name of the scene.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Standard {
         }
     }
 
-    /// How many spheres it has.
+    /// The number of spheres.
     #[must_use]
     pub const fn count(self) -> u64 {
         match self {
@@ -47,7 +47,7 @@ impl Standard {
         }
     }
 
-    /// What its spheres look like.
+    /// The arrangement of the spheres.
     #[must_use]
     pub const fn kind(self) -> Kind {
         match self {
@@ -57,18 +57,18 @@ impl Standard {
         }
     }
 
-    /// Its spheres (x, y, z, radius).
+    /// The spheres (x, y, z, radius).
     ///
     /// # Errors
-    /// If there is no memory for them.
+    /// If there is not enough memory.
     pub fn spheres(self) -> Result<Vec<[f32; 4]>, GenerateError> {
         self.kind().spheres(self.count(), Self::SEED)
     }
 
-    /// Its camera: the view plane is at distance 1.5 and has the half extent (1, 1).
+    /// The camera: its view plane is at distance 1.5 and has the half extent (1, 1).
     ///
     /// # Errors
-    /// None; the values are in range.
+    /// Never, because the values are in range.
     pub fn camera(self) -> Result<PinholeCamera, CameraError> {
         let (eye, look_at) = match self {
             Self::R1M | Self::R10M | Self::C200k => ([0.5, 0.6, -1.2], [0.5, 0.5, 0.5]),
@@ -77,10 +77,10 @@ impl Standard {
         PinholeCamera::new(Pose::looking_at(eye, look_at, [0.0, 1.0, 0.0])?, 1.5, [1.0, 1.0])
     }
 
-    /// Its film: 1024×1024.
+    /// The film: 1024×1024.
     ///
     /// # Errors
-    /// None; the size is in range.
+    /// Never, because the size is in range.
     pub fn film(self) -> Result<Film, FilmError> {
         Film::new(1024, 1024)
     }

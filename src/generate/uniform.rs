@@ -1,17 +1,16 @@
-//! Random numbers that are found by their slot, so that any thread can make any sphere.
+//! Random numbers that are computed from an index and a slot, so that any thread can generate any sphere.
 
 /// The step of `SplitMix64`: 2⁶⁴ divided by the golden ratio.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// How many slots each index has.
+/// The number of slots of each index.
 const SLOTS: u64 = 32;
 
-/// The numbers of `SplitMix64`, not one after the other but by slot: its n-th state is the seed plus n
+/// The random numbers of `SplitMix64`, accessed by slot rather than in sequence: its n-th state is the seed plus n
 /// steps.
 ///
-/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the
-/// constants are those of S. Vigna's splitmix64.c. The seed is mixed once before, so that seeds that are
-/// neighbours have nothing in common.
+/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the constants are
+/// those of S. Vigna's splitmix64.c. The seed is mixed once first, so that neighbouring seeds give unrelated numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Uniform {
     seed: u64,
@@ -22,23 +21,23 @@ impl Uniform {
         Self { seed: mix(seed.wrapping_add(STEP)) }
     }
 
-    /// 64 random bits; `slot` is less than [`SLOTS`].
+    /// 64 random bits; `slot` must be less than [`SLOTS`].
     pub(crate) fn bits(&self, index: u64, slot: u64) -> u64 {
         let n = index.wrapping_mul(SLOTS).wrapping_add(slot).wrapping_add(1);
         mix(self.seed.wrapping_add(n.wrapping_mul(STEP)))
     }
 
-    /// A multiple of 2⁻⁵³ in [0, 1).
+    /// A uniform random number: a multiple of 2⁻⁵³ in [0, 1).
     pub(crate) fn number(&self, index: u64, slot: u64) -> f64 {
         (self.bits(index, slot) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// The sum of twelve uniform numbers of 16 bits less its mean: mean 0, standard deviation 1 (but for
-    /// 2⁻³²), never beyond 6 (Irwin–Hall). Takes three slots.
+    /// The sum of twelve uniform 16-bit numbers minus its mean: mean 0, standard deviation 1 (except for 2⁻³²), and
+    /// never beyond ±6 (Irwin–Hall). It uses three slots from `slot` on.
     pub(super) fn nearly_normal(&self, index: u64, slot: u64) -> f64 {
         let quarters = |bits: u64| (0..4).map(move |k| (bits >> (16 * k)) & 0xffff);
         let sum: u64 = (0..3).flat_map(|k| quarters(self.bits(index, slot + k))).sum();
-        // Twelve times half a step puts the mean at zero.
+        // Twelve half steps move the mean to zero.
         (sum as f64 + 6.0) / f64::from(1 << 16) - 6.0
     }
 }
@@ -50,8 +49,8 @@ fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// 2ˣ for 0 ≤ x < 60, by the exponential series of the fraction: 20 terms leave less than f64 resolves.
-/// `f64::exp2` differs between platforms.
+/// 2ˣ for 0 ≤ x < 60, by the exponential series of the fraction: the error after 20 terms is below the resolution of
+/// f64. `f64::exp2` differs between platforms.
 pub(super) fn power_of_two(x: f64) -> f64 {
     let whole = x.floor();
     let y = (x - whole) * std::f64::consts::LN_2;
@@ -63,7 +62,7 @@ pub(super) fn power_of_two(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The published generator, started at zero, begins with these.
+    /// The first numbers of the published generator with the seed 0.
     #[test]
     fn the_stream_is_that_of_splitmix64() {
         let uniform = Uniform { seed: 0 };

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use crate::geometry::math::unit;
 
-/// Below this sine of the angle between the two vectors, the direction of `u` is mostly rounding.
+/// The smallest sine of the angle between the two vectors; below it, the direction of `u` is mostly rounding error.
 const MIN_SINE: f64 = 1e-9;
 
 /// Three unit vectors at right angles, right-handed: `w = u × v`.
 ///
-/// Of a camera, `u` points right, `v` up and `w` backwards.
+/// For a camera, `u` points right, `v` up and `w` backwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrthonormalBasis {
     u: DVec3,
@@ -17,7 +17,7 @@ pub struct OrthonormalBasis {
     w: DVec3,
 }
 
-/// Why two vectors span no basis.
+/// Why two vectors do not define a basis.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BasisError {
@@ -29,13 +29,13 @@ pub enum BasisError {
         /// The vector as given.
         value: DVec3,
     },
-    /// The named vector has no direction.
+    /// The named vector is zero.
     #[error("{name} is the zero vector, which has no direction")]
     Zero {
         /// Which vector.
         name: &'static str,
     },
-    /// The vectors lie on one line.
+    /// The two vectors are parallel.
     #[error("{a} and {b} are parallel; tilt one of them")]
     Parallel {
         /// The first vector.
@@ -96,19 +96,19 @@ impl OrthonormalBasis {
         Ok(Self { u, v: w.cross(u), w })
     }
 
-    /// Right.
+    /// The first axis; for a camera, it points right.
     #[must_use]
     pub fn u(&self) -> DVec3 {
         self.u
     }
 
-    /// Up.
+    /// The second axis; for a camera, it points up.
     #[must_use]
     pub fn v(&self) -> DVec3 {
         self.v
     }
 
-    /// Backwards, against the direction of view.
+    /// The third axis; for a camera, it points backwards, against the direction of view.
     #[must_use]
     pub fn w(&self) -> DVec3 {
         self.w

@@ -10,7 +10,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of a sphere.
+    /// The bounding box of a sphere.
     #[must_use]
     pub fn of_sphere(center: DVec3, radius: f64) -> Self {
         Self { min: center - radius, max: center + radius }
@@ -21,7 +21,7 @@ impl Bounds {
         Self { min, max }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both boxes.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
@@ -39,7 +39,7 @@ impl Bounds {
         self.max
     }
 
-    /// The middle.
+    /// The centre.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         self.min * 0.5 + self.max * 0.5

@@ -1,14 +1,14 @@
-//! From the unit square to the unit disk.
+//! A map from the unit square to the unit disk.
 
 use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec2;
 
-/// The point of the unit disk that belongs to a point of the unit square [0, 1)², by the concentric map, which
-/// keeps areas in proportion and neighbours together; (½, ½) is the centre. Twin of `shaders/math/disk.wgsl`.
+/// Maps a point of the unit square [0, 1)² to a point of the unit disk by the concentric map, which preserves relative
+/// areas and keeps neighbours together; (½, ½) is mapped to the centre. The WGSL twin is `shaders/math/disk.wgsl`.
 ///
-/// P. Shirley and K. Chiu, *A low distortion map between disk and square*, Journal of Graphics Tools 2 (1997),
-/// with the signed radius of D. Cline that needs two cases instead of four.
+/// P. Shirley and K. Chiu, *A low distortion map between disk and square*, Journal of Graphics Tools 2 (1997), with D.
+/// Cline's signed radius, which needs two cases instead of four.
 pub(crate) fn concentric_disk(square: DVec2) -> DVec2 {
     let spot = 2.0 * square - 1.0;
     if spot == DVec2::ZERO {
@@ -43,7 +43,8 @@ mod tests {
         near([0.75, 0.25], [0.5 * half, -0.5 * half]);
     }
 
-    /// Of equal squares equal parts of the disk: a grid of points has the moments of a uniform disk.
+    /// Equal areas of the square are mapped to equal areas of the disk: a grid of points has the moments of a uniform
+    /// disk.
     #[test]
     fn areas_keep_their_proportions() {
         let side = 1000;

@@ -1,17 +1,16 @@
-//! Small helpers on glam, and the range of lengths that the kernels can square without overflow.
+//! Small vector helpers, and the range of lengths that the kernels can square without overflow.
 
 use glam::DVec3;
 
 /// The largest magnitude, in scene units, of any coordinate, radius or camera parameter: 2⁵⁶.
 ///
-/// Kernels compute in f32 and must never meet an infinity. With every length at most 2⁵⁶, the vector
-/// between a ray's origin and a centre is at most 2⁵⁹ long in each component, so a squared distance
-/// stays below 2¹²⁰; f32 reaches 2¹²⁸.
+/// Kernels compute in f32 and must never produce an infinity. With every length at most 2⁵⁶, the vector between a ray's
+/// origin and a centre is at most 2⁵⁹ long in each component, so a squared distance stays below 2¹²⁰; f32 reaches 2¹²⁸.
 pub const MAX_LENGTH: f64 = (1_u64 << 56) as f64;
 
 /// The smallest radius or view-plane length, in scene units: 2⁻⁵⁶.
 ///
-/// Its square, 2⁻¹¹², is still a normal f32; subnormal numbers may be flushed to zero by a device.
+/// Its square, 2⁻¹¹², is still a normal f32; a device may flush subnormal numbers to zero.
 pub const MIN_LENGTH: f64 = 1.0 / MAX_LENGTH;
 
 /// The vector of length one along `v`, or `None` if `v` is zero or not finite.
@@ -22,16 +21,16 @@ pub(crate) fn unit(v: DVec3) -> Option<DVec3> {
     if !v.is_finite() || largest == 0.0 {
         return None;
     }
-    // A division, not a product with 1/largest, which is infinite for a subnormal `largest`.
+    // A division, because 1/largest is infinite for a subnormal `largest`.
     (v / largest).try_normalize()
 }
 
-/// The same for numbers that are equal: zeros lose their signs.
+/// The bits of a number, with −0 turned into +0, so that equal numbers have equal bits.
 pub(crate) fn equal_bits(x: f32) -> u32 {
     (x + 0.0).to_bits()
 }
 
-/// The same numbers in f64.
+/// Converts a vector to f64.
 pub(crate) fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }

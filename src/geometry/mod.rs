@@ -1,4 +1,4 @@
-//! Vectors, rays, bases and boxes: what everything else is computed with.
+//! Vectors, rays, bases and boxes.
 
 pub mod basis;
 pub mod bounds;

@@ -1,13 +1,13 @@
-//! A ray and where it hit.
+//! Rays and their hits.
 
 use glam::DVec3;
 
-/// A half-line, in f64.
+/// A ray: a half-line, in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Where the ray starts.
     pub origin: DVec3,
-    /// Which way it goes; unit length.
+    /// The direction; unit length.
     pub direction: DVec3,
 }
 
@@ -26,7 +26,7 @@ pub struct Hit {
     pub t: f64,
     /// Index of the sphere, in input order.
     pub id: u32,
-    /// Unit normal of the sphere at the hit, pointing away from its centre (also when the ray meets
-    /// the far side from inside).
+    /// Unit normal of the sphere at the hit. It points away from the centre, also when the ray starts inside and hits
+    /// the far side.
     pub normal: DVec3,
 }

@@ -1,4 +1,4 @@
-//! Linear-light colour, and sRGB at the edges.
+//! Colours in linear light, and their conversion from and to sRGB.
 
 use std::sync::LazyLock;
 
@@ -29,10 +29,10 @@ impl LinearRgb {
         }
     }
 
-    /// The same of each, clamped to what a colour may be.
+    /// A gray of the given value. NaN, infinities and negative values give black.
     #[must_use]
     pub(crate) const fn gray(value: f32) -> Self {
-        // False for NaN as well.
+        // The comparison is false for NaN as well.
         if value >= 0.0 && value < f32::INFINITY { Self([value; 3]) } else { Self::BLACK }
     }
 
@@ -42,7 +42,7 @@ impl LinearRgb {
         Self(bytes.map(|byte| DECODED[usize::from(byte)]))
     }
 
-    /// Red, green and blue.
+    /// The components red, green and blue.
     #[must_use]
     pub const fn to_array(self) -> [f32; 3] {
         self.0
@@ -58,7 +58,7 @@ impl LinearRgb {
     /// rounded to eight bits of sRGB.
     ///
     /// # Errors
-    /// If the text is no colour, or a colour that is not opaque.
+    /// If the text is not a valid colour, or the colour is not opaque.
     #[cfg(feature = "scene-file")]
     pub fn from_css(text: &str) -> Result<Self, ColorError> {
         let color = csscolorparser::parse(text)
@@ -71,7 +71,7 @@ impl LinearRgb {
     }
 }
 
-/// Why there is no such colour.
+/// Why a value or a text is not a valid colour.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorError {
@@ -81,14 +81,16 @@ pub enum ColorError {
         /// The components as given.
         rgb: [f32; 3],
     },
-    /// Neither a CSS name nor hex digits nor a CSS function.
-    #[error("`{text}` is no color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]")]
+    /// The text is neither a CSS name nor hex digits nor a CSS function.
+    #[error(
+        "`{text}` is not a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]"
+    )]
     Unknown {
         /// The text as given.
         text: String,
     },
-    /// Has an alpha below 1.
-    #[error("`{text}` is not opaque; colors here have no alpha")]
+    /// The colour has an alpha below 1.
+    #[error("`{text}` is not opaque; a color here cannot have alpha")]
     NotOpaque {
         /// The text as given.
         text: String,
@@ -98,35 +100,34 @@ pub enum ColorError {
 /// What red, green and blue count in how bright linear light looks (ITU-R BT.709).
 pub(crate) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// How bright linear light looks.
+/// The relative luminance of linear light (ITU-R BT.709).
 pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
-/// Encodes linear light as 8-bit sRGB, rounded to the nearest byte; what lies outside [0, 1] is clamped,
-/// NaN becomes 0.
+/// Encodes linear light as 8-bit sRGB, rounded to the nearest byte. Values outside [0, 1] are clamped; NaN becomes 0.
 ///
-/// The exact inverse of [`LinearRgb::from_srgb8`] on all bytes.
+/// This is the exact inverse of [`LinearRgb::from_srgb8`] for every byte.
 #[must_use]
 pub fn to_srgb8(linear: [f32; 3]) -> [u8; 3] {
     linear.map(encode_srgb8)
 }
 
-/// As [`to_srgb8`], with 16 bits: rounded to the nearest of 65536 steps.
+/// Encodes linear light as 16-bit sRGB, rounded to the nearest of 65536 steps and clamped like [`to_srgb8`].
 #[must_use]
 pub fn to_srgb16(linear: [f32; 3]) -> [u16; 3] {
     linear.map(|linear| {
-        // The conversion makes 0 of NaN.
+        // The conversion to u16 turns NaN into 0.
         (encode_srgb(f64::from(linear).clamp(0.0, 1.0)) * 65535.0).round() as u16
     })
 }
 
-/// IEC 61966-2-1, the inverse of [`decode_srgb`].
+/// The transfer function of IEC 61966-2-1 from linear light to sRGB, the inverse of [`decode_srgb`].
 fn encode_srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// IEC 61966-2-1, electro-optical transfer function.
+/// The transfer function of IEC 61966-2-1 from sRGB to linear light.
 fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
@@ -135,13 +136,13 @@ fn decode_srgb(encoded: f64) -> f64 {
 static DECODED: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode_srgb(byte as f64 / 255.0) as f32));
 
-/// The linear values half-way, in sRGB, between neighbouring bytes. Looking a value up in them is quicker
-/// than the inverse transfer function, and rounds to the nearest byte as well.
+/// The linear values half-way, in sRGB, between neighbouring bytes. A search in this table is faster than the transfer
+/// function, and rounds to the nearest byte too.
 static BETWEEN_BYTES: LazyLock<[f32; 255]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode_srgb((byte as f64 + 0.5) / 255.0) as f32));
 
 fn encode_srgb8(linear: f32) -> u8 {
-    // None of them is at most NaN, which so becomes 0.
+    // No entry is at most NaN, so NaN becomes 0.
     BETWEEN_BYTES.partition_point(|between| *between <= linear) as u8
 }
 
@@ -156,7 +157,7 @@ mod tests {
         }
     }
 
-    /// The table against the formula of IEC 61966-2-1.
+    /// Compares the table with the formula of IEC 61966-2-1.
     #[test]
     fn encoding_rounds_to_the_nearest_byte() {
         for i in 0..=100_000 {
@@ -167,7 +168,7 @@ mod tests {
         }
     }
 
-    /// What is flat and 8 bits comes out as the same colour with 16: a byte twice.
+    /// A flat 8-bit colour is the same colour in 16 bits, which is its byte twice.
     #[test]
     fn sixteen_bits_of_a_byte_are_that_byte_twice() {
         for byte in 0..=255 {
@@ -180,7 +181,7 @@ mod tests {
     #[test]
     fn known_values_of_the_transfer_function() {
         assert_eq!(LinearRgb::from_srgb8([0, 255, 0]), LinearRgb([0.0, 1.0, 0.0]));
-        // 188 is the byte nearest to half the light.
+        // 188 is the byte nearest to half of the light.
         assert_eq!(to_srgb8([0.5; 3]), [188; 3]);
     }
 

@@ -1,49 +1,49 @@
-//! What a denoiser sees of a picture: light without colour, and shapes. Both denoisers, on the GPU and on the CPU,
-//! start from it.
+//! The input of a denoiser, on the GPU and on the CPU: light divided by surface colour, and the shapes that guide the
+//! filter.
 
 use super::color::LUMINANCE;
 use crate::image::{Image, Layer, LayerSet};
 
-/// How many passes a filter has; each reaches twice as far as the one before.
+/// The number of passes of the filter; each reaches twice as far as the one before.
 pub(crate) const PASSES: u32 = 5;
 
-/// A picture lacks a layer without which it cannot be denoised.
+/// A picture lacks a layer that denoising needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a picture is denoised by its layers normal, depth, albedo and variance; it has no layer `{missing}`"
+    "denoising needs the layers normal, depth, albedo and variance; the picture has no layer `{missing}`"
 )]
 pub struct MissingGuide {
-    /// The layer.
+    /// The missing layer.
     pub missing: Layer,
 }
 
-/// The layers by which a picture is denoised, beside its colour.
+/// The layers that guide the denoiser, and the colour that it filters.
 pub const GUIDES: LayerSet = LayerSet::COLOR
     .with(Layer::Normal)
     .with(Layer::Depth)
     .with(Layer::Albedo)
     .with(Layer::Variance);
 
-/// What is filtered, and what it is guided by; each row by row.
+/// What is filtered and what guides the filter, row by row from the top.
 #[derive(Clone, Debug)]
 pub(crate) struct Guided {
-    /// Colour over albedo, and the variance of its luminance.
+    /// Colour divided by albedo, and the variance of its luminance.
     pub(crate) lights: Vec<[f32; 4]>,
-    /// Normal, zero for a miss, and depth.
+    /// Normal (zero for a miss) and depth (zero for a miss).
     pub(crate) shapes: Vec<[f32; 4]>,
-    /// What light is multiplied by.
+    /// The albedo by which filtered light is multiplied.
     pub(crate) albedos: Vec<[f32; 4]>,
 }
 
 impl Guided {
-    /// Of a picture that has been lit.
+    /// Collects the layers of a picture that has been rendered with light.
     pub(crate) fn of(image: &Image) -> Result<Self, MissingGuide> {
         let missing = |missing| move || MissingGuide { missing };
         let normals = image.normal().ok_or_else(missing(Layer::Normal))?;
         let depths = image.depth().ok_or_else(missing(Layer::Depth))?;
         let albedos = image.albedo().ok_or_else(missing(Layer::Albedo))?;
         let variances = image.variance().ok_or_else(missing(Layer::Variance))?;
-        // Where there is no colour to divide by, light is what is seen.
+        // A channel without surface colour is not divided: 1 takes the place of its albedo.
         let albedos: Vec<[f32; 4]> = albedos
             .iter()
             .map(|rgb| {
@@ -70,7 +70,7 @@ impl Guided {
         })
     }
 
-    /// The picture's colour, of filtered light.
+    /// The colours of the picture: filtered light multiplied by albedo.
     pub(crate) fn colors(&self, lights: impl Iterator<Item = [f32; 4]>) -> Vec<[f32; 3]> {
         lights
             .zip(&self.albedos)

@@ -1,23 +1,23 @@
-//! How a picture is written: what is asked of writers beside the picture itself.
+//! How writers encode a picture: bits, transparency, exposure and tone curve.
 
 use crate::image::tone::ToneCurve;
 
-/// How many bits a sample of a PNG has.
+/// The number of bits of each sample of a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Bits {
-    /// 256 steps.
+    /// 256 steps for each channel.
     #[default]
     Eight,
-    /// 65536 steps.
+    /// 65536 steps for each channel.
     Sixteen,
 }
 
 impl Bits {
-    /// From the number.
+    /// The variant for a number of bits.
     ///
     /// # Errors
-    /// If it is neither 8 nor 16.
+    /// If `bits` is neither 8 nor 16.
     pub fn new(bits: u32) -> Result<Self, EncodingError> {
         match bits {
             8 => Ok(Self::Eight),
@@ -27,7 +27,7 @@ impl Bits {
     }
 }
 
-/// How a picture is written. Exposure, tone curve and bits concern PNG; EXR keeps the light as it is.
+/// How a picture is encoded in a file. Exposure, tone curve and bits apply to PNG; EXR stores the light as it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Encoding {
     bits: Bits,
@@ -36,7 +36,7 @@ pub struct Encoding {
     tone: ToneCurve,
 }
 
-/// Why there is no such encoding.
+/// Why parameters do not make an encoding.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodingError {
@@ -47,43 +47,42 @@ pub enum EncodingError {
         Encoding::MAX_EXPOSURE
     )]
     Exposure {
-        /// Stops as given.
+        /// The exposure as given, in stops.
         stops: f32,
     },
-    /// No PNG has so many bits.
+    /// The number of bits is neither 8 nor 16.
     #[error("`bits` is {bits}; it must be 8 or 16")]
     Bits {
-        /// Bits as given.
+        /// The number of bits as given.
         bits: u32,
     },
 }
 
 impl Encoding {
-    /// The most stops by which a picture is made brighter or darker.
+    /// The largest number of stops by which a picture may be made brighter or darker.
     pub const MAX_EXPOSURE: f32 = 32.0;
 
-    /// The same with other bits for each sample.
+    /// The same encoding with another number of bits for each sample.
     #[must_use]
     pub fn with_bits(self, bits: Bits) -> Self {
         Self { bits, ..self }
     }
 
-    /// The same, transparent where no sphere is or not.
+    /// The same encoding, with or without an alpha channel in place of the background.
     ///
-    /// Render a transparent picture with
-    /// [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent), so that what no sphere covers adds
-    /// nothing and the layer of colour is premultiplied by that of alpha, which must be there.
+    /// For a transparent picture, render with [`RenderSettings::is_transparent`](crate::RenderSettings::is_transparent)
+    /// and the layer alpha. The background then adds nothing, and the colour layer is premultiplied by alpha.
     #[must_use]
     pub fn with_transparent(self, transparent: bool) -> Self {
         Self { transparent, ..self }
     }
 
-    /// The same with light multiplied by 2 to the power of `stops`.
+    /// The same encoding with light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
     /// If `stops` is not within ± [`Encoding::MAX_EXPOSURE`].
     pub fn with_exposure(self, stops: f32) -> Result<Self, EncodingError> {
-        // False for NaN as well.
+        // The comparison is false for NaN as well.
         if stops.abs() <= Self::MAX_EXPOSURE {
             Ok(Self { exposure: stops, ..self })
         } else {
@@ -91,13 +90,13 @@ impl Encoding {
         }
     }
 
-    /// The same with another tone curve, which comes after the exposure.
+    /// The same encoding with another tone curve, which is applied after the exposure.
     #[must_use]
     pub fn with_tone(self, tone: ToneCurve) -> Self {
         Self { tone, ..self }
     }
 
-    /// How many bits a sample has.
+    /// The number of bits of each sample.
     #[must_use]
     pub fn bits(&self) -> Bits {
         self.bits
@@ -109,7 +108,7 @@ impl Encoding {
         self.transparent
     }
 
-    /// By how many stops the picture is brighter than the scene.
+    /// The exposure in stops: positive values make the picture brighter.
     #[must_use]
     pub fn exposure(&self) -> f32 {
         self.exposure
@@ -121,8 +120,8 @@ impl Encoding {
         self.tone
     }
 
-    /// Linear light of a display, for linear light of the scene that is not premultiplied: exposed, and by the
-    /// tone curve. What still exceeds 1 is for the transfer function to cut off.
+    /// Converts linear light of the scene, not premultiplied, to linear light of a display: exposure first, then the
+    /// tone curve. Values may still exceed 1; the transfer function clamps them.
     #[must_use]
     pub fn display(&self, linear: [f32; 3]) -> [f32; 3] {
         let gain = self.exposure.exp2();

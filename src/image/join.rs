@@ -1,9 +1,9 @@
-//! Two images in one.
+//! Joining two images side by side.
 
 use super::{Image, ImageTooLarge};
 
 impl Image {
-    /// Two images of the same height and layers in one, all layers alike.
+    /// Joins two images of the same height, with the layers that both have.
     ///
     /// # Errors
     /// If the memory cannot be reserved.
@@ -31,7 +31,7 @@ fn join<T: Copy>(both: &mut Option<Vec<T>>, sides: [&Option<Vec<T>>; 2], widths:
     }
 }
 
-/// Copies rows of the left and of the right into rows of both.
+/// Copies each row of the left image and of the right image into the joined row.
 fn joined<T: Copy>(both: &mut [T], [left, right]: [&[T]; 2], [a, b]: [usize; 2]) {
     let rows = left.chunks(a).zip(right.chunks(b));
     for (both, (left, right)) in both.chunks_mut(a + b).zip(rows) {

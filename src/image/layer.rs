@@ -1,4 +1,4 @@
-//! What a picture may hold beside its colours.
+//! The layers of a picture: its colour, and data about each pixel.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,23 +9,23 @@ use std::str::FromStr;
 pub enum Layer {
     /// Linear colour, three f32. Over a black background it is premultiplied by [`Layer::Alpha`].
     Color,
-    /// How much of the pixel spheres cover, f32 from 0 to 1.
+    /// The fraction of the pixel that spheres cover, f32 from 0 to 1.
     Alpha,
     /// Distance along the ray from its origin in scene units, f32; +∞ for a miss.
     Depth,
-    /// Unit normal in the world, pointing away from the sphere's centre, three f32; zero for a miss.
+    /// Unit normal in world space, pointing away from the sphere's centre, three f32; zero for a miss.
     Normal,
-    /// The point in the world that was hit, in scene units, three f32; zero for a miss, which
-    /// [`Layer::Alpha`] or [`Layer::Id`] tells from a point there.
+    /// The point in world space where the ray hit, in scene units, three f32; zero for a miss. Use [`Layer::Alpha`] or
+    /// [`Layer::Id`] to tell a miss from a hit at the origin.
     Position,
-    /// The surface's own linear colour, without light, three f32; zero for a miss.
+    /// Surface colour in linear light, without lighting, three f32; zero for a miss.
     Albedo,
     /// Index of the sphere in input order, u32; [`NO_ID`](super::NO_ID) for a miss.
     Id,
-    /// How many samples the pixel has, u32.
+    /// Number of samples of the pixel, u32.
     Samples,
-    /// Estimated variance of the pixel's mean luminance, f32; zero where there is one sample, of which none can
-    /// be estimated.
+    /// Estimated variance of the pixel's mean luminance, f32; zero for a single sample, from which it cannot be
+    /// estimated.
     Variance,
 }
 
@@ -59,7 +59,7 @@ impl Layer {
         }
     }
 
-    /// How many bytes a pixel of this layer takes.
+    /// The number of bytes for each pixel of this layer.
     #[must_use]
     pub const fn bytes_per_pixel(self) -> u64 {
         match self {
@@ -75,7 +75,7 @@ impl fmt::Display for Layer {
     }
 }
 
-/// A text that names no layer.
+/// A text is not the name of a layer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no layer `{name}`; the layers are {}", LayerSet::ALL)]
 pub struct UnknownLayer {
@@ -95,19 +95,19 @@ impl FromStr for Layer {
     }
 }
 
-/// Which layers to render. Colour is always among them.
+/// The set of layers to render. Colour is always in the set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LayerSet {
-    /// Bit n is the layer with discriminant n.
+    /// Bit n stands for the layer with discriminant n.
     bits: u16,
 }
 
 impl LayerSet {
     /// Colour alone.
     pub const COLOR: Self = Self { bits: 1 << Layer::Color as u16 };
-    /// What a renderer that traces one ray a pixel fills by itself: colour, depth, normal and id.
+    /// The layers that a renderer with one ray for each pixel fills without further work: colour, depth, normal and id.
     pub const DATA: Self = Self::COLOR.with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
-    /// Every layer.
+    /// All layers.
     pub const ALL: Self = {
         let (mut set, mut next) = (Self::COLOR, 0);
         while next < Layer::ALL.len() {
@@ -117,7 +117,7 @@ impl LayerSet {
         set
     };
 
-    /// The set with one more layer.
+    /// The same set with one more layer.
     #[must_use]
     pub const fn with(self, layer: Layer) -> Self {
         Self { bits: self.bits | 1 << layer as u16 }
@@ -129,12 +129,12 @@ impl LayerSet {
         self.bits & 1 << layer as u16 != 0
     }
 
-    /// Its layers, in the order of [`Layer::ALL`].
+    /// The layers of the set, in the order of [`Layer::ALL`].
     pub fn iter(self) -> impl Iterator<Item = Layer> {
         Layer::ALL.iter().copied().filter(move |layer| self.contains(*layer))
     }
 
-    /// How many bytes a pixel of all its layers takes.
+    /// The number of bytes for each pixel of all layers in the set.
     #[must_use]
     pub fn bytes_per_pixel(self) -> u64 {
         self.iter().map(Layer::bytes_per_pixel).sum()
@@ -155,13 +155,13 @@ impl Extend<Layer> for LayerSet {
 }
 
 impl FromIterator<Layer> for LayerSet {
-    /// Those layers, and colour.
+    /// The set of these layers and colour.
     fn from_iter<I: IntoIterator<Item = Layer>>(layers: I) -> Self {
         layers.into_iter().fold(Self::COLOR, Self::with)
     }
 }
 
-/// `color, depth and id`
+/// Writes the names as a list in words, for example `color, depth and id`.
 impl fmt::Display for LayerSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<_> = self.iter().map(Layer::name).collect();

@@ -1,4 +1,4 @@
-//! Linear f32 pixels and data layers.
+//! Pictures: linear f32 colours and data layers.
 
 pub mod color;
 pub mod denoise;
@@ -15,7 +15,7 @@ pub(crate) use rows::{Averages, RowMut};
 /// The id of a pixel whose ray hit nothing.
 pub const NO_ID: u32 = u32::MAX;
 
-/// What one ray through the centre of a pixel says of it.
+/// The result of one ray through the centre of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// See [`Layer::Color`].
@@ -61,19 +61,19 @@ pub struct Image {
 /// An image does not fit into memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a picture of {width}x{height} needs {bytes} bytes of memory, which cannot be had; choose a smaller size"
+    "a picture of {width}x{height} needs {bytes} bytes of memory, which cannot be allocated; choose a smaller size"
 )]
 pub struct ImageTooLarge {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Bytes of all requested layers.
+    /// Bytes of all requested layers together.
     pub bytes: u64,
 }
 
 impl Image {
-    /// An image of misses over black, without a sample.
+    /// An image in which every pixel is a miss over black, without samples.
     ///
     /// # Errors
     /// If the memory cannot be reserved.
@@ -98,8 +98,8 @@ impl Image {
         })
     }
 
-    /// An image of [`LayerSet::DATA`], row by row from the top. `None` if a layer has not as many pixels as the
-    /// sides say.
+    /// An image of the layers [`LayerSet::DATA`], each row by row from the top. `None` unless every layer has `width *
+    /// height` pixels.
     #[must_use]
     pub fn from_layers(
         [width, height]: [u32; 2],
@@ -161,7 +161,7 @@ impl Image {
         self.normal.as_deref()
     }
 
-    /// Point in the world of every pixel, if it was rendered; see [`Layer::Position`].
+    /// Hit point of every pixel in world space, if it was rendered; see [`Layer::Position`].
     #[must_use]
     pub fn position(&self) -> Option<&[[f32; 3]]> {
         self.position.as_deref()
@@ -191,7 +191,7 @@ impl Image {
         self.variance.as_deref()
     }
 
-    /// The layers that it has.
+    /// The layers of the image.
     #[must_use]
     pub fn layers(&self) -> LayerSet {
         let has = |layer: &Layer| match layer {
@@ -209,9 +209,9 @@ impl Image {
     }
 }
 
-/// For renderers that gather several samples for a pixel.
+/// Methods for renderers that average several samples for each pixel.
 impl Image {
-    /// Drops all layers but these.
+    /// Drops all layers except these.
     pub(crate) fn keep(&mut self, layers: LayerSet) {
         let wants = |layer| layers.contains(layer);
         self.alpha = self.alpha.take().filter(|_| wants(Layer::Alpha));
@@ -233,7 +233,7 @@ impl Image {
     }
 }
 
-/// `None` if the memory cannot be reserved.
+/// A list of equal values; `None` if the memory cannot be allocated.
 fn filled<T: Clone>(count: usize, value: T) -> Option<Vec<T>> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).ok()?;
@@ -241,7 +241,7 @@ fn filled<T: Clone>(count: usize, value: T) -> Option<Vec<T>> {
     Some(values)
 }
 
-/// `None` if the layer is wanted and its memory cannot be reserved.
+/// A list of equal values if the layer is wanted; `None` if its memory cannot be allocated.
 fn optional<T: Clone>(wanted: bool, count: usize, value: T) -> Option<Option<Vec<T>>> {
     if wanted { filled(count, value).map(Some) } else { Some(None) }
 }

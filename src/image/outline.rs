@@ -1,12 +1,12 @@
-//! Lines around shapes, drawn into a picture by its data layers.
+//! Outlines: lines around shapes, which are found from the data layers of a picture.
 
 use crate::image::{Image, Layer, LayerSet, NO_ID};
 use crate::render::Outline;
 
-/// The layers that lines are found by.
+/// The layers from which outlines are found.
 pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
 
-/// What is known of a pixel's centre.
+/// The hit at the centre of a pixel.
 #[derive(Clone, Copy)]
 struct Spot {
     id: u32,
@@ -14,9 +14,9 @@ struct Spot {
     normal: [f32; 3],
 }
 
-/// Draws a line of the outline's width along every edge between pixels of which one hides the other, or that are
-/// turned to each other: as much of a pixel is covered as its distance to the nearest edge says. A picture without
-/// [`LAYERS`] stays as it is.
+/// Draws an outline along every edge between two pixels where one sphere hides another or where their normals differ.
+/// How much of a pixel the line covers follows from its distance to the nearest edge. A picture that lacks one of
+/// [`LAYERS`] is not changed.
 pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     let Some(coverage) = coverage(image, outline) else { return };
     let line = outline.color.to_array();
@@ -32,17 +32,17 @@ pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     }
 }
 
-/// Of each pixel, how much lines cover.
+/// The fraction of each pixel that outlines cover; `None` if a layer is missing.
 fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
     let (ids, depths, normals) = (image.id()?, image.depth()?, image.normal()?);
     let (width, height) = (image.width() as usize, image.height() as usize);
     let spot = |index: usize| Spot { id: ids[index], depth: depths[index], normal: normals[index] };
     let mut covered = vec![0.0_f32; width * height];
-    // From the middle of an edge, in pixels.
+    // The largest distance in pixels, from the middle of an edge, that a line touches.
     let reach = 0.5 * outline.width + 0.5;
     let mut cover = |x: f32, y: f32| {
-        let from = |place: f32| (place - reach).ceil().max(0.0) as usize;
-        let until = |place: f32, end: usize| ((place + reach).floor() as usize + 1).min(end);
+        let from = |center: f32| (center - reach).ceil().max(0.0) as usize;
+        let until = |center: f32, end: usize| ((center + reach).floor() as usize + 1).min(end);
         for j in from(y)..until(y, height) {
             for i in from(x)..until(x, width) {
                 let distance = (i as f32 - x).hypot(j as f32 - y);
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use crate::image::color::LinearRgb;
 
-    /// A white picture of one row: a sphere on the left, another behind it on the right.
+    /// A white picture of one row: one sphere on the left, and another on the right that may lie farther away.
     fn row(depths: [f32; 8]) -> Image {
         let ids = (0..8).map(|i| u32::from(i >= 4)).collect();
         let white = vec![[1.0; 3]; 8];

@@ -1,11 +1,11 @@
-//! Rows of an image, each borrowed for writing on its own.
+//! Rows of an image that can be written independently.
 
 use std::ops::Range;
 use std::slice::ChunksMut;
 
 use super::{Image, NO_ID, Pixel};
 
-/// One row of an image, borrowed for writing. Layers that were not asked for are absent.
+/// One row of an image, borrowed for writing. Layers that were not requested are `None`.
 pub(crate) struct RowMut<'a> {
     pub(crate) color: &'a mut [[f32; 3]],
     pub(crate) alpha: Option<&'a mut [f32]>,
@@ -19,12 +19,12 @@ pub(crate) struct RowMut<'a> {
 }
 
 impl RowMut<'_> {
-    /// What a pixel's only ray says of how much spheres cover it.
+    /// The coverage of a pixel with a single ray: 1 for a hit, 0 for a miss.
     pub(crate) fn coverage(id: u32) -> f32 {
         if id == NO_ID { 0.0 } else { 1.0 }
     }
 
-    /// Sets what one ray says of a pixel.
+    /// Stores the result of the pixel's only ray.
     pub(crate) fn set(&mut self, column: usize, pixel: &Pixel) {
         self.color[column] = pixel.color;
         put(&mut self.alpha, column, Self::coverage(pixel.id));
@@ -37,7 +37,7 @@ impl RowMut<'_> {
         put(&mut self.variance, column, 0.0);
     }
 
-    /// Sets what several samples say of a pixel.
+    /// Stores the averages of a pixel's samples.
     pub(crate) fn set_averages(&mut self, column: usize, averages: &Averages) {
         self.color[column] = averages.color;
         put(&mut self.alpha, column, averages.alpha);
@@ -47,15 +47,15 @@ impl RowMut<'_> {
     }
 }
 
-/// What the samples of a pixel say of it together.
+/// Averages over the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Averages {
     pub(crate) color: [f32; 3],
     pub(crate) alpha: f32,
     pub(crate) albedo: [f32; 3],
-    /// How many there are.
+    /// The number of samples.
     pub(crate) samples: u32,
-    /// Of the mean luminance.
+    /// The variance of the mean luminance.
     pub(crate) variance: f32,
 }
 
@@ -66,7 +66,7 @@ fn put<T>(layer: &mut Option<&mut [T]>, column: usize, value: T) {
 }
 
 impl Image {
-    /// Some of the rows, from top to bottom, each to be written on its own.
+    /// A range of rows, from top to bottom, each of which can be written independently.
     pub(crate) fn rows_mut(&mut self, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let width = self.width as usize;
         let pixels = rows.start * width..rows.end * width;

@@ -1,27 +1,26 @@
-//! Curves that bring light of any strength into a display's range.
+//! Tone curves, which map light of any strength into the range of a display.
 
-/// How linear light that may exceed 1 becomes light that a display can show.
+/// A tone curve: it maps linear light that may exceed 1 to light that a display can show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum ToneCurve {
-    /// Nothing is changed, and what exceeds 1 is cut off. A flat colour comes out as the bytes that went in.
+    /// No change: values above 1 are clamped later. A flat colour comes out as the bytes that went in.
     #[default]
     None,
-    /// A fit of the filmic curve of ACES, to every component alone: Narkowicz, "ACES Filmic Tone Mapping Curve",
-    /// 2016, as printed there, without the factor of 0.6 that would bring it nearer to ACES.
+    /// A fit of the filmic curve of ACES, applied to each component separately: Narkowicz, "ACES Filmic Tone Mapping
+    /// Curve", 2016, as printed there, without the factor of 0.6 that would bring it closer to ACES.
     Filmic,
-    /// AgX by Troy Sobotka, with its base look: strong light loses its colour on the way to white. By the
-    /// polynomial of Benjamin Wrensch ("Minimal AgX Implementation", 2023), whose mean squared error is
-    /// 3.7 · 10⁻⁶.
+    /// AgX by Troy Sobotka, with its base look: strong light loses its colour as it approaches white. It uses the
+    /// polynomial of Benjamin Wrensch ("Minimal AgX Implementation", 2023), whose mean squared error is 3.7 · 10⁻⁶.
     Agx,
 }
 
 impl ToneCurve {
-    /// All of them.
+    /// All tone curves.
     pub const ALL: &'static [Self] = &[Self::None, Self::Filmic, Self::Agx];
 
-    /// The name on the command line and in files.
+    /// The name on the command line and in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -31,8 +30,8 @@ impl ToneCurve {
         }
     }
 
-    /// Linear light in, linear light of a display out, both with the Rec. 709 primaries. All but
-    /// [`ToneCurve::None`] give numbers in [0, 1], take negative ones for 0, and NaN too.
+    /// Maps linear light of the scene to linear light of a display, both with the Rec. 709 primaries. All curves except
+    /// [`ToneCurve::None`] return values in [0, 1] and treat negative values and NaN as 0.
     #[must_use]
     pub fn apply(self, linear: [f32; 3]) -> [f32; 3] {
         match self {
@@ -43,21 +42,21 @@ impl ToneCurve {
     }
 }
 
-/// Beyond this all is white; squares stay finite.
+/// The value at which inputs are clamped: everything brighter is white, and squares stay finite.
 const BRIGHTEST: f32 = 1e6;
 
 fn bounded(x: f32) -> f32 {
-    // False for NaN as well.
+    // The comparison is false for NaN as well.
     if x > 0.0 { x.min(BRIGHTEST) } else { 0.0 }
 }
 
-/// The five constants are Narkowicz's.
+/// Narkowicz's curve with his five constants.
 fn filmic(x: f32) -> f32 {
     let (a, b, c, d, e) = (2.51, 0.03, 2.43, 0.59, 0.14);
     (x * (a * x + b) / (x * (c * x + d) + e)).min(1.0)
 }
 
-/// Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2, with which light is linear again.
+/// Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2 that makes light linear again.
 fn agx(linear: [f32; 3]) -> [f32; 3] {
     const INSET: [[f32; 3]; 3] = [
         [0.842_479_06, 0.078_433_6, 0.079_223_745],
@@ -72,14 +71,14 @@ fn agx(linear: [f32; 3]) -> [f32; 3] {
     const MIN_EV: f32 = -12.473_93;
     const MAX_EV: f32 = 4.026_069;
     let encoded = product(&INSET, linear).map(|x| {
-        // The logarithm of 0 is −∞, which the range takes in.
+        // The logarithm of 0 is −∞, which is clamped to the range.
         let ev = x.log2().clamp(MIN_EV, MAX_EV);
         sigmoid((ev - MIN_EV) / (MAX_EV - MIN_EV))
     });
     product(&OUTSET, encoded).map(|x| x.clamp(0.0, 1.0).powf(2.2))
 }
 
-/// Of AgX, its contrast.
+/// The contrast curve of AgX, as a polynomial.
 fn sigmoid(x: f32) -> f32 {
     const COEFFICIENTS: [f32; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
     COEFFICIENTS.iter().fold(0.0, |sum, coefficient| sum * x + coefficient)
@@ -104,12 +103,12 @@ mod tests {
         assert_eq!(ToneCurve::None.apply(color).map(f32::to_bits), color.map(f32::to_bits));
     }
 
-    /// From the formulas, by hand.
+    /// The expected values were computed by hand from the formulas.
     #[test]
     fn known_answers() {
         assert!((grey(ToneCurve::Filmic, 0.18) - 0.266_9).abs() < 1e-4);
         assert!((grey(ToneCurve::Filmic, 1.0) - 0.803_8).abs() < 1e-4);
-        // Middle grey lies 10 stops above the range's lower end, where the curve's pivot is: half-way up.
+        // Middle grey lies 10 stops above the lower end of the range, at the pivot of the curve, which is half-way up.
         let encoded = grey(ToneCurve::Agx, 0.18).powf(1.0 / 2.2);
         assert!((encoded - 0.5).abs() < 5e-3, "{encoded}");
         for curve in [ToneCurve::Filmic, ToneCurve::Agx] {

@@ -1,12 +1,12 @@
-//! Which emissive sphere is sampled, by chance in proportion to its power.
+//! The emissive spheres of a scene, and the choice of one with a probability in proportion to its power.
 
 use crate::image::color::luminance;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Duplicates, Scene};
 
-/// The emissive spheres of a scene, each with the probability by which light is sought at it.
+/// The emissive spheres of a scene, each with the probability of being chosen for light sampling.
 ///
-/// Probabilities are multiples of 2⁻³², at least 2⁻³² each, and sum to 1, so that a device that counts in u32
+/// Probabilities are multiples of 2⁻³², at least 2⁻³² each, and add up to 1, so that a device that computes with u32
 /// chooses the same spheres with the same probabilities.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Emitters {
@@ -15,8 +15,9 @@ pub struct Emitters {
 }
 
 impl Emitters {
-    /// The spheres of a scene that send out light, weighted by the luminance of what they send out, times opacity,
-    /// times the square of their radius. A sphere with the centre and radius of one before it is never met, and none.
+    /// The spheres of a scene that emit light, weighted by the luminance of their radiance times their opacity times
+    /// the square of their radius. A sphere with the centre and radius of an earlier sphere is never visible, so it is
+    /// left out.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let shines = |surface: &SurfaceProperties| matches!(surface.material, Material::Emissive { strength } if strength > 0.0);
@@ -34,13 +35,13 @@ impl Emitters {
         let duplicates = Duplicates::of(scene.spheres());
         weights.retain(|(id, _)| duplicates.first_of(*id) == *id);
         let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
-        // Each has one by right, and its share of the others.
+        // Each sphere has 2⁻³² for certain, and a share of the rest in proportion to its weight.
         let others = (1_u64 << 32) - weights.len() as u64;
         let mut sum = 0.0;
         let last = weights.iter().enumerate().map(|(index, (_, weight))| {
             sum += weight;
             let shared = (sum / total * others as f64).floor() as u64;
-            // One less than what is up to here, of which there is at least one.
+            // One less than the number of picks up to here, which is at least one.
             (index as u64 + shared.min(others)) as u32
         });
         let mut last: Vec<u32> = last.collect();
@@ -50,34 +51,34 @@ impl Emitters {
         Self { ids: weights.iter().map(|(id, _)| *id).collect(), last }
     }
 
-    /// Indices of the spheres in input order, ascending.
+    /// Indices of the emissive spheres in input order, ascending.
     #[must_use]
     pub fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// For each of [`Emitters::ids`] the largest u32 that picks it: one less than 2³² times the sum of probabilities
-    /// up to it. Ascending; the last is 2³² − 1.
+    /// For each entry of [`Emitters::ids`], the largest u32 that picks it: 2³² times the cumulative probability, less
+    /// one. Ascending; the last entry is 2³² − 1.
     #[must_use]
     pub fn last_picks(&self) -> &[u32] {
         &self.last
     }
 
-    /// Whether there are none.
+    /// Whether no sphere emits light.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
 
-    /// The place in [`Emitters::ids`] of the first whose last pick is not below `u`, and its probability; `None` if
-    /// there are no emitters.
+    /// Chooses an emissive sphere by a uniform random number: the index in [`Emitters::ids`] of the first entry whose
+    /// last pick is at least `u`, and its probability. `None` if there are no emitters.
     #[must_use]
     pub fn pick(&self, u: u32) -> Option<(usize, f64)> {
         let index = self.last.partition_point(|last| *last < u);
         (index < self.last.len()).then(|| (index, self.probability_at(index)))
     }
 
-    /// The probability by which a sphere is picked; 0 for one that sends out no light.
+    /// The probability with which a sphere is picked; 0 for a sphere that emits no light.
     #[must_use]
     pub fn probability(&self, id: u32) -> f64 {
         self.ids.binary_search(&id).map_or(0.0, |index| self.probability_at(index))
@@ -128,7 +129,7 @@ mod tests {
         assert_eq!(emitters.last_picks()[2], u32::MAX);
     }
 
-    /// All 2³² numbers pick, each sphere as many as its probability says.
+    /// All 2³² numbers pick a sphere, and the share of each sphere equals its probability.
     #[test]
     fn every_number_picks_and_the_faintest_is_picked() {
         let spheres = [lamp(1e-9, 1e-9), lamp(1e9, 1e6), lamp(2e-9, 1e-9), lamp(1.0, 1e-3)];
@@ -147,7 +148,7 @@ mod tests {
         assert_eq!(first, 1 << 32);
     }
 
-    /// A lamp in the place of another sphere that comes before it is never seen.
+    /// An emissive sphere with the centre and radius of an earlier sphere is never visible.
     #[test]
     fn what_is_never_met_is_not_picked() {
         let matt = Sphere::new([-0.0; 3], 2.0, LinearRgb::WHITE);

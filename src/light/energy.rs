@@ -1,8 +1,8 @@
-//! How much light a rough lobe keeps when light that its surface scatters twice is left out, as tables.
+//! Tables of the energy that a rough lobe keeps if light that its surface scatters more than once is left out.
 //!
-//! The entries are the mean weight of samples by visible normals: E of E. Turquin, "Practical multiple scattering
-//! compensation for microfacet models", 2019. Renderers divide by it, so that a white surface loses nothing; with
-//! what samples and weights those formulas are meant, [`Lobe`] says.
+//! The entries are the mean weight of samples drawn from visible normals: E of E. Turquin, "Practical multiple
+//! scattering compensation for microfacet models", 2019. Renderers divide by it, so that a white surface loses no
+//! light. [`Lobe`] defines the samples and the weights.
 
 use std::f64::consts::PI;
 
@@ -11,34 +11,35 @@ use glam::DVec3;
 use crate::parallel;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// How many entries a table has. Entry k is of the cosine μ = (k/255)⁴: the finer, the flatter the view, since
-/// lobes of roughness 0.02 change where μ is about 0.0004.
+/// The number of entries of a table. Entry k is for the cosine μ = (k/255)⁴: entries are denser at grazing angles,
+/// because lobes of roughness 0.02 change where μ is about 0.0004.
 ///
-/// Interpolating them linearly is off by less than 0.0002 for reflection and 0.0005 for refraction (ior from 1.1), and entries
-/// themselves by less than 0.0005 and 0.001.
+/// The error of linear interpolation is below 0.0002 for reflection and 0.0005 for refraction (ior from 1.1), and that
+/// of the entries themselves is below 0.0005 and 0.001.
 pub const ENTRIES: usize = 256;
 
-/// A lobe with a table. Its normals are distributed by GGX (Trowbridge and Reitz), with α = roughness².
+/// A lobe that has a table. Its normals follow the GGX distribution (Trowbridge and Reitz), with α = roughness².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
-    /// All light is reflected. The weight of a sample is G2/G1, height-correlated.
+    /// All light is reflected. The weight of a sample is G2/G1, with the height-correlated G2.
     Reflection {
-        /// 0.02 to 1.
+        /// Roughness: 0.02 to 1.
         roughness: f32,
     },
-    /// Light is reflected or refracted, by chance as Fresnel's equations say. The weight is G1 of where it goes.
+    /// Light is reflected or refracted, with probabilities from Fresnel's equations. The weight of a sample is G1 of
+    /// its outgoing direction.
     Refraction {
-        /// Index of refraction, relative to what is outside.
+        /// Index of refraction, relative to the outside.
         ior: f32,
-        /// 0.02 to 1.
+        /// Roughness: 0.02 to 1.
         roughness: f32,
-        /// Whether light comes from inside.
+        /// Whether light arrives from inside.
         is_leaving: bool,
     },
 }
 
 impl Lobe {
-    /// The lobes of a material, in the order of their tables: from outside, then from inside.
+    /// The lobes of a material in the order of their tables: from outside, then from inside.
     fn of(surface: &SurfaceProperties) -> Vec<Self> {
         match surface.material {
             Material::Lambert { specular, roughness } if specular > 0.0 => {
@@ -52,7 +53,7 @@ impl Lobe {
         }
     }
 
-    /// To tell lobes apart.
+    /// The bits of all parameters, which are equal only for equal lobes.
     fn bits(self) -> [u32; 3] {
         match self {
             Self::Reflection { roughness } => [0, roughness.to_bits(), 0],
@@ -63,7 +64,7 @@ impl Lobe {
     }
 }
 
-/// The tables of all materials of a scene, each once.
+/// The energy tables of all materials of a scene; materials with equal lobes share tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyTables {
     entries: Vec<f32>,
@@ -71,7 +72,7 @@ pub struct EnergyTables {
 }
 
 impl EnergyTables {
-    /// The tables of materials, in the order of a list of surfaces.
+    /// Computes the tables for a list of surfaces.
     #[must_use]
     pub fn of(surfaces: &[SurfaceProperties]) -> Self {
         let mut indices = std::collections::HashMap::new();
@@ -91,21 +92,21 @@ impl EnergyTables {
         Self { entries: lobes.into_iter().flat_map(albedo_table).collect(), starts }
     }
 
-    /// All entries, table after table.
+    /// The entries of all tables, one table after the other.
     #[must_use]
     pub fn entries(&self) -> &[f32] {
         &self.entries
     }
 
-    /// Where the first table of each material starts in [`EnergyTables::entries`]; that of a rough dielectric from
-    /// inside follows that from outside. `None` for a material that needs none.
+    /// For each surface, the index in [`EnergyTables::entries`] at which its first table starts; `None` for a material
+    /// that needs no table. A rough dielectric has two tables in a row: from outside, then from inside.
     #[must_use]
     pub fn starts(&self) -> &[Option<u32>] {
         &self.starts
     }
 }
 
-/// E at the cosines of [`ENTRIES`], by a quadrature of some ten milliseconds.
+/// The table of a lobe: E at [`ENTRIES`] cosines, by a quadrature that takes about ten milliseconds.
 #[must_use]
 pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
     let points = disk_points(POINTS);
@@ -115,7 +116,7 @@ pub fn albedo_table(lobe: Lobe) -> Vec<f32> {
     })
 }
 
-/// E at a cosine in [0, 1].
+/// E at a cosine in [0, 1], interpolated in a table.
 #[must_use]
 pub fn lookup(table: &[f32], cosine: f64) -> f64 {
     let last = ENTRIES - 1;
@@ -125,10 +126,11 @@ pub fn lookup(table: &[f32], cosine: f64) -> f64 {
     low + (x - entry as f64) * (high - low)
 }
 
-/// Points of the half of the unit disk with x > 0, evenly: a Fibonacci lattice in r² and angle. Of the quadratures
-/// tried (midpoints, Gauss's, other maps), it is the best for weights with kinks along curves, where light grazes.
+/// Points spread evenly over the half of the unit disk with x > 0: a Fibonacci lattice in r² and angle. Of the
+/// quadratures tried (midpoints, Gauss, other maps), it is the most accurate for weights with kinks along curves, as
+/// they occur at grazing angles.
 ///
-/// The numbers are Fibonacci's, one after the other.
+/// `step` and `count` are consecutive Fibonacci numbers.
 fn disk_points([step, count]: [usize; 2]) -> Vec<[f64; 2]> {
     let point = |i: usize| {
         let along = (i as f64 + 0.5) / count as f64;
@@ -139,10 +141,10 @@ fn disk_points([step, count]: [usize; 2]) -> Vec<[f64; 2]> {
     (0..count).map(point).collect()
 }
 
-/// As many as tables are made with.
+/// The step and the number of the points with which tables are computed.
 const POINTS: [usize; 2] = [1597, 2584];
 
-/// The flattest view that is told from one along the surface.
+/// The smallest cosine; smaller ones are clamped to it.
 const MIN_COSINE: f64 = 1e-6;
 
 fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
@@ -175,14 +177,14 @@ fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
     sum / points.len() as f64
 }
 
-/// Smith's Λ for GGX.
+/// Smith's Λ for GGX, at a cosine.
 fn smith(cosine: f64, alpha: f64) -> f64 {
     let square = cosine * cosine;
     0.5 * ((1.0 + alpha * alpha * (1.0 - square) / square).sqrt() - 1.0)
 }
 
-/// The normal that belongs to a point of the disk, of those that are seen from a direction with y = 0 (E. Heitz,
-/// "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018).
+/// Maps a point of the disk to a normal that is visible from `view`, whose y is 0 (E. Heitz, "Sampling the GGX
+/// Distribution of Visible Normals", JCGT 7(4), 2018).
 fn visible_normal(view: DVec3, alpha: f64, [x, y]: [f64; 2]) -> DVec3 {
     let stretched = DVec3::new(alpha * view.x, 0.0, view.z).normalize_or(DVec3::Z);
     let s = 0.5 * (1.0 + stretched.z);
@@ -193,7 +195,7 @@ fn visible_normal(view: DVec3, alpha: f64, [x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(1e-6)).normalize_or(DVec3::Z)
 }
 
-/// The share of unpolarised light that is reflected, and the cosine of what is refracted.
+/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction.
 fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
     if sine_squared >= 1.0 {
@@ -221,7 +223,7 @@ mod tests {
         lobes
     }
 
-    /// Half-way between entries, where interpolation is worst.
+    /// Checks half-way between entries, where the error of interpolation is largest.
     #[test]
     fn tables_are_fine_enough() {
         let points = disk_points([6765, 10946]);
@@ -240,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Against a finer quadrature over directions, by the lobe itself: ∫ D G2/(4 cos) over the hemisphere.
+    /// Compares with a finer quadrature over directions of the lobe itself: ∫ D G2/(4 cos) over the hemisphere.
     #[test]
     fn entries_are_what_the_lobe_reflects() {
         const STEPS: u32 = 500;
@@ -260,7 +262,7 @@ mod tests {
                         sum += sine * shadowing / (PI * alpha * alpha * t * t * 4.0 * cosine);
                     }
                 }
-                // Both halves.
+                // The sum covers half of the hemisphere; the factor counts both halves.
                 let wanted = sum * PI * PI / f64::from(STEPS).powi(2);
                 let found = lookup(&table, cosine);
                 assert!((found - wanted).abs() < 5e-4, "{roughness}, {cosine}: {found}, {wanted}");
@@ -268,7 +270,7 @@ mod tests {
         }
     }
 
-    /// Against 76 times as many points.
+    /// Compares with a quadrature with 76 times as many points.
     #[test]
     fn entries_do_not_depend_on_the_quadrature() {
         let finer = disk_points([121_393, 196_418]);

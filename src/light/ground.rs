@@ -1,18 +1,19 @@
-//! A plane below everything.
+//! The ground: a plane below the scene.
 
 use glam::DVec3;
 
 use crate::image::color::LinearRgb;
 
-/// An infinite plane, matt, seen and felt from above only.
+/// An infinite matt plane. It is visible, and reflects light, only on the side of its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// A point of it, in the world.
+    /// A point of the plane, in world space.
     pub point: DVec3,
-    /// Which way is above it; of any length.
+    /// The direction that is above the plane; any length except zero.
     pub normal: DVec3,
-    /// Its colour, each component at most 1.
+    /// Colour of the plane, each component at most 1.
     pub color: LinearRgb,
-    /// Whether only shadows on it are seen: the darker, the more opaque. In a studio only.
+    /// Whether only the shadows on the plane are visible, more opaque where they are darker. Only for the studio
+    /// integrator.
     pub is_shadow_catcher: bool,
 }

@@ -1,4 +1,4 @@
-//! Lights that are no spheres of the scene.
+//! Lights that are not spheres of the scene.
 
 use glam::DVec3;
 
@@ -6,64 +6,64 @@ use crate::camera::{Camera, CameraVectors};
 use crate::geometry::math::unit;
 use crate::image::color::LinearRgb;
 
-/// A light, in the world or at the camera.
+/// A light, placed in the world or relative to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// What it is.
+    /// The kind of the light and its parameters.
     pub kind: LightKind,
-    /// In which frame its position or direction is.
+    /// The frame of its position or direction.
     pub frame: LightFrame,
 }
 
-/// What a light is. Colours are linear.
+/// The kind of a light and its parameters. Colours are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// At the eye, shadowless: each surface is lit along the ray that sees it.
+    /// A light at the eye without shadows: each surface is lit along the ray that sees it.
     Head {
-        /// Of a surface that faces it.
+        /// Light reflected by a white surface that faces the light.
         strength: LinearRgb,
     },
-    /// Infinitely far away. With an angular radius it is a sun: shadows are soft, and paths may meet it.
+    /// A light infinitely far away. With an angular radius it is a sun: shadows are soft, and scattered rays can hit
+    /// it.
     Directional {
-        /// The direction towards it, of any length.
+        /// The direction towards the light, of any length except zero.
         toward: DVec3,
-        /// Of a surface that faces it.
+        /// Light reflected by a white surface that faces the light.
         strength: LinearRgb,
-        /// In radians: 0, or 0.001 to π/2.
+        /// Angular radius in radians: 0, or 0.001 to π/2.
         angular_radius: f64,
     },
-    /// A point; light falls off with the square of the distance.
+    /// A point light, whose light falls off with the square of the distance.
     Point {
-        /// In scene units.
+        /// Position in scene units.
         position: DVec3,
-        /// What its strength is at the distance 1.
+        /// The strength at the distance 1.
         intensity: LinearRgb,
     },
-    /// A sphere that shines with the same radiance everywhere, which gives soft shadows. It is not seen, and casts
-    /// no shadow.
+    /// A sphere with the same radiance everywhere, which gives soft shadows. It is invisible and casts no shadow.
     Sphere {
-        /// In scene units.
+        /// Centre in scene units.
         center: DVec3,
-        /// In scene units.
+        /// Radius in scene units.
         radius: f64,
-        /// Of every point of its surface.
+        /// Radiance of every point of its surface.
         radiance: LinearRgb,
     },
 }
 
-/// In which frame a light's place or direction is.
+/// The frame of a light's position or direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LightFrame {
-    /// The world.
+    /// World space.
     #[default]
     World,
-    /// The camera's: x to the right, y up, z towards the viewer, from the camera's origin.
+    /// Camera space: x to the right, y up, z towards the viewer, from the camera's origin.
     Camera,
 }
 
 impl Light {
-    /// A key light above the viewer's left shoulder, and a weaker one from the right.
+    /// A key light above the viewer's left shoulder, and a weaker fill light from the right.
     #[must_use]
     pub fn key_and_fill() -> [Self; 2] {
         let at_camera = |toward, strength: f32| Self {
@@ -77,14 +77,14 @@ impl Light {
         [at_camera(DVec3::new(-0.6, 1.0, 0.9), 0.65), at_camera(DVec3::new(1.0, 0.2, 0.8), 0.15)]
     }
 
-    /// The light in the world, seen by a camera; directions have unit length. `None` for a direction that is none,
-    /// which [`RenderSettings::check`](crate::render::RenderSettings::check) refuses.
+    /// The light in world space, for a camera; directions have unit length. `None` if a direction is zero or not
+    /// finite, which [`RenderSettings::check`](crate::render::RenderSettings::check) reports as an error.
     #[must_use]
     pub fn in_world(&self, camera: &dyn Camera) -> Option<LightKind> {
         self.in_view(&camera.vectors())
     }
 
-    /// The same, of a camera's vectors.
+    /// The light in world space, for the vectors of a camera.
     pub(crate) fn in_view(&self, vectors: &CameraVectors) -> Option<LightKind> {
         let axes = [vectors.right, vectors.up, -vectors.forward].map(DVec3::normalize_or_zero);
         let turned = |v: DVec3| match self.frame {

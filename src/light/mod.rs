@@ -1,5 +1,5 @@
-//! What shines on a scene: lights, sky and ground, and numbers that all renderers share: which emissive sphere is
-//! sampled, and what rough surfaces lose.
+//! Everything that illuminates a scene: lights, sky and ground. Also two tables that all renderers share: the
+//! probabilities with which emissive spheres are sampled, and the energy that rough surfaces keep.
 
 pub(crate) mod codes;
 pub mod emitters;

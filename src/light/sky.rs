@@ -1,4 +1,4 @@
-//! What is around everything.
+//! The sky: light from infinitely far away.
 
 use std::sync::Arc;
 
@@ -7,42 +7,42 @@ use glam::DVec3;
 use crate::image::color::LinearRgb;
 use crate::light::environment::Environment;
 
-/// The light from infinitely far away, and whether it is seen. Up is +y.
+/// The sky, which surrounds the scene infinitely far away. Up is +y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sky {
-    /// Where light comes from.
+    /// The radiance of the sky.
     pub light: SkyLight,
-    /// Whether the camera sees it, or the background instead.
+    /// Whether the camera sees the sky; if not, it sees the background instead.
     pub is_visible: bool,
 }
 
 /// The radiance of a sky.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SkyLight {
-    /// The same everywhere; black is none.
+    /// The same radiance in all directions; black for no light.
     Constant(LinearRgb),
-    /// Linear in the direction's height y between the three.
+    /// Interpolated linearly in the direction's height y.
     Gradient {
-        /// Straight up.
+        /// Radiance from straight up.
         zenith: LinearRgb,
-        /// Where y is 0.
+        /// Radiance from the horizon, where y is 0.
         horizon: LinearRgb,
-        /// Straight down.
+        /// Radiance from straight down.
         nadir: LinearRgb,
     },
-    /// An image all around.
+    /// An image of all directions.
     Image {
         /// The image.
         environment: Arc<Environment>,
-        /// What its radiance is multiplied by: 0 to 10⁶.
+        /// The factor by which the radiance of the image is multiplied: 0 to 10⁶.
         strength: f32,
-        /// By how many radians it is turned about +y, counter-clockwise from above.
+        /// The rotation of the image about +y in radians, counter-clockwise seen from above.
         rotation: f64,
     },
 }
 
 impl Default for Sky {
-    /// A soft white dome over a grey floor, not seen.
+    /// A soft white dome over a grey floor, invisible to the camera.
     fn default() -> Self {
         Self {
             light: SkyLight::Gradient {
@@ -56,7 +56,7 @@ impl Default for Sky {
 }
 
 impl SkyLight {
-    /// The radiance from a direction of unit length.
+    /// The radiance from a direction, which must have unit length.
     #[must_use]
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         let wide = |c: &LinearRgb| DVec3::from(c.to_array().map(f64::from));

@@ -1,4 +1,4 @@
-//! What settings refuse: numbers out of range, and choices that contradict each other.
+//! Checks of render settings: numbers out of range, and settings that contradict each other.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,7 +10,7 @@ use crate::range::RangeError;
 use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 
-/// What is wrong with settings, or with a scene's materials.
+/// Why settings, or the materials of a scene, are not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -20,77 +20,79 @@ pub enum SettingsError {
     /// A parameter of a light is out of range.
     #[error("light {index}: {error}")]
     Light {
-        /// From 0, in input order.
+        /// Index of the light in input order, from 0.
         index: usize,
-        /// What is wrong.
+        /// The parameter that is out of range.
         error: RangeError,
     },
     /// A light's direction is zero or not finite.
-    #[error("light {index}: its direction has no length")]
+    #[error("light {index}: its direction must be finite and not zero")]
     Direction {
-        /// From 0, in input order.
+        /// Index of the light in input order, from 0.
         index: usize,
     },
-    /// A surface would give back more light than it gets.
+    /// A surface would reflect more light than arrives.
     #[error(
         "{what} has the color {rgb:?}, which creates light; each component of a color that scatters must be at most 1"
     )]
     Albedo {
-        /// Which one.
+        /// The sphere or the ground.
         what: String,
         /// Its linear colour.
         rgb: [f32; 3],
     },
-    /// Something shines so strongly that sums of squares would exceed f32.
+    /// A light is so strong that sums of squares would exceed the range of f32.
     #[error("{what} shines with {rgb:?}, which is too strong; each component must be at most 1e18")]
     TooBright {
-        /// Which one.
+        /// The light, sphere or other source.
         what: String,
-        /// Its linear light.
+        /// Its linear radiance or strength.
         rgb: [f32; 3],
     },
-    /// The ground's normal is zero, or its point not finite.
-    #[error("the ground's normal must have a length, and its point must be finite")]
+    /// The ground's normal is zero or not finite, or its point is out of range.
+    #[error(
+        "the ground's normal must be finite and not zero, and its point finite and at most {MAX_LENGTH:e} in size"
+    )]
     Ground,
     /// The path integrator does not support shadow catchers.
     #[error(
-        "a shadow catcher needs the integrator `studio`; paths light the ground as they find it"
+        "a shadow catcher needs the integrator `studio`; the integrator `path` does not support it"
     )]
     Catcher,
-    /// A picture of primary rays has one for each pixel.
+    /// The integrator `primary` takes exactly one sample for each pixel.
     #[error(
-        "the integrator `primary` traces one ray through the center of each pixel, and {samples} samples are asked \
+        "the integrator `primary` traces one ray through the center of each pixel, but {samples} samples are asked \
          for; ask for 1, or choose the integrator `studio` or `path`"
     )]
     OneSample {
-        /// How many were asked for.
+        /// The number of samples in the settings.
         samples: u32,
     },
-    /// Something is set that the integrator would ignore.
+    /// A setting has no effect with the integrator.
     #[error(
         "the integrator `{integrator}` does not use {what}; leave out {what}, or choose the integrator {instead}"
     )]
     Unused {
-        /// What is set.
+        /// The setting.
         what: &'static str,
-        /// The integrator's name.
+        /// Name of the integrator.
         integrator: &'static str,
-        /// Which integrators use it.
+        /// The integrators that use the setting.
         instead: &'static str,
     },
 }
 
 impl RenderSettings {
-    /// Whether all numbers are in range, no two settings contradict each other, and, in a lit picture, the scene's
-    /// materials give back no more light than they get.
+    /// Checks that all numbers are in range, that no two settings contradict each other, and, if the picture has
+    /// lighting, that the materials of the scene do not reflect more light than arrives.
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    /// If a check fails; the error describes the first problem.
     pub fn check(&self, scene: &Scene) -> Result<(), SettingsError> {
         self.check_with(scene.checked_appearance())
     }
 
-    /// As [`RenderSettings::check`], with what is known of the scene's materials.
+    /// The same checks as [`RenderSettings::check`], for the appearance of a scene.
     pub(crate) fn check_with(&self, appearance: &SceneAppearance) -> Result<(), SettingsError> {
         self.check_is_used()?;
         if self.integrator.is_primary() {
@@ -126,7 +128,7 @@ impl RenderSettings {
         check_materials(appearance)
     }
 
-    /// Refuses what the integrator would ignore.
+    /// Returns an error for a setting that the integrator would ignore.
     fn check_is_used(&self) -> Result<(), SettingsError> {
         let integrator = self.integrator.name();
         let unused = |what, instead| Err(SettingsError::Unused { what, integrator, instead });
@@ -148,7 +150,7 @@ impl RenderSettings {
         }
     }
 
-    /// Of all but spheres.
+    /// Checks the strength of all light sources except spheres.
     fn check_brightness(&self) -> Result<(), SettingsError> {
         for (index, light) in self.lights.iter().enumerate() {
             let color = match &light.kind {
@@ -183,7 +185,7 @@ impl RenderSettings {
     }
 }
 
-/// Its square, and the sum of many, stay below 2¹²⁸.
+/// The largest radiance: its square, and the sum of many squares, stay below 2¹²⁸.
 pub(crate) const BRIGHTEST: f32 = 1e18;
 
 fn check_brightness(
@@ -200,10 +202,10 @@ fn check_brightness(
 }
 
 impl Sampling {
-    /// Whether every number is within its range.
+    /// Checks that the number of samples is in its range.
     ///
     /// # Errors
-    /// The first that is not.
+    /// If the number of samples is out of range.
     pub fn check(&self) -> Result<(), RangeError> {
         let most = f64::from(Self::MAX_SAMPLES);
         let range = "from 1 to 16777216";
@@ -212,10 +214,10 @@ impl Sampling {
 }
 
 impl PathTracing {
-    /// Whether every number is within its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// The first that is not.
+    /// If a number is out of range; the error names the first.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
@@ -223,10 +225,10 @@ impl PathTracing {
 }
 
 impl Studio {
-    /// Whether every number is within its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// The first that is not.
+    /// If a number is out of range; the error names the first.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;
@@ -289,7 +291,7 @@ fn check_light(index: usize, light: &LightKind) -> Result<(), SettingsError> {
 
 fn check_materials(appearance: &SceneAppearance) -> Result<(), SettingsError> {
     appearance.surfaces().iter().try_for_each(|surface| surface.check().map(drop))?;
-    // Then nothing is too bright either, because strengths have a bound.
+    // Colours up to 1 cannot make a sphere too bright, because strengths have an upper limit.
     if !appearance.may_exceed_one() {
         return Ok(());
     }

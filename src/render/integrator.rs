@@ -1,29 +1,29 @@
-//! The ways in which rays become colours.
+//! Integrators: the algorithms that turn rays into colours.
 
 use super::studio::Studio;
 use crate::image::color::LinearRgb;
 use crate::light::codes;
 
-/// How rays become colours.
+/// The algorithm that turns rays into colours.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Integrator {
-    /// By what the ray through a pixel's centre meets first, without lights.
+    /// Colours the surface that the ray through a pixel's centre hits first, without lights.
     Primary(Shading),
-    /// Directly from lights to surfaces.
+    /// Direct light from lights to surfaces, with aids for seeing shape.
     Studio(Studio),
-    /// Along paths, as light is scattered.
+    /// Path tracing: follows light as surfaces scatter it.
     Path(PathTracing),
 }
 
 impl Default for Integrator {
-    /// Primary rays, with the light at the eye.
+    /// Primary rays, with surfaces lit from the eye.
     fn default() -> Self {
         Self::Primary(Shading::default())
     }
 }
 
 impl Integrator {
-    /// The name in files and flags.
+    /// The name in scene files and flags.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -33,19 +33,19 @@ impl Integrator {
         }
     }
 
-    /// Whether the picture is of primary rays, and so not lit.
+    /// Whether the integrator traces primary rays only, so that the picture has no lighting.
     #[must_use]
     pub const fn is_primary(&self) -> bool {
         matches!(self, Self::Primary(_))
     }
 }
 
-/// How the surface that a primary ray meets is coloured.
+/// How the surface that a primary ray hits is coloured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Shading {
-    /// The sphere's own colour, everywhere.
+    /// The colour of the sphere, without any shading.
     Flat,
     /// Lambert's cosine law with the light at the eye: the colour times the cosine of the angle
     /// between the ray and the normal.
@@ -54,7 +54,7 @@ pub enum Shading {
 }
 
 impl Shading {
-    /// The name in files.
+    /// The name in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl Shading {
     }
 }
 
-/// How primary rays become colours.
+/// Settings that turn primary rays into colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimarySettings {
     /// How surfaces are coloured.
@@ -74,25 +74,25 @@ pub struct PrimarySettings {
 }
 
 impl Default for PrimarySettings {
-    /// That of [`RenderSettings::default`](super::RenderSettings::default): headlight over white.
+    /// The settings of [`RenderSettings::default`](super::RenderSettings::default): headlight over white.
     fn default() -> Self {
         Self { shading: Shading::default(), background: LinearRgb::WHITE }
     }
 }
 
-/// How paths are followed.
+/// Settings of the path integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathTracing {
-    /// How many surfaces a path meets at most, counted with those that let it through: 1 to 64.
+    /// The largest number of surfaces that a path hits, including those that it passes through: 1 to 64.
     pub max_depth: u32,
-    /// From which surface on, counted from 0, paths that carry little end by chance (Russian roulette).
+    /// The first surface, counted from 0, at which paths that carry little light may end at random (Russian roulette).
     pub roulette_from: u32,
-    /// How lights that can be met by chance are looked for.
+    /// How lights that scattered rays can hit are sampled.
     pub light_sampling: LightSampling,
 }
 
 impl Default for PathTracing {
-    /// Eight surfaces, roulette from the fourth, multiple importance sampling.
+    /// Eight surfaces, Russian roulette from the fourth, and multiple importance sampling.
     fn default() -> Self {
         Self { max_depth: 8, roulette_from: 3, light_sampling: LightSampling::default() }
     }
@@ -109,15 +109,15 @@ impl LightSampling {
     }
 }
 
-/// How emissive spheres, a sun and an image of a sky are found.
+/// How emissive spheres, a sun and the image of a sky are sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LightSampling {
-    /// By chance alone, by rays that surfaces scatter.
+    /// Only by scattered rays that happen to hit a light.
     Chance,
-    /// By rays towards them from every surface that is not glass.
+    /// Only by rays towards lights, from every surface that is not glass.
     Direct,
-    /// By both, weighted by the balance heuristic (Veach and Guibas 1995).
+    /// By both, weighted with the balance heuristic (Veach and Guibas 1995).
     #[default]
     Multiple,
 }

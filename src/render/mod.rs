@@ -1,15 +1,14 @@
-//! How a picture is made of a scene and a view: which rays are traced, what lights them, and what is seen where
-//! there is nothing.
+//! Render settings: which rays are traced, what illuminates the scene, and what is visible where there is no sphere.
 //!
-//! [`Integrator::Primary`] traces one ray through the centre of each pixel and colours what it meets first; no lights
-//! are needed. [`Integrator::Studio`] is direct and quick: lights with shadows, ambient occlusion, opacity, outlines,
-//! depth cueing. [`Integrator::Path`] follows light as it is scattered. The last two, which make lit pictures, take
-//! many samples a pixel, addressed by (pixel, sample, dimension), so that a picture depends on scene, size, samples
-//! and seed alone.
+//! [`Integrator::Primary`] traces one ray through the centre of each pixel and colours the surface that it hits first;
+//! it needs no lights. [`Integrator::Studio`] is direct and fast: lights with shadows, ambient occlusion, opacity,
+//! outlines and depth cueing. [`Integrator::Path`] follows light as it is scattered. The last two make pictures with
+//! lighting and take many samples for each pixel. Samples are addressed by (pixel, sample, dimension), so that a
+//! picture depends only on scene, size, number of samples and seed.
 //!
 //! # Units
-//! A surface of colour c that faces a directional light of `strength` 1 has radiance c. Radiances are in the same
-//! unit: a sky of radiance 1 all around makes a white Lambert surface white.
+//! A surface of colour c that faces a directional light of `strength` 1 has the radiance c. All radiances are in this
+//! unit: a sky of radiance 1 in all directions makes a white Lambert surface white.
 
 use crate::camera::filter::PixelFilter;
 use crate::image::LayerSet;
@@ -30,53 +29,54 @@ pub use integrator::{Integrator, LightSampling, PathTracing, PrimarySettings, Sh
 pub use notes::SettingsNote;
 pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
-/// All that a picture depends on beside the scene and the view.
+/// All settings of a picture apart from the scene and the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// How rays become colours.
+    /// The algorithm that turns rays into colours.
     pub integrator: Integrator,
-    /// How many samples each pixel has, where in the pixel they are, and which ones they are. Primary rays are one
-    /// for each pixel, through its centre.
+    /// The number of samples for each pixel, their positions in the pixel, and the random seed. The integrator
+    /// `primary` has one sample for each pixel, at its centre.
     pub sampling: Sampling,
-    /// Lights that are no spheres of the scene. They are not seen themselves, except for a sun. Only for lit pictures.
+    /// Lights that are not spheres of the scene. They are invisible, except for a sun. Only for pictures with lighting.
     pub lights: Vec<Light>,
-    /// What is around everything. Only paths are lit by it.
+    /// The sky around the scene. Only the integrator `path` uses it.
     pub sky: Sky,
-    /// A plane below everything. Only for lit pictures.
+    /// A plane below the scene. Only for pictures with lighting.
     pub ground: Option<Ground>,
-    /// What is seen where there is nothing, unless the sky is seen.
+    /// The colour where a ray hits nothing, unless the sky is visible.
     pub background: LinearRgb,
-    /// Whether a pixel is transparent where there is nothing; its colour is then multiplied by alpha.
+    /// Whether pixels are transparent where rays hit nothing; colours are then premultiplied by alpha.
     pub is_transparent: bool,
-    /// Whether noise is filtered, guided by shapes and colours; see [`crate::image::denoise`]. Only for lit pictures.
+    /// Whether noise is removed by a filter that is guided by shapes and colours; see [`crate::image::denoise`]. Only
+    /// for pictures with lighting.
     pub is_denoised: bool,
 }
 
-/// Samples and where they are.
+/// The number of samples, their positions, and the random seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
-    /// Of each pixel: 1 to 2²⁴.
+    /// The number of samples for each pixel: 1 to 2²⁴.
     pub samples: u32,
-    /// Another seed gives other noise.
+    /// Seed of the random numbers: another seed gives different noise.
     pub seed: u32,
-    /// How samples around a pixel's centre are weighted.
+    /// The filter that places samples around the centre of a pixel.
     pub filter: PixelFilter,
 }
 
 impl Sampling {
-    /// The most samples of a pixel, 2²⁴.
+    /// The largest number of samples for each pixel, 2²⁴.
     pub const MAX_SAMPLES: u32 = 1 << 24;
 }
 
 impl Default for Sampling {
-    /// Sixteen samples of a lit picture.
+    /// Sixteen samples, as for a picture with lighting.
     fn default() -> Self {
         Self { samples: 16, seed: 0, filter: PixelFilter::default() }
     }
 }
 
 impl Default for RenderSettings {
-    /// Primary rays, one through the centre of each pixel; surfaces are lit from the eye, over white.
+    /// One primary ray through the centre of each pixel; surfaces are lit from the eye, over white.
     fn default() -> Self {
         Self {
             integrator: Integrator::default(),
@@ -92,7 +92,7 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// A studio with a key light and a fill light at the camera, soft ambient light, over white.
+    /// The studio integrator with a key light and a fill light at the camera, and soft ambient light, over white.
     #[must_use]
     pub fn studio() -> Self {
         Self {
@@ -103,14 +103,14 @@ impl RenderSettings {
         }
     }
 
-    /// Paths, lit by the same two lights and a soft sky that is not seen, over white.
+    /// The path integrator with the same two lights and a soft sky that the camera does not see, over white.
     #[must_use]
     pub fn path() -> Self {
         Self { integrator: Integrator::Path(PathTracing::default()), ..Self::studio() }
     }
 
-    /// The same scene and background by primary rays alone: what is left if lights, samples, sky, ground and
-    /// denoising are taken away. A shading that was chosen stays.
+    /// The same background with primary rays only: lights, samples, sky, ground and denoising return to their defaults.
+    /// The shading stays if it was set.
     #[must_use]
     pub fn by_primary_rays(&self) -> Self {
         let Self { background, is_transparent, .. } = *self;
@@ -123,7 +123,7 @@ impl RenderSettings {
         }
     }
 
-    /// How primary rays become colours; `None` if the picture is lit.
+    /// Settings that turn primary rays into colours; `None` for other integrators.
     #[must_use]
     pub fn primary(&self) -> Option<PrimarySettings> {
         match self.integrator {
@@ -136,7 +136,7 @@ impl RenderSettings {
         }
     }
 
-    /// The studio's parameters, if it is one.
+    /// The parameters of the studio integrator; `None` for other integrators.
     #[must_use]
     pub fn studio_parameters(&self) -> Option<&Studio> {
         match &self.integrator {
@@ -145,7 +145,7 @@ impl RenderSettings {
         }
     }
 
-    /// The layers that making a picture needs beside those that are wanted.
+    /// The layers that rendering needs, including those that are wanted in the result.
     pub(crate) fn layers_for(&self, wanted: LayerSet) -> LayerSet {
         let lines = self.studio_parameters().and_then(|studio| studio.outline);
         let for_lines = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);

@@ -1,4 +1,4 @@
-//! What somebody should know of settings although it is no error.
+//! Notes about settings that are valid but may not give the intended picture.
 
 use std::fmt;
 
@@ -8,15 +8,15 @@ use crate::light::{LightKind, SkyLight};
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// Something about settings and a scene that may not be what was meant, and what to do about it.
+/// Something about settings and a scene that may not be intended, and what to do about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SettingsNote {
-    /// The picture is lit, and nothing shines.
+    /// The picture has lighting, but nothing emits light.
     NoLight,
-    /// A studio draws metal and glass as matt surfaces.
+    /// The studio integrator draws metal and glass as matt surfaces.
     MattInStudio,
-    /// Primary rays end at the first sphere, whatever its opacity.
+    /// The integrator `primary` stops at the first sphere, whatever its opacity.
     OpacityIgnored,
 }
 
@@ -25,21 +25,21 @@ impl fmt::Display for SettingsNote {
         f.write_str(match self {
             Self::NoLight => {
                 "no light: nothing shines on this scene, and its spheres will be black; add \
-                 [[lights]], or give something that is there a color and a strength"
+                 [[lights]], or give a light, the sky or a sphere a color and a strength above zero"
             }
             Self::MattInStudio => {
-                "metal and glass are matt in a studio; the integrator `path` shows what they are"
+                "metal and glass are matt in a studio; choose the integrator `path` to render them as they are"
             }
             Self::OpacityIgnored => {
-                "primary rays ignore opacity, and spheres that are not opaque are drawn as if they were; \
-                 the integrators `studio` and `path` show it"
+                "primary rays ignore opacity, and all spheres are drawn as if they were opaque; choose \
+                 the integrator `studio` or `path` to see through them"
             }
         })
     }
 }
 
 impl RenderSettings {
-    /// What somebody who renders a scene with these settings should know although it is no error.
+    /// What a user should know about rendering a scene with these settings, although it is not an error.
     #[must_use]
     pub fn notes(&self, scene: &Scene) -> Vec<SettingsNote> {
         let any = |is_special: fn(&SurfaceProperties) -> bool| {
@@ -59,7 +59,7 @@ impl RenderSettings {
         notes.into_iter().filter(|(_, holds)| *holds).map(|(note, _)| note).collect()
     }
 
-    /// Whether the picture is lit, and nothing shines at all.
+    /// Whether the picture has lighting but nothing emits light.
     fn is_dark(&self, scene: &Scene) -> bool {
         let is_black = |color: &LinearRgb| *color == LinearRgb::BLACK;
         let is_lit = self.lights.iter().any(|light| {
@@ -69,8 +69,8 @@ impl RenderSettings {
                 LightKind::Sphere { radiance, .. } => radiance,
             })
         });
-        let from_around = match (&self.integrator, &self.sky.light) {
-            // The eye is the light.
+        let has_ambient = match (&self.integrator, &self.sky.light) {
+            // The headlight at the eye always shines.
             (Integrator::Primary(_), _) => true,
             (Integrator::Studio(studio), _) => !is_black(&studio.ambient),
             (Integrator::Path(_), SkyLight::Constant(color)) => !is_black(color),
@@ -85,10 +85,11 @@ impl RenderSettings {
             Material::Emissive { strength } => strength > 0.0,
             _ => false,
         };
-        let is_lamp = |id: u32| shines(&scene.surface(id)) && !is_black(&scene.color(id));
-        let has_lamp = || {
-            scene.appearance().surfaces().iter().any(shines) && (0..scene.len() as u32).any(is_lamp)
+        let is_emitter = |id: u32| shines(&scene.surface(id)) && !is_black(&scene.color(id));
+        let has_emitter = || {
+            scene.appearance().surfaces().iter().any(shines)
+                && (0..scene.len() as u32).any(is_emitter)
         };
-        !is_lit && !from_around && !has_lamp()
+        !is_lit && !has_ambient && !has_emitter()
     }
 }

@@ -1,27 +1,27 @@
-//! Direct light.
+//! Settings of the studio integrator: direct light.
 
 use crate::image::color::LinearRgb;
 
-/// Lights, shadows, ambient light, and what helps to see shape. Surfaces that are not emissive are Lambert's, with the
-/// lobe of their material where it has one.
+/// Settings of the studio integrator: lights, shadows, ambient light, and aids for seeing shape. Surfaces that are not
+/// emissive are shaded as Lambert surfaces, with the glossy lobe of their material if it has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Studio {
-    /// Light from everywhere.
+    /// Ambient light, which arrives from all directions.
     pub ambient: LinearRgb,
-    /// How much of it arrives; without, all of it.
+    /// Ambient occlusion, which reduces ambient light; `None` for no reduction.
     pub occlusion: Option<Occlusion>,
-    /// Whether lights cast shadows. Spheres that are not opaque cast none.
+    /// Whether lights cast shadows. Spheres that are not opaque cast no shadows.
     pub has_shadows: bool,
-    /// How many surfaces that are not opaque are seen behind each other: 1 to 64.
+    /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,
-    /// Colour fades with distance.
+    /// Fading of colours with distance.
     pub depth_cue: Option<DepthCue>,
     /// Lines where one sphere ends and another begins.
     pub outline: Option<Outline>,
 }
 
 impl Default for Studio {
-    /// Shadows, some ambient light, and no more.
+    /// Shadows and some ambient light.
     fn default() -> Self {
         Self {
             ambient: LinearRgb::gray(0.25),
@@ -34,43 +34,44 @@ impl Default for Studio {
     }
 }
 
-/// Ambient occlusion: the share of cosine-weighted directions in which no opaque sphere is near.
+/// Ambient occlusion: ambient light is reduced to the share of cosine-weighted directions in which no opaque sphere is
+/// near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occlusion {
-    /// How far away a sphere may be and still count, in scene units; `None` is any distance.
+    /// The largest distance, in scene units, at which a sphere occludes; `None` for any distance.
     pub radius: Option<f64>,
-    /// How many directions for each sample of a pixel: 1 to 1024.
+    /// The number of directions for each sample of a pixel: 1 to 1024.
     pub samples: u32,
 }
 
 impl Default for Occlusion {
-    /// At any distance, four directions.
+    /// Four directions, and occlusion at any distance.
     fn default() -> Self {
         Self { radius: None, samples: 4 }
     }
 }
 
-/// Colour fades linearly with the distance along the ray.
+/// Depth cueing: colours fade linearly with the distance along the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthCue {
-    /// Where it begins, in scene units.
+    /// Distance at which fading begins, in scene units.
     pub near: f64,
-    /// Where nothing else is left, in scene units; greater than `near`.
+    /// Distance at which only `color` is left, in scene units; greater than `near`.
     pub far: f64,
-    /// What it fades to.
+    /// The colour to which others fade.
     pub color: LinearRgb,
 }
 
-/// Lines at edges of the data layers: between spheres where the depth jumps or the normal turns.
+/// Lines at edges of the data layers: between spheres where the depth jumps or the direction of the normal changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
-    /// In pixels: 0.5 to 64.
+    /// Width of the outline in pixels: 0.5 to 64.
     pub width: f32,
-    /// Of the line.
+    /// Colour of the outline.
     pub color: LinearRgb,
-    /// The jump in depth that makes a line, in parts of the depth; 0 or more.
+    /// The smallest jump in depth that makes an outline, as a fraction of the depth; 0 or more.
     pub depth: f32,
-    /// The angle between normals that makes a line, in radians: 0 to π.
+    /// The smallest angle between normals that makes an outline, in radians: 0 to π.
     pub angle: f32,
 }
 

@@ -1,4 +1,4 @@
-//! What a scene's spheres look like, apart from where they are.
+//! What the spheres of a scene look like, apart from their geometry.
 
 use super::SceneError;
 use super::color_map::ColorMap;
@@ -8,33 +8,33 @@ use crate::scene::material::SurfaceProperties;
 /// The colours of a scene's spheres, in input order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colors {
-    /// All spheres have one.
+    /// All spheres have the same colour.
     One(LinearRgb),
-    /// Some colours, of which every sphere has one: 4 bytes a sphere.
+    /// Every sphere has a colour from a palette: 4 bytes for each sphere.
     Palette {
         /// The colours.
         palette: Vec<LinearRgb>,
-        /// Of every sphere, the index of its colour in the palette.
+        /// For every sphere, the index of its colour in the palette.
         indices: Vec<u32>,
     },
-    /// Every sphere has its own: 4 bytes a sphere, of red, green and blue in sRGB, and of alpha, which is not encoded
-    /// and multiplies the opacity of the sphere's surface. Colours are not premultiplied by it.
+    /// Every sphere has its own colour: 4 bytes for each sphere. Red, green and blue are in sRGB; alpha is linear and
+    /// multiplies the opacity of the sphere's surface. Colours are not premultiplied by alpha.
     Rgba8(Vec<[u8; 4]>),
-    /// Every sphere has a number, and numbers have colours: 4 bytes a sphere.
+    /// Every sphere has a number, and a colour map turns numbers into colours: 4 bytes for each sphere.
     Scalars {
-        /// Of every sphere, its number. NaN is refused.
+        /// The number of every sphere. NaN is an error.
         values: Vec<f32>,
-        /// The colours of numbers.
+        /// The map from numbers to colours.
         map: ColorMap,
     },
 }
 
-/// What spheres look like: colours, surface properties, and which sphere has which.
+/// What spheres look like: colours, surface properties, and the assignment of both to spheres.
 ///
 /// ```
 /// use pinhole::{Appearance, SurfaceProperties, SphereArray, Scene};
 ///
-/// // Four bytes a sphere, of which the last is opacity.
+/// Four bytes for each sphere; the last is opacity.
 /// let colors = vec![[255, 0, 0, 255], [0, 0, 255, 128]];
 /// let spheres = vec![[0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]];
 /// let scene = Scene::from_parts(SphereArray::F32(spheres), Appearance::from(colors))?;
@@ -68,7 +68,7 @@ impl From<Colors> for Appearance {
 }
 
 impl Appearance {
-    /// Of matt, opaque spheres; what is given is not copied.
+    /// The appearance of matt, opaque spheres. The colours are not copied.
     #[must_use]
     pub fn new(colors: Colors) -> Self {
         Self { colors, surfaces: vec![SurfaceProperties::default()], surface_indices: None }
@@ -94,29 +94,29 @@ impl Appearance {
         Self { surfaces, surface_indices, ..self }
     }
 
-    /// Which colours spheres have.
+    /// The colours of the spheres.
     #[must_use]
     pub fn colors(&self) -> &Colors {
         &self.colors
     }
 
-    /// The surface properties that occur; opacities are without the alpha of colours.
+    /// The list of surface properties. Opacities do not include the alpha of colours.
     #[must_use]
     pub fn surfaces(&self) -> &[SurfaceProperties] {
         &self.surfaces
     }
 
-    /// For every sphere, the index of its surface properties; `None` if all have the first.
+    /// For every sphere, the index of its surface properties; `None` if all spheres have the first.
     #[must_use]
     pub fn surface_indices(&self) -> Option<&[u32]> {
         self.surface_indices.as_deref()
     }
 
-    /// Whether it is one of so many spheres.
+    /// Checks that the appearance is valid for `count` spheres.
     ///
     /// # Errors
-    /// The first sphere whose colour or surface properties are missing, is none of those that there are, or is of the number NaN;
-    /// that there are more of them than spheres.
+    /// If a colour or a set of surface properties is missing for a sphere, an index is out of range, or a number is NaN
+    /// (the error names the first such sphere), or if there are more colours or indices than spheres.
     pub fn check(&self, count: usize) -> Result<(), SceneError> {
         let all = |what, found| match found {
             _ if found == count => Ok(()),
@@ -152,8 +152,8 @@ impl Appearance {
         }
     }
 
-    /// The colour of a sphere, by its index in input order; `None` if there is no such sphere, but where all
-    /// have one colour.
+    /// The colour of a sphere, by its index in input order. `None` if there is no such sphere; if all spheres have the
+    /// same colour, the index is not checked.
     #[must_use]
     pub fn color(&self, id: u32) -> Option<LinearRgb> {
         let index = id as usize;
@@ -170,7 +170,7 @@ impl Appearance {
         }
     }
 
-    /// The alpha of a sphere's colour: a 255th of a byte, or 1.
+    /// The alpha of a sphere's colour, from 0 to 1; 1 if colours have no alpha.
     pub(crate) fn alpha(&self, id: u32) -> f32 {
         match &self.colors {
             Colors::Rgba8(colors) => {
@@ -180,7 +180,7 @@ impl Appearance {
         }
     }
 
-    /// Whether a component of some colour may exceed 1.
+    /// Whether some component of some colour may exceed 1.
     pub(crate) fn may_exceed_one(&self) -> bool {
         let exceeds = |color: &LinearRgb| color.to_array().iter().any(|c| *c > 1.0);
         match &self.colors {
@@ -192,7 +192,7 @@ impl Appearance {
     }
 }
 
-/// What a byte of alpha stands for.
+/// Converts a byte of alpha to a number from 0 to 1.
 pub(crate) fn alpha_of(byte: u8) -> f32 {
     f32::from(byte) / 255.0
 }

@@ -1,4 +1,4 @@
-//! What the spheres of a scene look like, with what follows from it.
+//! The checked appearance of a scene, with data that is derived from it.
 
 use std::ops::{Deref, Range};
 use std::sync::OnceLock;
@@ -9,8 +9,7 @@ use super::update::NewColors;
 use crate::image::color::LinearRgb;
 use crate::scene::material::SurfaceProperties;
 
-/// The appearance of so many spheres, which has been checked. What follows from it is found out when it is first asked
-/// for.
+/// An appearance that has been checked for `count` spheres. Derived data is computed when it is first needed.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneAppearance {
     appearance: Appearance,
@@ -32,7 +31,7 @@ impl SceneAppearance {
         Self { appearance, count, material_table: OnceLock::new(), is_opaque: OnceLock::new() }
     }
 
-    /// Gives some spheres other colours, which have been checked and are of the same kind.
+    /// Replaces the colours of some spheres. The new colours have been checked and are of the same kind.
     pub(super) fn set_colors(&mut self, range: Range<usize>, new: &NewColors<'_>) {
         match (&mut self.appearance.colors, new) {
             (Colors::Palette { indices, .. }, NewColors::Palette(new)) => {
@@ -47,17 +46,17 @@ impl SceneAppearance {
         (self.material_table, self.is_opaque) = (OnceLock::new(), OnceLock::new());
     }
 
-    /// The appearance alone.
+    /// The appearance without the derived data.
     pub(super) fn into_inner(self) -> Appearance {
         self.appearance
     }
 
-    /// Of how many spheres it is.
+    /// The number of spheres.
     pub(crate) fn sphere_count(&self) -> usize {
         self.count
     }
 
-    /// The colour of a sphere that there is.
+    /// The colour of a sphere, whose index must be valid.
     pub(crate) fn color_of(&self, id: u32) -> LinearRgb {
         self.color(id).unwrap_or(LinearRgb::BLACK)
     }
@@ -74,7 +73,7 @@ impl SceneAppearance {
         SurfaceProperties { material, opacity: opacity * self.alpha(id) }
     }
 
-    /// Whether nothing is seen through any sphere.
+    /// Whether all spheres are opaque.
     pub(crate) fn is_opaque(&self) -> bool {
         *self.is_opaque.get_or_init(|| {
             let has_alpha = match self.colors() {
@@ -89,12 +88,12 @@ impl SceneAppearance {
         self.material_table.get_or_init(|| MaterialTable::of(self))
     }
 
-    /// The rows of a table of all materials.
+    /// The rows of the material table.
     pub(crate) fn material_rows(&self) -> &[MaterialRow] {
         self.material_table().rows()
     }
 
-    /// The row of a sphere's material among them.
+    /// The index of a sphere's material in the rows of the material table.
     pub(crate) fn material_row(&self, id: u32) -> u32 {
         self.material_table().index(id).unwrap_or_else(|| self.surface_index(id))
     }

@@ -1,38 +1,38 @@
-//! Colours for numbers.
+//! Colour maps, which turn numbers into colours.
 
 use crate::image::color::LinearRgb;
 
-/// A table of colours for numbers of a range: the first is the colour of the range's low end, the last that of its
-/// high end, and the others lie evenly between.
+/// A table of colours for a range of numbers. The first entry is the colour of the low end, the last that of the high
+/// end, and the others are spaced evenly between them.
 ///
-/// A number has the nearest entry's colour, and one beyond the range has the colour of that end: of n entries, entry
-/// ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated, so that every renderer
-/// shows the same ones to the bit; a table of 256 entries is as fine as a display.
+/// A number has the colour of the nearest entry, and a number outside the range that of the nearest end: of n entries,
+/// the entry ⌊(value − low) / (high − low) · (n − 1) + ½⌋, computed in f64. Colours are not interpolated, so that every
+/// renderer shows the same colours to the bit; a table of 256 entries is as fine as an 8-bit display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
     colors: Vec<LinearRgb>,
     range: [f32; 2],
 }
 
-/// Why there is no such colour map.
+/// Why a table and a range do not make a colour map.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorMapError {
     /// The table is empty.
     #[error("a color map needs at least one color")]
     Empty,
-    /// The range has no ends, or they are the wrong way round.
+    /// An end of the range is not finite, or the first is not less than the second.
     #[error(
         "the range of a color map is {range:?}; its ends must be finite, and the first less than the second"
     )]
     Range {
-        /// As given.
+        /// The range as given.
         range: [f32; 2],
     },
 }
 
 impl ColorMap {
-    /// A table of colours, and the numbers that its first and last entry stand for.
+    /// A colour map from a table and the numbers that its first and its last entry stand for.
     ///
     /// # Errors
     /// If there is no colour, or the ends are not finite, or the first is not less than the second.
@@ -47,7 +47,7 @@ impl ColorMap {
         Ok(Self { colors, range })
     }
 
-    /// The table.
+    /// The table of colours.
     #[must_use]
     pub fn colors(&self) -> &[LinearRgb] {
         &self.colors
@@ -59,13 +59,14 @@ impl ColorMap {
         self.range
     }
 
-    /// The entry of a number. Infinities have those of the ends, and NaN, which no scene takes, the first.
+    /// The index of the entry for a number. Infinities have the entries of the ends; NaN, which no scene accepts, has
+    /// the first.
     #[must_use]
     pub fn index(&self, value: f32) -> usize {
         let [low, high] = self.range.map(f64::from);
         let last = self.colors.len() - 1;
         let along = (f64::from(value) - low) / (high - low);
-        // The conversion makes 0 of what is negative and of NaN.
+        // The conversion turns negative numbers and NaN into 0.
         ((along * last as f64 + 0.5).floor() as usize).min(last)
     }
 

@@ -1,21 +1,21 @@
-//! Spheres that are equal to one before them.
+//! Spheres that are equal to an earlier sphere.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::geometry::math::equal_bits;
 use crate::parallel::map_chunks;
 
-/// Spheres whose centre and radius are those of one before them. Of several at the same distance the first is met, so
-/// they are never seen.
+/// Finds spheres whose centre and radius equal those of an earlier sphere. At equal distances a ray hits the sphere
+/// with the smaller index, so that duplicates are never visible.
 #[derive(Debug)]
 pub(crate) struct Duplicates {
-    /// Of every sphere, the first that is equal to it; empty if each is the first.
+    /// For every sphere, the index of the first sphere equal to it; empty if there are no duplicates.
     firsts: Vec<u32>,
 }
 
 impl Duplicates {
-    /// Of spheres, each a centre and a radius. Takes time in proportion to their number, and 4 bytes for each while it
-    /// runs.
+    /// Finds the duplicates among spheres (x, y, z, radius). The time is proportional to their number; it needs 4 bytes
+    /// for each sphere while it runs.
     pub(crate) fn of(spheres: &[[f32; 4]]) -> Self {
         let mut suspects = suspects(spheres);
         let bits_of = |id: &u32| bits(&spheres[*id as usize]);
@@ -33,24 +33,24 @@ impl Duplicates {
         Self { firsts }
     }
 
-    /// For every sphere the first that is equal to it; `None` if each is the first.
+    /// For every sphere, the index of the first sphere equal to it; `None` if there are no duplicates.
     #[cfg(any(feature = "gpu", test))]
     pub(crate) fn into_firsts(self) -> Option<Vec<u32>> {
         (!self.firsts.is_empty()).then_some(self.firsts)
     }
 
-    /// The first sphere that is equal to one; mostly itself.
+    /// The index of the first sphere equal to this one, which is usually the sphere itself.
     pub(crate) fn first_of(&self, id: u32) -> u32 {
         self.firsts.get(id as usize).copied().unwrap_or(id)
     }
 }
 
-/// All spheres that have an equal, and few others.
+/// A list of spheres that contains all that have an equal sphere, and few others.
 fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
     const BITS_PER_SPHERE: usize = 16;
     let words = (spheres.len() * BITS_PER_SPHERE / 64).next_power_of_two();
     let clear = || -> Vec<AtomicU64> { (0..words).map(|_| AtomicU64::new(0)).collect() };
-    // Equal spheres have the same bit.
+    // The word and the bit in it that belong to a sphere: the same for equal spheres.
     let bit_of = |sphere: &[f32; 4]| {
         let hash = hash(sphere);
         ((hash >> 6) as usize & (words - 1), 1 << (hash & 63))
@@ -77,7 +77,7 @@ fn suspects(spheres: &[[f32; 4]]) -> Vec<u32> {
     found.concat()
 }
 
-/// Well mixed in its lower bits: two rounds of multiplying and folding.
+/// A hash whose lower bits are well mixed: two rounds of multiplying and folding.
 fn hash(sphere: &[f32; 4]) -> u64 {
     const ODD: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xd6e8_feb8_6659_fd93];
     let [x, y, z, radius] = bits(sphere).map(u64::from);
@@ -88,7 +88,7 @@ fn hash(sphere: &[f32; 4]) -> u64 {
     fold(fold(x | y << 32, ODD[0]) ^ (z | radius << 32), ODD[1])
 }
 
-/// The same for equal spheres.
+/// The bits of a sphere; equal spheres have equal bits.
 fn bits(sphere: &[f32; 4]) -> [u32; 4] {
     sphere.map(equal_bits)
 }
@@ -112,7 +112,7 @@ mod tests {
         }
     }
 
-    /// As a search among all spheres before each.
+    /// The expected answer comes from a search among all spheres before each.
     #[test]
     fn many_are_found_among_many() {
         let mut random = fastrand::Rng::with_seed(31);

@@ -1,4 +1,4 @@
-//! From spheres in the world to f32 offsets in a frame.
+//! The conversion of spheres from world space to f32 offsets in the frame of a scene.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::geometry::bounds::Bounds;
 use crate::parallel;
 use crate::scene::sphere::{self, Sphere};
 
-/// Offsets are shorter than this times them by no more than rounding.
+/// Factor that shrinks offsets before they are checked, so that rounding alone does not push them out of range.
 const FRAME_SLACK: f64 = 1.0 - 1.0 / (1 << 20) as f64;
 
 pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
@@ -15,7 +15,7 @@ pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
     [x, y, z, sphere.radius]
 }
 
-/// Checks how many there are and every one of them, and finds the box of all.
+/// Checks the number of spheres and each sphere, and returns the bounding box of all.
 pub(super) fn bounds_of_checked<T: Sync>(
     spheres: &[T],
     parts: impl Fn(&T) -> [f64; 4] + Sync,
@@ -34,12 +34,12 @@ pub(super) fn bounds_of_checked<T: Sync>(
         }
         Ok(bounds)
     };
-    // The chunks' answers come in input order, so that the first bad sphere is the one that is named.
+    // The results of the chunks are in input order, so that the error names the first invalid sphere.
     let chunks: Result<Vec<_>, _> = parallel::map_chunks(spheres, of_chunk).into_iter().collect();
     Ok(chunks?.into_iter().flatten().reduce(Bounds::union))
 }
 
-/// The spheres in a frame, in f32.
+/// Converts spheres to f32 in the frame at `origin`.
 pub(super) fn narrowed<T: Sync>(
     spheres: &[T],
     parts: impl Fn(&T) -> [f64; 4] + Sync,
@@ -49,30 +49,31 @@ pub(super) fn narrowed<T: Sync>(
         .map_err(|_| SceneError::Memory { count: spheres.len() })
 }
 
-/// One sphere in a frame, in f32.
+/// Converts one sphere to f32 in the frame at `origin`.
 pub(super) fn moved([x, y, z, radius]: [f64; 4], origin: DVec3) -> [f32; 4] {
     let offset = (DVec3::new(x, y, z) - origin).as_vec3();
     [offset.x, offset.y, offset.z, radius as f32]
 }
 
-/// Where the scene's frame lies: zero along an axis while the world's origin is about as near as the data
-/// is wide, else the data's middle.
+/// The origin of a scene's frame. Along each axis it is zero if the centre of the data is no farther from the world's
+/// origin than the data is wide; otherwise it is the centre of the data.
 ///
-/// The middle is rounded to f32. Then coordinates that were exact in f32 stay exact after the move,
-/// because neither of two f32 is more than twice the other (Sterbenz).
+/// The centre is rounded to f32. Coordinates that are exact in f32 then stay exact after the move, because neither of
+/// the two f32 numbers is more than twice the other (Sterbenz).
 pub(super) fn frame_origin(bounds: Bounds) -> DVec3 {
     let width = bounds.size().max_element();
     let along = |center: f64| if center.abs() <= width { 0.0 } else { f64::from(center as f32) };
     DVec3::from(bounds.center().to_array().map(along))
 }
 
-/// What is checked of a sphere in a frame: what rounding the offset adds is no reason to refuse one at the very edge.
+/// A sphere of a frame for checking, with its offset shrunk by [`FRAME_SLACK`] so that rounding does not invalidate a
+/// sphere at the very limit.
 pub(super) fn slackened(sphere: &[f32; 4]) -> [f64; 4] {
     let [x, y, z, radius] = sphere.map(f64::from);
     [x * FRAME_SLACK, y * FRAME_SLACK, z * FRAME_SLACK, radius]
 }
 
-/// The box in the world of spheres in a frame.
+/// The bounding box, in world space, of spheres in a frame.
 pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
     let of_sphere = |s: &[f32; 4]| {
         let [x, y, z, radius] = s.map(f64::from);

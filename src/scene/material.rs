@@ -1,53 +1,53 @@
-//! What a sphere's surface does with light. Its colour is the sphere's own.
+//! Materials: what a sphere's surface does with light. The colour belongs to the sphere, not to the material.
 
 use crate::range::RangeError;
 
-/// What a surface does with light that meets it.
+/// What a surface does with light that hits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Material {
-    /// Lambert's law, and on top of it a share of light that is reflected as by a rough mirror.
+    /// A diffuse surface (Lambert's law), with an optional glossy lobe on top.
     Lambert {
-        /// The share that the lobe reflects, whatever the colour: 0 to 1.
+        /// The fraction of light that the glossy lobe reflects, whatever the colour: 0 to 1.
         specular: f32,
-        /// Of the lobe: 0.02 to 1.
+        /// Roughness of the glossy lobe: 0.02 to 1.
         roughness: f32,
     },
-    /// A rough metal (GGX); the colour is what it reflects at normal incidence.
+    /// A rough metal (GGX); the sphere's colour is its reflectance at normal incidence.
     Conductor {
-        /// 0.02 to 1.
+        /// Roughness: 0.02 to 1.
         roughness: f32,
     },
-    /// Glass, smooth or rough. Light that goes through it is absorbed (Beer's law).
+    /// Glass, smooth or rough. Light that passes through it may be absorbed (Beer's law).
     Dielectric {
-        /// Index of refraction, relative to what is around: 1 to 4.
+        /// Index of refraction relative to the surroundings: 1 to 4.
         ior: f32,
-        /// 0 (smooth), or 0.02 to 1.
+        /// Roughness: 0 (smooth), or 0.02 to 1.
         roughness: f32,
-        /// After this distance inside, in scene units, white light has the sphere's colour; `None` absorbs
-        /// nothing.
+        /// The distance inside the sphere, in scene units, after which white light has the sphere's colour; `None` for
+        /// no absorption.
         attenuation_distance: Option<f32>,
     },
-    /// A lamp: sends out the sphere's colour times this, on both sides, and reflects nothing.
+    /// A light source: it emits the sphere's colour times `strength` on both sides, and reflects nothing.
     Emissive {
-        /// What the colour is multiplied by: at least 0.
+        /// The factor by which the colour is multiplied: 0 to 10⁶.
         strength: f32,
     },
 }
 
 impl Default for Material {
-    /// Lambert's law alone.
+    /// A diffuse surface without a glossy lobe.
     fn default() -> Self {
         Self::Lambert { specular: 0.0, roughness: 0.3 }
     }
 }
 
-/// A material, and how much of what is behind it a surface hides.
+/// A material, and the opacity of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceProperties {
     /// What the surface does with light.
     pub material: Material,
-    /// Of each surface crossing, so that a ray through a sphere meets it twice: 0 (clear) to 1.
+    /// Opacity of each surface crossing, so that it counts twice for a ray through a sphere: 0 (clear) to 1 (opaque).
     pub opacity: f32,
 }
 
@@ -57,14 +57,14 @@ impl Default for SurfaceProperties {
     }
 }
 
-/// The smallest roughness that is not smooth.
+/// The smallest roughness of a surface that is not smooth.
 pub const MIN_ROUGHNESS: f32 = 0.02;
 
 impl SurfaceProperties {
-    /// Whether every parameter is in its range.
+    /// Checks that every parameter is in its range.
     ///
     /// # Errors
-    /// The first that is not.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = |parameter, value: f32, [low, high]: [f32; 2], range| {
             RangeError::unless_within(parameter, value.into(), [low.into(), high.into()], range)
@@ -97,7 +97,7 @@ impl SurfaceProperties {
         Ok(())
     }
 
-    /// As bits, to tell them apart.
+    /// The bits of all parameters, which are equal only for equal properties.
     pub(crate) fn bits(&self) -> [u32; 5] {
         let [kind, a, b, c] = match self.material {
             Material::Lambert { specular, roughness } => [0.0, specular, roughness, 0.0],

@@ -1,4 +1,4 @@
-//! The materials that a scene's spheres have, as tables of renderers list them.
+//! The table of the materials of a scene's spheres, as renderers use it.
 
 use std::collections::HashMap;
 
@@ -6,30 +6,31 @@ use super::checked::SceneAppearance;
 use crate::image::color::LinearRgb;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// What one row of a table of materials is made of.
+/// The content of one row of the material table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MaterialRow {
-    /// Its opacity is to be multiplied by the alpha of the sphere's colour.
+    /// The surface properties, whose opacity is still to be multiplied by the alpha of the sphere's colour.
     pub(crate) surface: SurfaceProperties,
-    /// Of a material that absorbs light inside, which depends on the colour; else white.
+    /// The colour of a material that absorbs light inside, which depends on it; white for all others.
     pub(crate) color: LinearRgb,
 }
 
-/// All rows, and which of them every sphere has.
+/// All rows, and the assignment of rows to spheres.
 #[derive(Clone, Debug)]
 pub(crate) struct MaterialTable {
     rows: Vec<MaterialRow>,
-    /// `None` where they are the indices of surface properties.
+    /// For every sphere, the index of its row; `None` if that is the index of its surface properties.
     indices: Option<Vec<u32>>,
 }
 
-/// Whether the colour decides how much light is absorbed inside.
+/// Whether the surface belongs to a material whose colour determines the absorption inside.
 fn absorbs(surface: &SurfaceProperties) -> bool {
     matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
 }
 
 impl MaterialTable {
-    /// One row for each set of surface properties; where these absorb light, one for each colour they have.
+    /// Makes one row for each set of surface properties; if its material absorbs light, one for each colour that occurs
+    /// with it.
     pub(super) fn of(appearance: &SceneAppearance) -> Self {
         let surfaces = appearance.surfaces();
         let mut rows: Vec<MaterialRow> = surfaces
@@ -51,7 +52,7 @@ impl MaterialTable {
             let key = (index, color.to_array().map(f32::to_bits));
             *indices.entry(key).or_insert_with(|| {
                 let row = MaterialRow { surface: *surface, color };
-                // The first colour takes the row of the surface properties.
+                // The first colour uses the row of the surface properties.
                 if std::mem::replace(&mut has_first[index as usize], true) {
                     rows.push(row);
                     return rows.len() as u32 - 1;
@@ -65,7 +66,7 @@ impl MaterialTable {
         Self { rows, indices: differ.then_some(indices) }
     }
 
-    /// All rows.
+    /// All rows of the table.
     pub(crate) fn rows(&self) -> &[MaterialRow] {
         &self.rows
     }

@@ -1,4 +1,4 @@
-//! Spheres, checked once: where they are, and apart from that what they look like.
+//! Scenes: spheres that have been checked, and their appearance.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -6,7 +6,6 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::geometry::bounds::Bounds;
-#[cfg(feature = "run-file")]
 use crate::geometry::math::MAX_LENGTH;
 use crate::image::color::LinearRgb;
 use crate::parallel;
@@ -34,21 +33,21 @@ pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
-/// Spheres in the scene's own frame: an f64 origin, and f32 offsets from it; and what they look like.
+/// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
-/// The frame is the world's own unless the data lies farther from the world's origin, along an axis, than
-/// it is wide; then the scene's origin is the middle of the data, so that f32 offsets keep its shape.
-/// Both the GPU and the CPU reference see the same f32 numbers.
+/// The frame is that of the world unless the data lies farther from the world's origin, along an axis, than it is wide;
+/// then the origin is the centre of the data along that axis, so that f32 offsets preserve its shape. The GPU and the
+/// CPU reference see the same f32 numbers.
 #[derive(Clone, Debug)]
 pub struct Scene {
     origin: DVec3,
     spheres: Vec<[f32; 4]>,
-    /// Shared with those who need nothing else of the scene.
+    /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
 }
 
-/// Which sphere a scene refuses, and why.
+/// Why spheres and an appearance do not make a scene.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -60,24 +59,26 @@ pub enum SceneError {
         /// What is wrong with it.
         error: SphereError,
     },
-    /// There is no memory for so many.
-    #[error("there is no memory for {count} spheres; they need {} bytes", count * 16)]
+    /// There is not enough memory for all spheres.
+    #[error("there is not enough memory for {count} spheres, which need {} bytes", count * 16)]
     Memory {
-        /// How many were given.
+        /// The number of spheres given.
         count: usize,
     },
     /// The frame's origin is NaN, infinite or too far away.
-    #[error("its origin {:?} is not finite, or too far away", origin.to_array())]
+    #[error("its origin {:?} is out of range; every coordinate must be finite and at most {MAX_LENGTH:e} in size", origin.to_array())]
     Origin {
         /// The origin as given.
         origin: DVec3,
     },
-    /// A sphere has no colour.
-    #[error("sphere {index} has no color; the palette has {colors}")]
+    /// The palette index of a sphere is out of range.
+    #[error(
+        "sphere {index} has no color: its index is out of range; the palette has {colors} colors"
+    )]
     Color {
         /// Index in input order.
         index: usize,
-        /// How many colours there are.
+        /// The number of colours in the palette.
         colors: usize,
     },
     /// The index of a sphere's surface properties is out of range.
@@ -85,7 +86,7 @@ pub enum SceneError {
     SurfaceProperties {
         /// Index in input order.
         index: usize,
-        /// How many surface properties there are.
+        /// The number of sets of surface properties.
         surfaces: usize,
     },
     /// A sphere has the number NaN, for which a colour map has no colour.
@@ -94,32 +95,33 @@ pub enum SceneError {
         /// Index in input order.
         index: usize,
     },
-    /// Something that every sphere has one of is there for fewer or more of them.
+    /// A list with one entry for each sphere has the wrong length.
     #[error(
         "{}: there are {found} for {spheres} spheres",
         if found < spheres { format!("sphere {found} has no {what}") } else { format!("{what} {spheres} has no sphere") }
     )]
     Count {
-        /// What is counted.
+        /// What the list contains.
         what: &'static str,
-        /// How many there are.
+        /// The length of the list.
         found: usize,
-        /// How many there should be.
+        /// The number of spheres, which the length should be.
         spheres: usize,
     },
-    /// More spheres than ids.
+    /// There are more spheres than ids.
     #[error("{count} spheres are too many; ids are u32 and {} means a miss", u32::MAX)]
     TooMany {
-        /// How many were given.
+        /// The number of spheres given.
         count: usize,
     },
 }
 
 impl Scene {
-    /// Checks the spheres and moves them into the scene's frame. A scene may be empty.
+    /// Checks the spheres and moves them into the frame of the scene. A scene may be empty.
     ///
     /// # Errors
-    /// The first sphere, in input order, with a centre or radius that is out of range.
+    /// If a centre or radius is out of range (the error names the first such sphere in input order), or if there are
+    /// too many spheres.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
         let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
@@ -127,14 +129,14 @@ impl Scene {
         Ok(Self::in_frame(origin, narrow, appearance_of(spheres), bounds))
     }
 
-    /// A scene of spheres, and of what they look like. Neither is copied, but for spheres in f64; only spheres far
-    /// from the world's origin are moved, in place.
+    /// A scene from spheres and their appearance. Arrays are not copied, except for spheres in f64; spheres far from
+    /// the world's origin are moved in place.
     ///
     /// # Errors
-    /// As [`Scene::new`]; as [`Appearance::check`].
-    pub fn from_parts(points: SphereArray, appearance: Appearance) -> Result<Self, SceneError> {
-        let count = points.len();
-        let (origin, spheres, bounds) = match points {
+    /// The same errors as [`Scene::new`] and [`Appearance::check`].
+    pub fn from_parts(array: SphereArray, appearance: Appearance) -> Result<Self, SceneError> {
+        let count = array.len();
+        let (origin, spheres, bounds) = match array {
             SphereArray::F32(mut spheres) => {
                 let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
                 let origin = bounds.map_or(DVec3::ZERO, frame_origin);
@@ -153,8 +155,8 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, appearance, bounds))
     }
 
-    /// As [`Scene::new`], of many spheres (x, y, z, radius) of one colour. They are kept as they are, and
-    /// not copied; only those far from the world's origin are moved, in place.
+    /// A scene from spheres (x, y, z, radius) in f32, all of one colour. The array is not copied; spheres far from the
+    /// world's origin are moved in place.
     ///
     /// # Errors
     /// As [`Scene::new`].
@@ -162,7 +164,7 @@ impl Scene {
         Self::from_parts(SphereArray::F32(spheres), color.into())
     }
 
-    /// As [`Scene::from_f32`], of spheres whose coordinates need f64.
+    /// A scene from spheres (x, y, z, radius) in f64, all of one colour.
     ///
     /// # Errors
     /// As [`Scene::new`].
@@ -173,7 +175,7 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, color.into(), bounds))
     }
 
-    /// Of what has been checked.
+    /// A scene from parts that have been checked.
     fn in_frame(
         origin: DVec3,
         spheres: Vec<[f32; 4]>,
@@ -192,7 +194,7 @@ impl Scene {
         self
     }
 
-    /// The opaque spheres in the same frame; `None` if that is all of them.
+    /// A scene of only the opaque spheres in the same frame; `None` if all spheres are opaque.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque(&self) -> Option<Self> {
         if self.appearance.is_opaque() {
@@ -204,23 +206,23 @@ impl Scene {
         Some(Self::in_frame(self.origin, spheres, LinearRgb::WHITE.into(), bounds))
     }
 
-    /// Indices of the opaque spheres, in their order.
+    /// The indices of the opaque spheres, in ascending order.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque_ids(&self) -> impl Iterator<Item = u32> {
         (0..self.len() as u32).filter(|id| self.surface(*id).opacity >= 1.0)
     }
 
-    /// A scene from all that another consisted of, to the bit, except that bounds are those of the f32 numbers.
+    /// Restores a scene from its parts, to the bit, except that the bounds are computed from the f32 numbers.
     ///
     /// # Errors
-    /// As [`Scene::from_parts`]; if the origin is out of range.
+    /// The same errors as [`Scene::from_parts`], and an error if the origin is out of range.
     #[cfg(feature = "run-file")]
     pub(crate) fn from_frame(
         origin: DVec3,
         spheres: Vec<[f32; 4]>,
         appearance: Appearance,
     ) -> Result<Self, SceneError> {
-        // False for NaN as well.
+        // The comparison is false for NaN as well.
         if !origin.abs().cmple(DVec3::splat(MAX_LENGTH)).all() {
             return Err(SceneError::Origin { origin });
         }
@@ -230,25 +232,25 @@ impl Scene {
         Ok(Self::in_frame(origin, spheres, appearance, bounds))
     }
 
-    /// Where the scene's frame lies in the world.
+    /// The origin of the scene's frame in world space.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// Centre (x, y, z) in the scene's frame, and radius, of every sphere, in input order.
+    /// The spheres in input order: centre (x, y, z) in the frame of the scene, and radius.
     #[must_use]
     pub fn spheres(&self) -> &[[f32; 4]] {
         &self.spheres
     }
 
-    /// What the spheres look like.
+    /// The appearance of the spheres.
     #[must_use]
     pub fn appearance(&self) -> &Appearance {
         &self.appearance
     }
 
-    /// The same, with what follows from it.
+    /// The appearance of the spheres with the data that is derived from it.
     pub(crate) fn checked_appearance(&self) -> &Arc<SceneAppearance> {
         &self.appearance
     }
@@ -263,8 +265,8 @@ impl Scene {
         self.appearance.color_of(id)
     }
 
-    /// The surface properties of a sphere, by its index in input order. The opacity is theirs times the alpha of the
-    /// sphere's colour.
+    /// The surface properties of a sphere, by its index in input order. The opacity includes the alpha of the sphere's
+    /// colour.
     ///
     /// # Panics
     /// If there is no such sphere.
@@ -274,25 +276,25 @@ impl Scene {
         self.appearance.surface_of(id)
     }
 
-    /// The box of all spheres in the world, or `None` if there are none.
+    /// The bounding box of all spheres in world space; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
     }
 
-    /// The box that a camera should show: of all spheres, or if there are none a unit cube.
+    /// The box that a camera should show: that of all spheres, or a unit cube if there are none.
     #[must_use]
     pub fn bounds_to_frame(&self) -> Bounds {
         self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
     }
 
-    /// How many spheres there are.
+    /// The number of spheres.
     #[must_use]
     pub fn len(&self) -> usize {
         self.spheres.len()
     }
 
-    /// Whether there is no sphere.
+    /// Whether the scene has no spheres.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
@@ -309,7 +311,8 @@ impl SphereArray {
     }
 }
 
-/// Every colour and all surface properties once, in the order of first use, and their indices for each sphere.
+/// The appearance of the spheres: all distinct colours and surface properties, in the order of first use, and their
+/// indices for each sphere.
 fn appearance_of(spheres: &[Sphere]) -> Appearance {
     let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
     let (surfaces, surface_indices) =
@@ -319,7 +322,7 @@ fn appearance_of(spheres: &[Sphere]) -> Appearance {
 }
 
 impl Colors {
-    /// Every colour once, in the order of first use, and the index of each sphere's.
+    /// The distinct colours, in the order of first use, and the index of each sphere's colour.
     pub(crate) fn distinct(colors: &[LinearRgb]) -> Self {
         Self::of_palette(distinct(colors, |color| keyed(*color)))
     }
@@ -337,7 +340,8 @@ fn keyed(color: LinearRgb) -> (LinearRgb, [u32; 3]) {
     (color, color.to_array().map(f32::to_bits))
 }
 
-/// Everything that spheres have, once, and for each sphere an index into it; `None` if there is but one.
+/// The distinct properties of the spheres, in the order of first use, and for each sphere an index into them; `None` if
+/// there is at most one.
 fn distinct<S, T, K: Eq + std::hash::Hash>(
     spheres: &[S],
     of: impl Fn(&S) -> (T, K),
@@ -350,7 +354,7 @@ fn distinct<S, T, K: Eq + std::hash::Hash>(
             let (one, key) = of(sphere);
             *indices.entry(key).or_insert_with(|| {
                 all.push(one);
-                // No more than spheres, which are fewer than 2³².
+                // There are no more entries than spheres, which are fewer than 2³².
                 all.len() as u32 - 1
             })
         })

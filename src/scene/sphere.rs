@@ -1,10 +1,10 @@
-//! The one primitive.
+//! The sphere, which is the only primitive.
 
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::image::color::LinearRgb;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// A sphere in world space, as a caller gives it. [`crate::Scene`] checks it.
+/// A sphere in world space, not yet checked. [`crate::Scene`] checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sphere {
@@ -14,11 +14,11 @@ pub struct Sphere {
     pub radius: f64,
     /// Surface colour.
     pub color: LinearRgb,
-    /// What the surface does with light; lit pictures show it.
+    /// What the surface does with light; it matters only for pictures with lighting.
     pub surface: SurfaceProperties,
 }
 
-/// What is wrong with a sphere.
+/// Why a sphere is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SphereError {
@@ -47,21 +47,21 @@ impl Sphere {
         Self { center, radius, color, surface: SurfaceProperties::default() }
     }
 
-    /// The sphere of another material.
+    /// The same sphere with another material.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
         self.surface.material = material;
         self
     }
 
-    /// The sphere with another opacity.
+    /// The same sphere with another opacity.
     #[must_use]
     pub fn with_opacity(mut self, opacity: f32) -> Self {
         self.surface.opacity = opacity;
         self
     }
 
-    /// Whether the sphere may be part of a scene.
+    /// Checks that the centre and the radius are in range.
     ///
     /// # Errors
     /// If the centre or the radius is out of range.
@@ -71,7 +71,7 @@ impl Sphere {
     }
 }
 
-/// Whether a centre (x, y, z) and a radius may be part of a scene.
+/// Checks that a centre (x, y, z) and a radius are in range.
 pub(crate) fn check([x, y, z, radius]: [f64; 4]) -> Result<(), SphereError> {
     let center = [x, y, z];
     // `contains` is false for NaN.

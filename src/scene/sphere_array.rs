@@ -1,58 +1,58 @@
-//! Spheres as arrays hold them, without colours.
+//! Arrays of spheres without colours.
 
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 
-/// Spheres (x, y, z, radius), not checked, in the precision of their source.
+/// Spheres (x, y, z, radius) in the precision of their source, not yet checked.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SphereArray {
-    /// In f32.
+    /// Spheres in f32.
     F32(Vec<[f32; 4]>),
-    /// In f64.
+    /// Spheres in f64.
     F64(Vec<[f64; 4]>),
 }
 
-/// Radii of spheres whose centres stand apart.
+/// Radii that are stored separately from the centres of their spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radii<'a, T> {
-    /// All have one.
+    /// All spheres have the same radius.
     All(T),
-    /// Each has its own.
+    /// Each sphere has its own radius.
     Each(&'a [T]),
 }
 
-/// There are not as many radii as positions.
+/// The number of radii differs from the number of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{}: there are {radii} radii for {positions} positions",
     if radii < positions { format!("position {radii} has no radius") } else { format!("radius {positions} has no position") }
 )]
 pub struct RadiiError {
-    /// How many positions there are.
+    /// The number of positions.
     pub positions: usize,
-    /// How many radii there are.
+    /// The number of radii.
     pub radii: usize,
 }
 
 impl SphereArray {
-    /// Spheres whose centres and radii stand apart, in f32.
+    /// Spheres from centres and radii in f32.
     ///
     /// # Errors
-    /// If there are not as many radii as centres.
+    /// If the number of radii differs from the number of centres.
     pub fn from_f32(centers: &[[f32; 3]], radii: Radii<'_, f32>) -> Result<Self, RadiiError> {
         joined(centers, radii).map(Self::F32)
     }
 
-    /// Spheres whose centres and radii stand apart, in f64.
+    /// Spheres from centres and radii in f64.
     ///
     /// # Errors
-    /// If there are not as many radii as centres.
+    /// If the number of radii differs from the number of centres.
     pub fn from_f64(centers: &[[f64; 3]], radii: Radii<'_, f64>) -> Result<Self, RadiiError> {
         joined(centers, radii).map(Self::F64)
     }
 
-    /// How many there are.
+    /// The number of spheres.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -61,13 +61,13 @@ impl SphereArray {
         }
     }
 
-    /// Whether there is none.
+    /// Whether there are no spheres.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Multiplies every radius; f32 stays f32.
+    /// Multiplies every radius by `factor`; the precision of the array stays the same.
     pub fn scale_radii(&mut self, factor: f64) {
         match self {
             Self::F32(spheres) => {
@@ -77,7 +77,7 @@ impl SphereArray {
         }
     }
 
-    /// The spheres one by one, all of one colour.
+    /// Iterates over the spheres, all of them with one colour.
     pub fn with_color(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let sphere = move |[x, y, z, radius]: [f64; 4]| Sphere::new([x, y, z], radius, color);
         let (narrow, wide): (&[[f32; 4]], &[[f64; 4]]) = match self {

@@ -1,4 +1,4 @@
-//! New numbers for some spheres of a scene.
+//! Updates of some spheres of a scene.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use super::appearance::Colors;
 use super::{Scene, SceneError, frame};
 use crate::scene::sphere::{self, SphereError};
 
-/// New centres, radii or colours for consecutive spheres of a scene. What is `None` stays as it is.
+/// New centres, radii or colours for consecutive spheres of a scene. Whatever is `None` does not change.
 ///
 /// ```
 /// use pinhole::scene::{Centers, SceneUpdate};
@@ -23,85 +23,85 @@ use crate::scene::sphere::{self, SphereError};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneUpdate<'a> {
-    /// Index of the first of the spheres, in input order.
+    /// Index of the first updated sphere, in input order.
     pub first: u32,
-    /// Their centres, in the world.
+    /// New centres in world space.
     pub centers: Option<Centers<'a>>,
-    /// Their radii.
+    /// New radii.
     pub radii: Option<&'a [f32]>,
-    /// Their colours.
+    /// New colours.
     pub colors: Option<NewColors<'a>>,
 }
 
-/// Centres of spheres in the world.
+/// Centres of spheres in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Centers<'a> {
-    /// In f32.
+    /// Centres in f32.
     F32(&'a [[f32; 3]]),
-    /// In f64.
+    /// Centres in f64.
     F64(&'a [[f64; 3]]),
 }
 
-/// Colours for spheres whose scene has colours of the same kind; see [`Colors`].
+/// New colours; the colours of the scene must be of the same kind, see [`Colors`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NewColors<'a> {
-    /// Places in the scene's palette.
+    /// Indices into the scene's palette.
     Palette(&'a [u32]),
-    /// Colours of their own, in sRGB, and alpha.
+    /// A colour for each sphere, in sRGB, and alpha.
     Rgba8(&'a [[u8; 4]]),
-    /// Numbers, for the scene's colour map.
+    /// Numbers for the scene's colour map.
     Scalars(&'a [f32]),
 }
 
-/// Why a scene refuses an update, and stays as it was. Indices are those of spheres of the scene, in input order.
+/// Why an update fails. The scene is then unchanged. Indices are those of spheres of the scene, in input order.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UpdateError {
-    /// The scene has fewer spheres.
+    /// The update extends beyond the last sphere.
     #[error(
-        "there is no sphere {index}: the scene has {spheres}, and the update is of {first} to {index}"
+        "there is no sphere {index}: the scene has {spheres} spheres, and the update covers {first} to {index}"
     )]
     Range {
-        /// Of the first sphere that is updated.
+        /// Index of the first updated sphere.
         first: usize,
-        /// Of the last.
+        /// Index of the last updated sphere.
         index: usize,
-        /// How many spheres the scene has.
+        /// The number of spheres of the scene.
         spheres: usize,
     },
-    /// One of the lists is longer than another.
+    /// The lists of the update have different lengths.
     #[error(
-        "sphere {index} is in one list alone: the update has a {what} for {found} spheres, and {wanted} in the list before"
+        "sphere {index} is not in every list: the update has a {what} for {found} spheres, but {wanted} entries in the list before it"
     )]
     Count {
-        /// What is counted.
+        /// What the list contains.
         what: &'static str,
-        /// Of the first sphere that is in one list alone.
+        /// Index of the first sphere that is not in every list.
         index: usize,
-        /// How many there are.
+        /// The length of the list.
         found: usize,
-        /// How many of centres, or else of radii, there are.
+        /// The length of the list of centres, or of radii if there are no new centres.
         wanted: usize,
     },
-    /// The scene's colours are of another kind.
-    #[error("sphere {index} cannot have {found}: the scene's spheres have {wanted}")]
+    /// The colours of the scene are of another kind.
+    #[error("sphere {index} cannot be given {found}: the scene's spheres have {wanted}")]
     Kind {
-        /// Of the first sphere that is updated.
+        /// Index of the first updated sphere.
         index: usize,
-        /// What the update has.
+        /// The kind of colours in the update.
         found: &'static str,
-        /// What the scene has.
+        /// The kind of colours in the scene.
         wanted: &'static str,
     },
-    /// A sphere is too far from the scene's frame, which stays where it is.
+    /// A sphere is too far from the origin of the scene's frame, which an update does not move.
     #[error(
-        "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make another scene",
+        "sphere {index} is too far from the scene's origin, {:?}, which an update does not move; make a new scene",
         origin.to_array()
     )]
     TooFar {
-        /// Of the sphere.
+        /// Index of the sphere.
         index: usize,
-        /// Of the scene's frame.
+        /// Origin of the scene's frame.
         origin: DVec3,
     },
     /// A number is out of range.
@@ -143,15 +143,15 @@ impl NewColors<'_> {
     }
 }
 
-const PALETTE: &str = "colors of a palette";
-const RGBA8: &str = "colors of their own";
+const PALETTE: &str = "palette colors";
+const RGBA8: &str = "individual colors";
 const SCALARS: &str = "numbers for a color map";
 
 impl SceneUpdate<'_> {
-    /// The spheres that are updated.
+    /// The range of updated spheres.
     #[must_use]
     pub fn range(&self) -> Range<u32> {
-        // An update of more spheres than there are ids is refused.
+        // An update of more spheres than there are ids is an error later.
         self.first..self.first.saturating_add(u32::try_from(self.count()).unwrap_or(u32::MAX))
     }
 
@@ -165,7 +165,7 @@ impl SceneUpdate<'_> {
         [centers, self.radii.map(<[f32]>::len), self.colors.as_ref().map(NewColors::len)]
     }
 
-    /// Whether spheres are moved or grow, so that what finds them must be built anew.
+    /// Whether centres or radii change, so that acceleration structures must be updated.
     #[must_use]
     pub fn changes_shape(&self) -> bool {
         self.centers.is_some() || self.radii.is_some()
@@ -186,7 +186,7 @@ impl SceneUpdate<'_> {
         Ok(first..end)
     }
 
-    /// A sphere in the scene's frame, after the update.
+    /// A sphere after the update.
     fn sphere(&self, scene: &Scene, range: &Range<usize>, offset: usize) -> Updated {
         let index = range.start + offset;
         let [x, y, z, radius] = scene.spheres[index];
@@ -222,7 +222,7 @@ impl SceneUpdate<'_> {
                 };
             }
             (NewColors::Rgba8(_), Colors::Rgba8(_)) => return Ok(()),
-            (_, Colors::One(_)) => "one color together",
+            (_, Colors::One(_)) => "one common color",
             (_, Colors::Palette { .. }) => PALETTE,
             (_, Colors::Rgba8(_)) => RGBA8,
             (_, Colors::Scalars { .. }) => SCALARS,
@@ -231,10 +231,10 @@ impl SceneUpdate<'_> {
     }
 }
 
-/// A sphere as it will be.
+/// A sphere after an update.
 struct Updated {
     index: usize,
-    /// In the world.
+    /// Centre in world space.
     center: [f64; 3],
     in_frame: [f32; 4],
 }
@@ -253,15 +253,15 @@ impl Updated {
 }
 
 impl Scene {
-    /// Gives some spheres new centres, radii or colours. The frame stays where it is, so that f32 offsets lose
-    /// precision if the spheres wander far from where they were; ids stay the same.
+    /// Gives some spheres new centres, radii or colours. The frame does not move, so that f32 offsets lose precision if
+    /// spheres move far from their original positions. Ids stay the same.
     ///
-    /// It takes time for the spheres that are updated, and, where they move, for finding the box of all. What is shared
-    /// with a scene on a device is copied: 4 bytes a sphere.
+    /// The time is proportional to the number of updated spheres; if shapes change, the bounding box of all spheres is
+    /// computed as well. Data that is shared with a scene on a device is copied: 4 bytes for each sphere.
     ///
     /// # Errors
-    /// If a list is longer than another, the scene has fewer spheres, its colours are of another kind, or a number is
-    /// out of range or NaN. Then the scene is as it was.
+    /// If the lists have different lengths, the scene has fewer spheres, its colours are of another kind, or a number
+    /// is out of range or NaN. The scene is then unchanged.
     pub fn apply(&mut self, update: &SceneUpdate<'_>) -> Result<(), UpdateError> {
         let range = update.check_range(self)?;
         if update.changes_shape() {

@@ -103,7 +103,10 @@ fn what_does_not_fit_is_named_by_index() {
     let rgba = |count| Appearance::from(vec![[0; 4]; count]);
     let surfaces = |indices| rgba(3).with_surfaces(vec![SurfaceProperties::default(); 2], indices);
     for (appearance, words) in [
-        (palette(vec![0, 2, 1]), "sphere 1 has no color; the palette has 2"),
+        (
+            palette(vec![0, 2, 1]),
+            "sphere 1 has no color: its index is out of range; the palette has 2 colors",
+        ),
         (palette(vec![0, 1]), "sphere 2 has no color: there are 2 for 3 spheres"),
         (rgba(1), "sphere 1 has no color: there are 1 for 3 spheres"),
         (rgba(4), "color 3 has no sphere: there are 4 for 3 spheres"),

@@ -109,7 +109,10 @@ fn what_a_camera_cannot_be_is_named_with_key_value_and_range() {
             "the `f_stop` is 0.0; it must be finite, greater than 0, and ",
         ),
         (format!("{lens}focus_distance = 3"), "a lens needs an `aperture_radius`, or "),
-        (format!("{lens}aperture_radius = 1"), "a `direction` says not how far things are sharp; "),
+        (
+            format!("{lens}aperture_radius = 1"),
+            "a `direction` does not say at which distance objects are sharp; ",
+        ),
         (
             format!("{lens}aperture_radius = 1\nfocus_distance = 3\nfocus_on = [0, 0, 3]"),
             "`focus_distance` and `focus_on` exclude each other; keep one",

@@ -264,7 +264,12 @@ fn what_scenes_cameras_and_settings_refuse() {
         ("spheres", 16, &nan, "sphere 1: its center"),
         ("scene_origin", 0, &f64::INFINITY.to_le_bytes(), "the scene: its origin"),
         ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is of other spheres"),
-        ("color_index", 8, &2_u32.to_le_bytes(), "sphere 2 has no color; the palette has 2"),
+        (
+            "color_index",
+            8,
+            &2_u32.to_le_bytes(),
+            "sphere 2 has no color: its index is out of range; the palette has 2 colors",
+        ),
         ("palette", 4, &(-1_f32).to_le_bytes(), "the array `palette`: the color"),
         ("background", 4, &nan, "the array `background`: the color"),
         ("camera", 24, &[0; 24], "the camera: the length of right is 0.0"),

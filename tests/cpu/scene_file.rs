@@ -154,7 +154,7 @@ fn errors_name_place_and_remedy() {
         ),
         (
             "background = 'gren'\n",
-            "line 1, column 14: `gren` is no color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
+            "line 1, column 14: `gren` is not a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
         ),
         ("frame = 3\n", "line 1, column 9: `frame` concerns `data`, which is not given"),
         ("color = 'red'\n", "line 1, column 9: `color` concerns `data`, which is not given"),

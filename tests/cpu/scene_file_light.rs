@@ -556,7 +556,7 @@ fn what_is_wrong_is_named_with_a_remedy() {
         ),
         (
             ground,
-            "line 2, column 1: a shadow catcher needs the integrator `studio`; paths light the ground as they find it",
+            "line 2, column 1: a shadow catcher needs the integrator `studio`; the integrator `path` does not support it",
         ),
         (
             "[studio]\n[path]\n",

@@ -65,7 +65,7 @@ fn what_an_integrator_ignores_is_named() {
     let sampling = Sampling { samples: 4, ..Sampling::default() };
     assert_eq!(
         refused(RenderSettings { sampling, ..primary() }),
-        "the integrator `primary` traces one ray through the center of each pixel, and 4 samples are asked for; \
+        "the integrator `primary` traces one ray through the center of each pixel, but 4 samples are asked for; \
          ask for 1, or choose the integrator `studio` or `path`"
     );
     let caught = RenderSettings { ground: ground(true), ..RenderSettings::path() };

@@ -89,13 +89,13 @@ fn no_distance_between_eyes_is_refused() {
         other => panic!("{other}"),
     };
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let named = "eyes' `separation`";
+        let named = "`separation` of the eyes";
         assert_eq!(parameter(pinhole().stereo_pair(bad, 2.0).unwrap_err()), named);
         let panorama = PanoramaCamera::new(pose());
         assert_eq!(parameter(panorama.stereo_pair(bad, 2.0).unwrap_err()), named);
     }
     for bad in [0.0, -1.0, f64::NAN] {
-        let named = "eyes' `convergence`";
+        let named = "`convergence` of the eyes";
         assert_eq!(parameter(pinhole().stereo_pair(0.06, bad).unwrap_err()), named);
         let panorama = PanoramaCamera::new(pose());
         assert_eq!(parameter(panorama.stereo_pair(0.06, bad).unwrap_err()), named);

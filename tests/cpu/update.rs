@@ -104,11 +104,11 @@ fn what_is_refused_is_named_and_changes_nothing() {
         (SceneUpdate { radii, ..update }, "sphere 5: its radius is -1.0; "),
         (
             SceneUpdate { centers: moved(&centers), radii, ..update },
-            "sphere 6 is in one list alone: the update has a radius for 2 spheres, and 4 in",
+            "sphere 6 is not in every list: the update has a radius for 2 spheres, but 4",
         ),
         (
             SceneUpdate { colors: Some(NewColors::Palette(&[2, 3])), ..update },
-            "sphere 5 has no color; the palette has 3",
+            "sphere 5 has no color: its index is out of range; the palette has 3 colors",
         ),
         (
             SceneUpdate {
@@ -116,16 +116,16 @@ fn what_is_refused_is_named_and_changes_nothing() {
                 colors: Some(NewColors::Palette(&[2])),
                 ..update
             },
-            "sphere 5 is in one list alone: the update has a color for 1 spheres, and 2 in",
+            "sphere 5 is not in every list: the update has a color for 1 spheres, but 2",
         ),
         (
             SceneUpdate { colors: Some(NewColors::Rgba8(&[[0; 4]])), ..update },
-            "sphere 4 cannot have colors of their own: the scene's spheres have colors of a palette",
+            "sphere 4 cannot be given individual colors: the scene's spheres have palette colors",
         ),
         // What comes before it is right, and is not kept.
         (
             SceneUpdate { radii: Some(&[0.25]), colors: Some(NewColors::Palette(&[9])), ..update },
-            "sphere 4 has no color; the palette has 3",
+            "sphere 4 has no color: its index is out of range; the palette has 3 colors",
         ),
     ] {
         let error = scene.apply(&update).unwrap_err();

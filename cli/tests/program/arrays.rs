@@ -192,7 +192,7 @@ fn flags_that_do_not_concern_the_data() {
         (
             "a.npy --color gren",
             2,
-            "--color: `gren` is no color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
+            "--color: `gren` is not a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
         ),
         (
             "scene.toml --radius 1",
@@ -263,7 +263,7 @@ fn cameras_that_are_refused() {
         ("--camera panorama --fov 30", "--fov does not concern the panorama camera; drop it"),
         (
             "--camera thin-lens --f-stop 2",
-            "`--f-stop` and `--focal-length` need each other: together they are a length",
+            "`--f-stop` and `--focal-length` need each other: together they give the aperture radius",
         ),
         (
             "--camera thin-lens",

@@ -1,13 +1,13 @@
-//! Light from all directions, as an image: an equirectangular map of radiance, and how to sample it.
+//! Environment maps: equirectangular images of radiance from all directions, and how to sample them.
 //!
-//! Row 0 is up, +y; a row is as high as all others, in latitude. The middle of the map is −z, where a camera
-//! looks that was not turned; to its right is +x. Radiance is constant within a texel, so that the density by
-//! which directions are sampled can follow it exactly, and pictures do not depend on how a device filters.
+//! Row 0 is up, +y, and all rows have the same height in latitude. The middle of the map is −z, the default direction
+//! of view of a camera; to its right is +x. Radiance is constant within a texel, so that the density with which
+//! directions are sampled can follow it exactly, and pictures do not depend on the texture filter of a device.
 //!
-//! Sampling by luminance and solid angle, first the row and then the column, after M. Pharr, W. Jakob and
-//! G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniform in solid angle within a texel. The tables
-//! are f32, and all that is random in choosing a texel is exact in f32, so that a device chooses the same.
-//! Twin: `shaders/scene/environment.wgsl`.
+//! Directions are sampled by luminance and solid angle, first the row and then the column, after M. Pharr, W. Jakob and
+//! G. Humphreys, "Physically Based Rendering", 4th ed., 12.5, but uniformly in solid angle within a texel. The tables
+//! are f32, and every random choice of a texel is exact in f32, so that a device chooses the same texel. The WGSL twin
+//! is `shaders/scene/environment.wgsl`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,10 +18,10 @@ use crate::camera::sampling::unit;
 mod reduce;
 mod shares;
 
-/// The most columns and rows that are kept; what has more is reduced.
+/// The largest numbers of columns and rows; larger maps are reduced.
 pub const MAX_SIZE: [u32; 2] = [4096, 2048];
 
-/// The largest radiance, 2⁶⁴: what a device adds and multiplies stays far from infinity.
+/// The largest radiance, 2⁶⁴: sums and products on a device stay far from infinity.
 pub const MAX_RADIANCE: f32 = 18_446_744_073_709_551_616.0;
 
 /// An equirectangular map of linear radiance.
@@ -34,26 +34,26 @@ pub struct Environment {
     columns: Vec<f32>,
 }
 
-/// Why there is no such map. Columns and rows count from 0.
+/// Why texels do not make an environment map. Columns and rows count from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
-    /// There must be a texel.
-    #[error("a map of {width}×{height} texels has none")]
+    /// The map has no texels.
+    #[error("a map of {width}×{height} texels is empty; width and height must be at least 1")]
     Empty {
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
     },
-    /// The texels do not fill the map.
-    #[error("a map of {width}×{height} texels cannot have {found}")]
+    /// The number of texels differs from width times height.
+    #[error("a map of {width}×{height} texels was given {found}; it needs width times height")]
     TexelCount {
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
-        /// How many there are.
+        /// The number of texels given.
         found: usize,
     },
     /// A texel has a component that is NaN, negative or above [`MAX_RADIANCE`].
@@ -61,11 +61,11 @@ pub enum EnvironmentError {
         "the texel in column {column} of row {row} is {value:?}; radiance is a number from 0 to {MAX_RADIANCE:e}"
     )]
     Texel {
-        /// Where.
+        /// Column of the texel.
         column: usize,
-        /// Where.
+        /// Row of the texel.
         row: usize,
-        /// The texel as it is.
+        /// The texel as given.
         value: [f32; 3],
     },
 }
@@ -77,13 +77,13 @@ impl std::fmt::Debug for Environment {
 }
 
 impl Environment {
-    /// A map from its texels, row by row. Any ratio of width to height will do.
+    /// A map from its texels, row by row from the top. The ratio of width to height is free.
     ///
-    /// A map beyond [`MAX_SIZE`] is made smaller: its size is divided by the smallest whole number that makes it
-    /// fit, rounded up, and each texel is the mean, by solid angle, of what it covers.
+    /// A map larger than [`MAX_SIZE`] is reduced: its size is divided by the smallest whole number that makes it fit,
+    /// rounded up, and each new texel is the mean, by solid angle, of the texels that it covers.
     ///
     /// # Errors
-    /// If the map is empty, or a texel is no radiance.
+    /// If the map is empty, the number of texels is wrong, or a component is NaN, negative or above [`MAX_RADIANCE`].
     pub fn new(width: u32, height: u32, texels: Vec<[f32; 3]>) -> Result<Self, EnvironmentError> {
         if width == 0 || height == 0 {
             return Err(EnvironmentError::Empty { width, height });
@@ -101,58 +101,58 @@ impl Environment {
         Ok(Self { width, height, texels, rows, columns })
     }
 
-    /// Columns.
+    /// Number of columns.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Radiance, row by row.
+    /// Radiance of all texels, row by row from the top.
     #[must_use]
     pub fn texels(&self) -> &[[f32; 3]] {
         &self.texels
     }
 
-    /// For each row the probability that a sample is above it, and 1 at the end: multiples of 2⁻²⁴. All zero if
-    /// the map is black.
+    /// The cumulative distribution of rows, `height` + 1 numbers: for each row the probability that a sample lies above
+    /// it, and 1 at the end. Multiples of 2⁻²⁴; all zero if the map is black.
     #[must_use]
     pub fn rows(&self) -> &[f32] {
         &self.rows
     }
 
-    /// The same for the columns of each row, for samples in that row: `width` + 1 numbers a row. All zero if the
-    /// row is black.
+    /// The cumulative distributions of columns, `width` + 1 numbers for each row, for samples in that row. All zero if
+    /// the row is black.
     #[must_use]
     pub fn columns(&self) -> &[f32] {
         &self.columns
     }
 
-    /// Whether there is any light to sample.
+    /// Whether some texel is not black.
     #[must_use]
     pub fn has_light(&self) -> bool {
         self.rows[self.height as usize] > 0.0
     }
 
-    /// Cosine and sine, as a device has them, of an angle by which the map is turned about +y: from +z to +x.
+    /// Cosine and sine, in f32 as a device has them, of the angle by which the map is turned about +y, from +z to +x.
     #[must_use]
     pub fn rotation(radians: f64) -> [f32; 2] {
         [radians.cos() as f32, radians.sin() as f32]
     }
 
-    /// The radiance, in the units of the map, that comes from a direction of unit length.
+    /// The radiance of the map in a direction of unit length.
     #[must_use]
     pub fn radiance(&self, direction: DVec3, rotation: [f32; 2]) -> [f64; 3] {
         let [column, row] = self.texel(direction, rotation);
         self.texels[row * self.width as usize + column].map(f64::from)
     }
 
-    /// The density, per steradian, by which [`Environment::sample`] chooses a direction of unit length.
+    /// The probability density per steradian with which [`Environment::sample`] chooses a direction of unit length.
     ///
     /// It is positive where there is light.
     #[must_use]
@@ -160,14 +160,15 @@ impl Environment {
         self.density_of(self.texel(direction, rotation))
     }
 
-    /// A direction of unit length for two fractions of 2³², and its density per steradian: zero if the map is
-    /// black, and only then.
+    /// A direction of unit length for two uniform random numbers (fractions of 2³²), and its density per steradian,
+    /// which is zero only if the map is black.
     #[must_use]
     pub fn sample(&self, u: [u32; 2], rotation: [f32; 2]) -> (DVec3, f64) {
         let (row, down) = choose(&self.rows, u[1]);
         let (column, along) = choose(self.columns_of(row), u[0]);
         let longitude = TAU * ((column as f64 + along) / f64::from(self.width) - 0.5);
-        // From the nearer pole, by sin²(θ/2) = (1 − cos θ)/2, in which areas are even and nothing cancels.
+        // Measured from the nearer pole by sin²(θ/2) = (1 − cos θ)/2, which is proportional to area and does not
+        // cancel.
         let height = self.height as usize;
         let is_upper = 2 * row < height;
         let (from_pole, along, sign) =
@@ -181,10 +182,10 @@ impl Environment {
         (turned(in_map, rotation), self.density_of([column, row]))
     }
 
-    /// Column and row of the texel in a direction.
+    /// Column and row of the texel in a direction of unit length.
     fn texel(&self, direction: DVec3, [cosine, sine]: [f32; 2]) -> [usize; 2] {
         let d = turned(direction, [cosine, -sine]);
-        // Zeros lose their signs, which atan2 would look at.
+        // Adding zero turns −0 into +0, because atan2 depends on the sign of zero.
         let across = (d.x + 0.0).atan2(0.0 - d.z) / TAU + 0.5;
         let down = d.x.hypot(d.z).atan2(d.y) / PI;
         [(across, self.width), (down, self.height)]
@@ -203,27 +204,28 @@ impl Environment {
     }
 }
 
-/// Turned about +y.
+/// A vector rotated about +y.
 fn turned(d: DVec3, rotation: [f32; 2]) -> DVec3 {
     let [cosine, sine] = rotation.map(f64::from);
     DVec3::new(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x)
 }
 
-/// Of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, as a product.
+/// The solid angle of a texel in a row: 2π/width times the difference of the cosines of its edges' colatitudes, written
+/// as a product.
 fn solid_angle([width, height]: [u32; 2], row: usize) -> f64 {
     let half = 0.5 * PI / f64::from(height);
     2.0 * TAU / f64::from(width) * ((2 * row + 1) as f64 * half).sin() * half.sin()
 }
 
-/// The share of a table that a fraction of 2³² falls into, and how far into it, in [0, 1].
+/// The interval of a cumulative table into which a fraction of 2³² falls, and the position in that interval, in [0, 1].
 ///
-/// Its upper 24 bits decide, and the others are in the middle of what they may be.
+/// The upper 24 bits choose the interval; the lower 8 bits refine the position, each at the middle of its step.
 fn choose(table: &[f32], u: u32) -> (usize, f64) {
     let chance = unit(u);
     let index = table.partition_point(|sum| f64::from(*sum) <= chance).min(table.len() - 1) - 1;
     let [low, high] = [table[index], table[index + 1]].map(f64::from);
     let rest = (f64::from(u & 0xff) + 0.5) / f64::from(1 << 24) / 256.0;
-    // A black map has no shares, and no share is smaller than this.
+    // A black map has only empty intervals; no other interval is smaller than this.
     let share = (high - low).max(1.0 / f64::from(1 << 24));
     (index, ((chance - low + rest) / share).min(1.0))
 }

@@ -1,12 +1,12 @@
-//! Makes maps that are too large smaller.
+//! Reduction of environment maps that are too large.
 
 use std::f64::consts::PI;
 
 use super::MAX_SIZE;
 use crate::parallel::map;
 
-/// The map as it is, or one whose texels are the means, by solid angle, of what they cover: the light of the whole
-/// stays the same.
+/// The map itself if it fits, or a smaller one whose texels are the means, by solid angle, of the texels that they
+/// cover. The total light stays the same.
 pub(super) fn reduced(size: [u32; 2], texels: Vec<[f32; 3]>) -> ([u32; 2], Vec<[f32; 3]>) {
     let factor = (0..2).map(|axis| size[axis].div_ceil(MAX_SIZE[axis])).max().unwrap_or(1);
     if factor == 1 {
@@ -37,9 +37,10 @@ pub(super) fn reduced(size: [u32; 2], texels: Vec<[f32; 3]>) -> ([u32; 2], Vec<[
     (reduced, lines.concat())
 }
 
-/// Of each of `few` parts of an axis, which of the `many` it covers, and from where to where.
+/// For each of `few` equal parts of an axis that has `many` texels: the texels that it covers, and from where to where.
 fn covers(many: u32, few: u32) -> Vec<Vec<(usize, f64, f64)>> {
-    // As a fraction, so that no part is missed or met with nothing of it.
+    // Positions are compared as fractions with the denominator `few`, so that no texel is missed and none is covered by
+    // an interval of length zero.
     let (many, few) = (u64::from(many), u64::from(few));
     let at = |numerator: u64| numerator as f64 / few as f64;
     (0..few)

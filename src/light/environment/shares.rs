@@ -1,17 +1,18 @@
-//! The tables by which texels are sampled.
+//! The cumulative tables from which texels are sampled.
 
 use super::solid_angle;
 use crate::image::color;
 use crate::parallel::for_each;
 
-/// How many shares a table has: f32 holds every multiple of 2⁻²⁴ up to 1, and their differences.
+/// The number of equal shares into which a table divides probability: f32 holds every multiple of 2⁻²⁴ up to 1, and the
+/// differences of these multiples.
 const SHARES: f64 = (1 << 24) as f64;
 
 fn luminance(texel: &[f32; 3]) -> f64 {
     color::luminance(texel.map(f64::from))
 }
 
-/// Where rows begin, and where columns do in each.
+/// The cumulative table of rows, and those of the columns of each row.
 pub(super) fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32>, Vec<f32>) {
     let (columns, rows) = (width as usize, height as usize);
     let mut sums = vec![0.0; rows];
@@ -31,10 +32,10 @@ pub(super) fn tables([width, height]: [u32; 2], texels: &[[f32; 3]]) -> (Vec<f32
     (table, tables)
 }
 
-/// Fills a table with the parts of the whole that lie before each weight, and returns the whole.
+/// Fills a table with the cumulative distribution of weights, and returns their sum.
 ///
-/// Each weight that is not zero has one share for certain, so that no light is so faint that it is never sampled;
-/// the other shares are in proportion.
+/// Each weight that is not zero has one share for certain, so that no light is too faint to be sampled; the other
+/// shares are distributed in proportion.
 fn fill(table: &mut [f32], weights: impl Iterator<Item = f64> + Clone) -> f64 {
     let total: f64 = weights.clone().sum();
     if total == 0.0 {
@@ -47,7 +48,7 @@ fn fill(table: &mut [f32], weights: impl Iterator<Item = f64> + Clone) -> f64 {
     for (entry, weight) in table[1..].iter_mut().zip(weights) {
         sum += weight;
         before += if weight > 0.0 { 1.0 } else { 0.0 };
-        // Added up in the same order, the last sum is the total.
+        // The weights are added in the same order as for the total, so the last sum equals it.
         let shares: f64 = before + ((SHARES - certain) * (sum / total)).round();
         *entry = (shares / SHARES) as f32;
     }
