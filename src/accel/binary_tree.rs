@@ -1,9 +1,9 @@
-//! The plain two-child tree: the simple second opinion.
+//! The binary tree: a simple structure that serves as an independent check of the others.
 //!
-//! Nodes after Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs" (2009): each holds
-//! the boxes of both children, so that one node is read for two tests. Spheres are halved by number along
-//! the longest axis of their centres, so the tree is perfect: its depth is a theorem, and the place of every
-//! node is known before it is built.
+//! Nodes follow Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs" (2009): each holds the boxes of
+//! both children, so that reading one node allows two box tests. Spheres are split in half by number along the longest
+//! axis of their centres. The tree is therefore perfect: its depth can be computed, and the index of every node is
+//! known before the tree is built.
 
 use glam::Vec3;
 
@@ -11,31 +11,31 @@ use super::extent::{Extent, Item};
 use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
 use crate::parallel::both;
 
-/// How many spheres a leaf may hold.
+/// The largest number of spheres in a leaf.
 pub const BINARY_LEAF: u32 = 4;
 
-/// How many levels a tree may have, and the size of the kernel's stack: 4 · 2³⁰ spheres are more than there
-/// are ids.
+/// The largest number of levels of a tree, and the size of the kernel's stack: 4 · 2³⁰ spheres are more than there are
+/// ids.
 pub const BINARY_LEVELS: u32 = 30;
 
-/// The count of a child that is a node.
+/// The value of `count` that marks a child as an inner node.
 pub const BINARY_INNER: u32 = u32::MAX;
 
-/// From so many spheres on, two threads are worth their start.
+/// The number of spheres from which a second thread is worth its cost.
 const PARALLEL: usize = 1 << 13;
 
-/// One child of a node, in 32 bytes, or two `vec4u`.
+/// One child of a node: 32 bytes, or two `vec4u`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct BinaryChild {
-    /// The box's least corner.
+    /// Corner of the child's box with the smallest coordinates.
     pub low: [f32; 3],
-    /// Index of the node, or place of the leaf's first sphere.
+    /// Index of the child's node, or index of the leaf's first sphere in leaf order.
     pub link: u32,
-    /// The box's greatest corner.
+    /// Corner of the child's box with the largest coordinates.
     pub high: [f32; 3],
-    /// [`BINARY_INNER`], or how many spheres the leaf has: 0 to [`BINARY_LEAF`]. None only in a root that
+    /// [`BINARY_INNER`], or the number of spheres of the leaf: 0 to [`BINARY_LEAF`]. Zero occurs only in a root that
     /// lacks a child.
     pub count: u32,
 }
@@ -44,16 +44,16 @@ impl BinaryChild {
     const EMPTY: Self = Self { low: [0.0; 3], link: 0, high: [0.0; 3], count: 0 };
 }
 
-/// A node of 64 bytes: its two children.
+/// A node of 64 bytes, which consists of its two children.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(transparent)]
 pub struct BinaryNode(pub [BinaryChild; 2]);
 
-/// A tree of nodes with two children, and the spheres' order in its leaves.
+/// A tree whose nodes have two children, and the order of the spheres in its leaves.
 ///
-/// Node 0 is the root; a node's left child follows it at once. Without spheres there is one node with two
-/// empty leaves, so a kernel needs no special case.
+/// Node 0 is the root; the left child of a node is the next node. A tree without spheres is one node with two empty
+/// leaves, so kernels need no special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryTree {
     pub(super) nodes: Vec<BinaryNode>,
@@ -63,12 +63,12 @@ pub struct BinaryTree {
 }
 
 impl BinaryTree {
-    /// Builds the tree of spheres (centre, radius) in the scene's frame, each box larger than its spheres
-    /// by `margin`. The same spheres make the same tree, to the bit.
+    /// Builds the tree of spheres (centre x, y, z in the scene's frame, radius). Each box contains its spheres inflated
+    /// by `margin`. The same spheres give the same tree, to the bit.
     #[must_use]
     pub fn build(spheres: &[[f32; 4]], margin: f32) -> Self {
         let mut items = Item::all(spheres, margin);
-        // The least number of halvings, of which each is a level, that makes leaves of four; ⌈n/2ᵏ⌉ ≤ 4.
+        // The smallest number of halvings k with ⌈n/2ᵏ⌉ ≤ 4; each halving is a level.
         let mut halvings = 0;
         while items.len().div_ceil(1 << halvings) > BINARY_LEAF as usize {
             halvings += 1;
@@ -86,34 +86,34 @@ impl BinaryTree {
         Self { nodes, ids, levels: halvings.max(1), margin }
     }
 
-    /// All nodes, as the kernel reads them.
+    /// All nodes, as kernels read them.
     #[must_use]
     pub fn nodes(&self) -> &[BinaryNode] {
         &self.nodes
     }
 
-    /// Of each place in leaf order, the index of its sphere in input order; ascending within a leaf.
+    /// For each index in leaf order, the index of the sphere in input order; ascending within a leaf.
     #[must_use]
     pub fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// How many nodes are on the longest way from the root, both ends included: ⌈log₂(n/4)⌉, and at least
-    /// one.
+    /// The number of nodes on the longest path from the root to a leaf's parent, both included: ⌈log₂(n/4)⌉, and at
+    /// least one.
     #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// Checks the tree against the spheres, in input order, that it was built from.
+    /// Checks the tree against the spheres it was built from, which are in input order.
     ///
     /// # Errors
-    /// The first thing that is wrong with it.
+    /// If the tree is not valid; the error describes the first problem.
     pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
         tree_check::validate(self, spheres, self.margin)
     }
 
-    /// What it takes, and what a ray pays for it.
+    /// The size of the tree, and the expected cost of tracing a ray.
     #[must_use]
     pub fn statistics(&self) -> TreeStatistics {
         tree_check::statistics(self)
@@ -121,7 +121,7 @@ impl BinaryTree {
 }
 
 fn child(extent: Extent, link: usize, count: u32) -> BinaryChild {
-    // A scene has fewer than 2³² spheres, and a tree fewer nodes.
+    // There are fewer than 2³² spheres in a scene, and fewer nodes in a tree.
     let link = link as u32;
     BinaryChild { low: extent.low.to_array(), link, high: extent.high.to_array(), count }
 }
@@ -131,8 +131,8 @@ fn leaf(items: &mut [Item], first: usize) -> BinaryChild {
     child(Item::extents(items).0, first, items.len() as u32)
 }
 
-/// Builds a perfect tree of `nodes`, whose first has the index `at`, over `items`, whose first has the place
-/// `first`; says what a parent must know of it.
+/// Builds a perfect subtree over `items`, whose first element has the index `first` in leaf order. The subtree has as
+/// many nodes as `nodes`, whose first element has the index `at`. Returns the child record for the parent.
 fn inner(nodes: &mut [BinaryNode], at: usize, items: &mut [Item], first: usize) -> BinaryChild {
     let axis = Item::extents(items).1.longest_axis();
     let half = items.len().div_ceil(2);
@@ -162,8 +162,8 @@ fn inner(nodes: &mut [BinaryNode], at: usize, items: &mut [Item], first: usize) 
 
 impl Tree for BinaryTree {
     const BYTES_PER_NODE: usize = size_of::<BinaryNode>();
-    const MOST_LEVELS: u32 = BINARY_LEVELS;
-    const MOST_IN_LEAF: u32 = BINARY_LEAF;
+    const MAX_LEVELS: u32 = BINARY_LEVELS;
+    const MAX_IN_LEAF: u32 = BINARY_LEAF;
 
     fn node_count(&self) -> usize {
         self.nodes.len()

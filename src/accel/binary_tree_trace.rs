@@ -1,4 +1,4 @@
-//! The walk through the two-child tree. Twin of `shaders/accel/binary_tree.wgsl`.
+//! Traversal of the binary tree. The WGSL twin is `shaders/accel/binary_tree.wgsl`.
 
 use glam::Vec3;
 
@@ -7,12 +7,12 @@ use super::leaf::{any_in_leaf, offer_leaf};
 use super::query::{Nearest, RayF32};
 use super::slab::SlabRay;
 
-/// The entry of a box that is not entered; greater than any distance.
+/// The entry distance of a box that the ray misses; greater than any distance.
 pub(crate) const NO_ENTRY: f32 = 2e30;
 
 impl BinaryTree {
-    /// Improves `nearest` by the nearest sphere along the ray. `spheres` are in the order of
-    /// [`BinaryTree::ids`], and `ids` are what they are called in `nearest`.
+    /// Updates `nearest` with the nearest sphere along the ray. `spheres` are in the order of [`BinaryTree::ids`], and
+    /// `ids` are their ids in the result.
     ///
     /// # Panics
     /// If there are fewer spheres or ids than in the tree.
@@ -31,13 +31,13 @@ impl BinaryTree {
             let children = &self.nodes[index as usize].0;
             let entries = [0, 1].map(|i| entry(&children[i], &slab));
             let near = usize::from(entries[1] < entries[0]);
-            let ways = [near, 1 - near].map(|i| (children[i], entries[i]));
-            for (child, entry) in ways {
+            let sides = [near, 1 - near].map(|i| (children[i], entries[i]));
+            for (child, entry) in sides {
                 if child.count != BINARY_INNER && entry <= nearest.t {
                     offer_leaf(spheres, ids, child.link, child.count, ray, nearest);
                 }
             }
-            let [near, far] = ways.map(|(child, entry)| {
+            let [near, far] = sides.map(|(child, entry)| {
                 if child.count == BINARY_INNER { (child.link, entry) } else { (0, NO_ENTRY) }
             });
             let mut next = near;
@@ -58,7 +58,7 @@ impl BinaryTree {
         }
     }
 
-    /// Whether a sphere is hit before `t_max`. `spheres` are in the order of [`BinaryTree::ids`].
+    /// Whether the ray hits a sphere before `t_max`. `spheres` are in the order of [`BinaryTree::ids`].
     ///
     /// # Panics
     /// If there are fewer spheres than ids.
@@ -85,7 +85,7 @@ impl BinaryTree {
     }
 }
 
-/// Where the ray enters the box of a child, or [`NO_ENTRY`].
+/// The distance at which the ray enters the box of a child, or [`NO_ENTRY`].
 #[inline]
 fn entry(child: &BinaryChild, ray: &SlabRay) -> f32 {
     let a = (Vec3::from(child.low) - ray.origin) * ray.inverse;

@@ -1,4 +1,4 @@
-//! Bricks: parts of a scene, each small enough for a device's bindings, each with an index of its own.
+//! Bricks: parts of a scene that each fit into a device's bindings and each have an acceleration structure.
 
 use glam::Vec3;
 
@@ -10,24 +10,24 @@ use super::primitive::{BrickKind, Primitive};
 use super::query::{Nearest, RayF32};
 use super::wide_tree::WideTree;
 
-/// The structures that exist, as kernels know them.
+/// The acceleration structures, as kernels distinguish them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Structure {
-    /// Every sphere is tried.
+    /// No structure: every sphere is tested.
     List,
-    /// One level of cells.
+    /// One level of grid cells.
     Grid(ListLayout),
-    /// Two levels of cells.
+    /// Two levels of grid cells: crowded cells have grids of their own.
     NestedGrid(ListLayout),
-    /// A tree with eight children a node, compressed.
+    /// A compressed tree with eight children for each node.
     WideTree,
-    /// A tree with two children a node: simple, and a second opinion.
+    /// A tree with two children for each node, which is simple and serves as an independent check.
     BinaryTree,
 }
 
 impl Structure {
-    /// All of them.
+    /// All structures.
     pub const ALL: &'static [Self] = &[
         Self::List,
         Self::Grid(ListLayout::Copied),
@@ -38,7 +38,7 @@ impl Structure {
         Self::BinaryTree,
     ];
 
-    /// Those that are chosen where the user leaves it open.
+    /// The structures that may be chosen automatically.
     pub const AUTOMATIC: &'static [Self] = &[
         Self::List,
         Self::Grid(ListLayout::Copied),
@@ -48,7 +48,7 @@ impl Structure {
         Self::WideTree,
     ];
 
-    /// What a user would have asked for.
+    /// The choice of a user that leads to this structure.
     #[must_use]
     pub const fn choice(self) -> AccelChoice {
         match self {
@@ -59,7 +59,7 @@ impl Structure {
         }
     }
 
-    /// What it is called in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -74,33 +74,33 @@ impl Structure {
     }
 }
 
-/// What finds the spheres of a brick.
+/// The acceleration structure of a brick.
 #[derive(Clone, Debug)]
 pub enum Index {
-    /// Nothing: every sphere is tried.
+    /// No structure: every sphere is tested.
     List,
-    /// Two levels of cells.
+    /// One or two levels of grid cells.
     Grid(Grid),
-    /// Eight children a node.
+    /// A tree with eight children for each node.
     WideTree(WideTree),
-    /// Two children a node.
+    /// A tree with two children for each node.
     BinaryTree(BinaryTree),
 }
 
-/// A part of a scene.
+/// A part of a scene with its acceleration structure.
 #[derive(Clone, Debug)]
 pub struct Brick {
-    /// What finds its spheres.
+    /// The acceleration structure of the spheres.
     pub index: Index,
-    /// Centre in the scene's frame, and radius, in the order of the index; the sign of the radius means
-    /// something to the index only.
+    /// Centre (x, y, z) in the scene's frame, and radius, in the order of the structure. The sign of the radius has a
+    /// meaning only to a grid, where it marks the end of a list.
     pub spheres: Vec<[f32; 4]>,
-    /// Index of each in input order.
+    /// Index of each sphere in input order.
     pub ids: Vec<u32>,
 }
 
 impl Brick {
-    /// Offers every sphere that may be nearer than `nearest`.
+    /// Updates `nearest` with the nearest sphere of the brick.
     pub fn find_nearest(&self, ray: &RayF32, nearest: &mut Nearest) {
         let Self { index, spheres, ids } = self;
         match index {
@@ -111,7 +111,7 @@ impl Brick {
         }
     }
 
-    /// Whether any sphere is nearer than `t_max`.
+    /// Whether the ray hits a sphere of the brick before `t_max`.
     #[must_use]
     pub fn find_any(&self, ray: &RayF32, t_max: f32) -> bool {
         let Self { index, spheres, .. } = self;
@@ -124,7 +124,7 @@ impl Brick {
     }
 }
 
-/// All bricks of a scene, of one structure.
+/// All bricks of a scene, which have the same structure.
 #[derive(Clone, Debug)]
 pub struct Accel {
     pub(super) structure: Structure,
@@ -135,38 +135,38 @@ pub struct Accel {
 }
 
 impl Accel {
-    /// Of what kind the bricks are.
+    /// The structure of the bricks.
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.structure
     }
 
-    /// What kernels that search the bricks are made for.
+    /// The structure and the primitive for which kernels that search the bricks are made.
     #[must_use]
     pub fn kind(&self) -> BrickKind {
         BrickKind { structure: self.structure, primitive: Primitive::Sphere }
     }
 
-    /// The bricks; at least one, if only an empty one.
+    /// The bricks; at least one, which may be empty.
     #[must_use]
     pub fn bricks(&self) -> &[Brick] {
         &self.bricks
     }
 
-    /// The box of all spheres in the scene's frame, inflated by the margin; rays are moved to it before
+    /// The bounding box of all spheres in the scene's frame, inflated by the margin. Rays are moved to this box before
     /// they are traced.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         (self.min, self.max)
     }
 
-    /// Whether spheres with the same centre may be in several bricks.
+    /// Whether spheres with the same centre may be in different bricks.
     #[must_use]
     pub fn may_part_equals(&self) -> bool {
         self.may_part_equals
     }
 
-    /// The nearest sphere of a ray, which starts in the box of [`Accel::bounds`] or on its wall.
+    /// The nearest sphere hit by a ray, which must start inside the box of [`Accel::bounds`] or on its surface.
     #[must_use]
     pub fn find_nearest(&self, ray: &RayF32) -> Nearest {
         let mut nearest = Nearest::NONE;
@@ -176,7 +176,7 @@ impl Accel {
         nearest
     }
 
-    /// Whether any sphere is nearer than `t_max`.
+    /// Whether the ray hits any sphere before `t_max`.
     #[must_use]
     pub fn find_any(&self, ray: &RayF32, t_max: f32) -> bool {
         self.bricks.iter().any(|brick| brick.find_any(ray, t_max))

@@ -1,21 +1,22 @@
-//! Cubic cells, and which of them a sphere's surface meets.
+//! Cubic cells, and the cells that the surface of a sphere overlaps.
 
 use glam::Vec3;
 
-/// Cells along the side of a block: its spheres fit into a processor's nearest cache, or two of its pages.
+/// The number of cells along each side of a block: the spheres of a block fit into a processor's L1 cache, or into two
+/// pages.
 const BLOCK: u32 = 4;
 
-/// Of how many cells along x a sphere's distances are kept from row to row.
+/// The number of cells along x for which distances to a sphere are computed once and reused in every row.
 const KNOWN: usize = 4;
 
-/// A box of equal cubes.
+/// A box of equal cubic cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells {
     /// The corner with the smallest coordinates.
     pub(super) min: Vec3,
-    /// The edge of a cell.
+    /// The edge length of a cell.
     pub(super) size: f32,
-    /// How many cells there are along each axis.
+    /// The number of cells along each axis.
     pub(super) counts: [u32; 3],
 }
 
@@ -24,11 +25,11 @@ impl Cells {
         self.counts.iter().map(|count| *count as usize).product()
     }
 
-    /// The cell that holds a point, or the nearest one.
+    /// The cell that contains a point; for points outside, the nearest cell.
     fn coordinates(&self, at: Vec3) -> [u32; 3] {
         let cells = (at - self.min) / self.size;
         let [width, height, depth] = self.counts;
-        // A float is cast to the nearest u32, so what lies below becomes 0.
+        // A cast to u32 saturates, so negative values become 0.
         [
             (cells.x as u32).min(width - 1),
             (cells.y as u32).min(height - 1),
@@ -41,13 +42,13 @@ impl Cells {
         (z as usize * height + y as usize) * width + x as usize
     }
 
-    /// How many numbers [`Self::index_in_blocks`] may give.
+    /// An upper bound for [`Self::index_in_blocks`].
     pub(super) fn len_in_blocks(&self) -> usize {
         self.counts.iter().map(|count| count.next_multiple_of(BLOCK) as usize).product()
     }
 
-    /// A number for the cell of a sphere's centre, such that cells near each other in space, along any axis,
-    /// have numbers near each other: block by block.
+    /// An index of the cell of a sphere's centre, such that cells that are close in space, along any axis, have close
+    /// indices: block by block.
     pub(super) fn index_in_blocks(&self, sphere: &[f32; 4]) -> usize {
         let coordinates = self.coordinates(Vec3::new(sphere[0], sphere[1], sphere[2]));
         let blocks = self.counts.map(|count| count.div_ceil(BLOCK));
@@ -58,22 +59,32 @@ impl Cells {
         block * BLOCK.pow(3) as usize + join(coordinates.map(|i| i % BLOCK), [BLOCK, BLOCK])
     }
 
-    /// As [`Self::met_by`], for cells that are only a part of what the sphere may meet: a sphere beside
-    /// them meets none.
-    pub(super) fn met_by_clipped(&self, sphere: &[f32; 4], margin: f32, meet: impl FnMut(usize)) {
-        // The nearest cell is only met if the exact test says so.
-        self.meet(sphere, margin, false, meet);
+    /// Like [`Self::for_each_near`], for cells that may cover only a part of the sphere: a sphere outside has no cells.
+    pub(super) fn for_each_near_clipped(
+        &self,
+        sphere: &[f32; 4],
+        margin: f32,
+        f: impl FnMut(usize),
+    ) {
+        // The clamped range of cells may contain cells that the exact test rejects.
+        self.for_each_in_range(sphere, margin, false, f);
     }
 
-    /// Calls `meet` with every cell that lies within `margin` of the sphere's surface.
+    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface.
     ///
-    /// A cell wholly inside is left out: a ray meets nothing of the sphere there. So a large sphere
-    /// is listed in as many cells as its surface crosses, not in as many as it holds; all of them are looked at.
-    pub(super) fn met_by(&self, sphere: &[f32; 4], margin: f32, meet: impl FnMut(usize)) {
-        self.meet(sphere, margin, true, meet);
+    /// Cells that are completely inside are left out, because a ray cannot hit the sphere there. A large sphere is
+    /// therefore listed only in the cells that its surface crosses, although all cells inside are examined.
+    pub(super) fn for_each_near(&self, sphere: &[f32; 4], margin: f32, f: impl FnMut(usize)) {
+        self.for_each_in_range(sphere, margin, true, f);
     }
 
-    fn meet(&self, sphere: &[f32; 4], margin: f32, is_within: bool, mut meet: impl FnMut(usize)) {
+    fn for_each_in_range(
+        &self,
+        sphere: &[f32; 4],
+        margin: f32,
+        is_within: bool,
+        mut f: impl FnMut(usize),
+    ) {
         let &[x, y, z, radius] = sphere;
         let center = [x, y, z];
         let outer = radius + margin;
@@ -81,9 +92,9 @@ impl Cells {
         let first = self.coordinates(Vec3::from(center) - outer);
         let last = self.coordinates(Vec3::from(center) + outer);
         if is_within && first == last {
-            return meet(self.index(first));
+            return f(self.index(first));
         }
-        // Squared distances along an axis from the centre to the near and the far side of a cell.
+        // Squared distances along an axis from the centre to the near side and to the far side of a cell.
         let along = |axis: usize, i: u32| {
             let low = self.min[axis] + i as f32 * self.size - center[axis];
             let high = low + self.size;
@@ -92,7 +103,8 @@ impl Cells {
             (near * near, far * far)
         };
         let (outer, inner) = (outer * outer, inner * inner);
-        // Of the first cells along x, which every row has again; most spheres meet no others.
+        // The distances of the first cells along x, which are the same in every row; most spheres overlap no other
+        // cells.
         let known: [(f32, f32); KNOWN] = std::array::from_fn(|i| along(0, first[0] + i as u32));
         for k in first[2]..=last[2] {
             let (near_z, far_z) = along(2, k);
@@ -106,7 +118,7 @@ impl Cells {
                     let step = (i - first[0]) as usize;
                     let (near_x, far_x) = known.get(step).copied().unwrap_or_else(|| along(0, i));
                     if near_x + near_yz <= outer && far_x + far_yz >= inner {
-                        meet(self.index([i, j, k]));
+                        f(self.index([i, j, k]));
                     }
                 }
             }
@@ -114,13 +126,13 @@ impl Cells {
     }
 }
 
-/// How many cells of edge `size`, on average over all positions, the surface of a sphere of this radius
-/// meets.
+/// The number of cells with edge length `size` that the surface of a sphere of this radius overlaps, averaged over all
+/// positions.
 ///
-/// By Minkowski's sum: the centres of the cells that meet a ball fill the volume
-/// size³ + 6 size² r + 3π size r² + 4/3 π r³ (Steiner's formula for a cube), less about a ball whose radius
-/// is shorter by half a cell's diagonal, where the cells are wholly inside.
-pub(super) fn mean_cells_met(size: f32, radius: f32) -> f32 {
+/// By Minkowski sums: the centres of the cells that overlap a ball fill the volume size³ + 6 size² r + 3π size r² + 4/3
+/// π r³ (Steiner's formula for a cube). Subtracted is approximately a ball whose radius is smaller by half the diagonal
+/// of a cell, because the cells inside it are completely inside the sphere.
+pub(super) fn mean_overlapped_cells(size: f32, radius: f32) -> f32 {
     const BALL: f32 = 4.188_790_2;
     let r = radius / size;
     let inside = (r - 0.866).max(0.0);

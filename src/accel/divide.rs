@@ -1,23 +1,23 @@
-//! Divides spheres among bricks, on all cores.
+//! Division of spheres among bricks, on all cores.
 
 use crate::geometry::math::equal_bits;
 use crate::parallel::{both, map_chunks};
 
-/// Parts of a scene.
+/// The division of a scene into parts.
 pub(super) struct Divided {
-    /// Of each the spheres, in an order of ids.
+    /// The ids of the spheres of each part, in ascending order.
     pub(super) parts: Vec<Vec<u32>>,
-    /// Whether spheres with equal centres may be in several of them.
+    /// Whether spheres with equal centres may be in different parts.
     pub(super) may_part_equals: bool,
 }
 
-/// Parts of about the same number of spheres, each in a box of its own but for what sticks out: at the median of the
-/// longest side, again and again.
+/// Divides spheres into parts of about the same number, by repeated median cuts across the longest side. The centres of
+/// each part lie in a box that no other part enters.
 pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Divided {
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
 
-/// `ids` ascend, and so do those of each part.
+/// Divides a list of ascending ids; the ids of each part ascend as well.
 fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
     if parts <= 1 {
         return Divided { parts: vec![ids], may_part_equals: false };
@@ -34,7 +34,7 @@ fn cut(spheres: &[[f32; 4]], ids: Vec<u32>, parts: usize) -> Divided {
     all
 }
 
-/// Whether the centres of any two are equal. Zeros of both signs are.
+/// Whether any two of the spheres have equal centres. Zeros of both signs are equal.
 fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
     let center = |id: &u32| {
         let [x, y, z, _] = spheres[*id as usize];
@@ -45,15 +45,16 @@ fn has_equals(spheres: &[[f32; 4]], ids: &[u32]) -> bool {
     centers.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// A list cut in two.
+/// A list that has been cut in two.
 struct Split {
     left: Vec<u32>,
     right: Vec<u32>,
-    /// Those on both sides whose keys have the same first number; none if there are such on one side alone.
+    /// The ids on both sides whose keys have the same first number as the first key on the right; empty if all of these
+    /// are on the right.
     on_the_cut: Vec<u32>,
 }
 
-/// The first `count` in order of their keys, and the others.
+/// Splits a list into the first `count` ids in the order of their keys, and the others.
 fn split(ids: Vec<u32>, count: usize, key: impl Fn(u32) -> (u32, u32) + Sync) -> Split {
     if count == ids.len() {
         return Split { left: ids, right: Vec::new(), on_the_cut: Vec::new() };
@@ -70,8 +71,9 @@ fn split(ids: Vec<u32>, count: usize, key: impl Fn(u32) -> (u32, u32) + Sync) ->
     Split { left, right, on_the_cut }
 }
 
-/// The key that `rank` others precede, by counting keys that have the same digits so far; and what has its first number,
-/// if some of those others have. Takes time in proportion to the number of ids, and reads them in order.
+/// The key with the given rank: the number of smaller keys. Found by counting keys that agree in the digits known so
+/// far. Also returns all ids whose keys have the same first number, if some of these come before it. The time is
+/// proportional to the number of ids, which are read in order.
 fn select(
     ids: &[u32],
     mut rank: usize,
@@ -79,7 +81,7 @@ fn select(
 ) -> ((u32, u32), Vec<u32>) {
     const DIGIT: u32 = 1 << DIGIT_BITS;
     const DIGIT_BITS: u32 = 8;
-    // The digits that are known, the highest first, and the bits below them.
+    // The highest digits, which are known, and the number of bits below them.
     let (mut known, mut below) = (0, u32::BITS);
     while below > 0 {
         let next = below - DIGIT_BITS;
@@ -114,7 +116,7 @@ fn select(
     (first_right, if rank > 0 { same } else { Vec::new() })
 }
 
-/// A number that ascends as `x` does; the same for zeros of both signs.
+/// Maps a float to an integer with the same order; zeros of both signs give the same integer.
 fn ascending(x: f32) -> u32 {
     let bits = equal_bits(x);
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -142,7 +144,7 @@ fn longest_side(spheres: &[[f32; 4]], ids: &[u32]) -> usize {
 mod tests {
     use super::*;
 
-    /// What sorting says, with many that share a place, and zeros of both signs.
+    /// Compares with sorting, for spheres of which many share a coordinate, and for zeros of both signs.
     #[test]
     fn parts_are_those_of_a_sort() {
         let coordinates = [-2.5, -1e-40, -0.0, 0.0, 3e-41, 1.0, 7e8];

@@ -1,8 +1,8 @@
-//! Boxes while a tree is built.
+//! Bounding boxes that are used while a tree is built.
 
 use glam::{Vec3, Vec3A};
 
-/// A box in the scene's frame, in f32; empty to begin with.
+/// A box in the scene's frame, in f32; [`Extent::EMPTY`] contains nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub(super) low: Vec3A,
@@ -28,14 +28,14 @@ impl Extent {
         0.5 * self.low + 0.5 * self.high
     }
 
-    /// Half the surface, or zero if empty. A length is at most 2⁵⁹, so nothing overflows.
+    /// Half of the surface area, or zero if the box is empty. A length is at most 2⁵⁹, so nothing overflows.
     #[inline]
     pub(super) fn half_area(self) -> f32 {
         let size = (self.high - self.low).max(Vec3A::ZERO);
         size.x * size.y + size.y * size.z + size.z * size.x
     }
 
-    /// The axis, 0 to 2, along which the box is longest; the first of equals.
+    /// The axis, 0 to 2, along which the box is longest; the first axis if several are equal.
     #[inline]
     pub(super) fn longest_axis(self) -> usize {
         let size = self.high - self.low;
@@ -49,21 +49,21 @@ impl Extent {
     }
 }
 
-/// A sphere while a tree is built: what it takes to move it about and to box it.
+/// A sphere while a tree is built, with the data needed for sorting and for bounding boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) center: [f32; 3],
-    /// At least radius and margin; so much more that `center ± reach` in f32 contains both.
+    /// At least radius plus margin, and large enough that `center ± reach` in f32 contains the inflated sphere.
     pub(super) reach: f32,
     /// Index in input order.
     pub(super) id: u32,
 }
 
 impl Item {
-    /// One item for every sphere (centre, radius).
+    /// Makes one item for every sphere (centre, radius).
     pub(super) fn all(spheres: &[[f32; 4]], margin: f32) -> Vec<Self> {
         let largest = spheres.iter().flatten().fold(margin, |largest, x| largest.max(x.abs()));
-        // Three roundings of numbers that are at most 4 · largest: twice in `reach`, and `center ± reach`.
+        // Three roundings of numbers that are at most 4 · largest: two in `reach` and one in `center ± reach`.
         let roundings = largest * (8.0 * f32::EPSILON);
         let item = |(id, &[x, y, z, radius]): (usize, &[f32; 4])| Self {
             center: [x, y, z],
@@ -85,15 +85,15 @@ impl Item {
         Extent { low: center - reach, high: center + reach }
     }
 
-    /// The box of many, and the box of their centres.
+    /// The bounding box of the items, and that of their centres.
     pub(super) fn extents(items: &[Self]) -> (Extent, Extent) {
         items.iter().fold((Extent::EMPTY, Extent::EMPTY), |(boxes, centers), item| {
             (boxes.union(item.extent()), centers.with_point(item.center()))
         })
     }
 
-    /// Moves the items so that the first `at` have the smallest centres along an axis; of equal centres
-    /// the smaller id comes first, so that the sets depend on nothing but the spheres.
+    /// Reorders the items so that the first `at` have the smallest centres along an axis. Items with equal centres are
+    /// ordered by id, so that the result depends only on the spheres.
     pub(super) fn select(items: &mut [Self], at: usize, axis: usize) {
         if at < items.len() {
             items.select_nth_unstable_by(at, |a, b| {

@@ -1,42 +1,42 @@
-//! Builds grids by counting sort, in time proportional to the spheres and the cells.
+//! Building grids by counting sort, in time proportional to the number of spheres and cells.
 
 use glam::Vec3;
 
-use super::cells::{Cells, mean_cells_met};
+use super::cells::{Cells, mean_overlapped_cells};
 use super::grid::{Grid, LAST, ListLayout, MAX_CELLS, word};
 use super::grid_dense::{DenseCells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
 use super::grid_sort::{CHUNK, Lists, count, fill, map_ranges, sort_by_cell, total};
 use crate::parallel::for_each;
 
-/// What a step from cell to cell costs, in sphere tests. Measured on lavapipe with a million random
-/// spheres, where the time hardly changes between four and eight.
+/// The cost of a step from cell to cell, in sphere tests. Measured on lavapipe with a million random spheres, where the
+/// time hardly changes between four and eight.
 pub(super) const STEP_COST: f32 = 5.0;
 
-/// How large a grid may become.
+/// Limits for the size of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridBudget {
-    /// The most elements of all lists.
+    /// The largest total number of elements of all lists.
     pub listed: usize,
-    /// The most cells, of both levels.
+    /// The largest number of cells, of both levels together.
     pub cells: usize,
 }
 
-/// A grid, with its spheres in the order of its places, and the id of each.
+/// A grid, with its spheres in the order that the grid refers to, and their ids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuiltGrid {
     /// The cells.
     pub grid: Grid,
-    /// Centre and radius; negative at the end of a list that is a run of copies.
+    /// Centre and radius; with [`ListLayout::Copied`], the radius is negative at the end of each list.
     pub spheres: Vec<[f32; 4]>,
-    /// Index in input order.
+    /// Index of each sphere in input order.
     pub ids: Vec<u32>,
 }
 
-/// Builds a grid over those of the spheres that have these ids.
+/// Builds a grid over the spheres with the given ids.
 ///
-/// The grid has at least eight cells, whatever the budget. A sphere is listed in every cell that lies
-/// within `margin` of its surface.
+/// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
+/// `margin` of its surface.
 #[must_use]
 pub fn build_grid(
     spheres: &[[f32; 4]],
@@ -47,13 +47,14 @@ pub fn build_grid(
 ) -> BuiltGrid {
     let (min, max) = bounds(spheres, ids, margin);
     let mut cells = first_level(spheres, ids, (min, max), budget);
-    // The size was chosen by volume, and a flat box has more cells than its volume says.
+    // The size was chosen by volume, but a flat box has more cells than its volume suggests.
     while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
     }
     let (sorted, sorted_ids) = sort_by_cell(spheres, ids, &cells);
     let mut counts = count(&sorted, &cells, margin);
-    // The size was chosen for spheres at random positions; spheres in step with the cells may meet more.
+    // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
+    // cells.
     while total(&counts) > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
         counts = count(&sorted, &cells, margin);
@@ -62,7 +63,7 @@ pub fn build_grid(
     assemble(&cells, margin, layout, budget, (sorted, sorted_ids), &lists)
 }
 
-/// The box of the spheres, inflated.
+/// The bounding box of the spheres, inflated by the margin.
 fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
     let parts = map_ranges(ids.len(), |range| {
         ids[range].iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), id| {
@@ -80,8 +81,8 @@ fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
     (min - margin, max + margin)
 }
 
-/// Cells of the size at which a ray is expected to cost least: a walk of length L takes about L/size
-/// steps, each with the tests of one cell's list.
+/// Chooses the cell size with the smallest expected cost of a ray: a ray of length L takes about L/size steps, each
+/// with the sphere tests of one cell's list.
 fn first_level(
     spheres: &[[f32; 4]],
     ids: &[u32],
@@ -93,7 +94,7 @@ fn first_level(
     let radii: Vec<f32> = ids.iter().step_by(stride).map(|id| spheres[*id as usize][3]).collect();
     let extent = max - min;
     let longest = extent.max_element();
-    // A flat scene has a volume as well.
+    // Prevents a volume of zero for flat scenes.
     let sides = extent.max(Vec3::splat(longest * 1e-3));
     let volume = f64::from(sides.x) * f64::from(sides.y) * f64::from(sides.z);
     let most_cells = budget.cells.min(MAX_CELLS / 2) as f64;
@@ -101,8 +102,8 @@ fn first_level(
     // From one cell to 1024 along the longest side, in steps of an eighth of an octave.
     for step in 0..=80_u8 {
         let size = longest / (f32::from(step) / 8.0).exp2();
-        let met: f32 = radii.iter().map(|r| mean_cells_met(size, *r)).sum();
-        let listed = f64::from(met) / radii.len() as f64 * ids.len() as f64;
+        let overlaps: f32 = radii.iter().map(|r| mean_overlapped_cells(size, *r)).sum();
+        let listed = f64::from(overlaps) / radii.len() as f64 * ids.len() as f64;
         let cells = volume / f64::from(size).powi(3);
         let fits = listed <= budget.listed as f64 * 0.97 && cells <= most_cells * 0.9;
         let cost = (f64::from(STEP_COST) + listed / cells.max(1.0)) / f64::from(size);
@@ -122,14 +123,14 @@ fn coarser(cells: &Cells, max: Vec3) -> Cells {
     cells_of_size(cells.min, max, cells.size * 1.1)
 }
 
-/// A run of cells on its way into the grid: its words, with positions that count from its own start.
+/// A range of cells under construction: its words, with start indices relative to its own lists and words.
 #[derive(Default)]
 struct BuiltCells {
     /// Words of the first level.
     words: Vec<u32>,
-    /// Words of the grids inside.
+    /// Words of the grids inside cells.
     inner: Vec<u32>,
-    /// Places, list after list; the last of each is marked.
+    /// Indices of spheres, list after list; the last element of each list is marked.
     lists: Vec<u32>,
 }
 
@@ -196,7 +197,7 @@ fn assemble(
     }
 }
 
-/// Sorts a list by id, so that of equal distances the first is the one that counts.
+/// Sorts a list by id, so that at equal distances the sphere with the smallest id is found first.
 fn by_id(shape_indices: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec<u32>) {
     keys.clear();
     keys.extend(
@@ -206,11 +207,11 @@ fn by_id(shape_indices: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec
     );
     keys.sort_unstable();
     list.clear();
-    // The lower half.
+    // The lower half of the key is the index.
     list.extend(keys.iter().map(|key| *key as u32));
 }
 
-/// Of the same spheres, in a long list, only the first remains: the one that counts.
+/// Removes duplicates of a sphere from a long list, except the first, which has the smallest id.
 fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     const LONG: usize = 32;
     if list.len() > LONG {
@@ -219,7 +220,7 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     }
 }
 
-/// Appends a list, and gives the word of its cell.
+/// Appends a list, and returns the word of its cell.
 fn append(lists: &mut Vec<u32>, list: &[u32]) -> u32 {
     let Some((last, others)) = list.split_last() else {
         return word::EMPTY;
@@ -230,7 +231,7 @@ fn append(lists: &mut Vec<u32>, list: &[u32]) -> u32 {
     word::LIST | start
 }
 
-/// Joins the parts' words into `cells`, and gives their lists.
+/// Writes the words of all parts into `cells`, and returns their joined lists.
 fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[BuiltCells]) -> Vec<u32> {
     let listed = parts.iter().map(|part| part.lists.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
@@ -267,14 +268,14 @@ fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[BuiltCells]) -> V
     shape_indices
 }
 
-/// Takes the first elements from a slice.
+/// Splits the first elements off a slice.
 fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(slice).split_at_mut(len);
     *slice = rest;
     first
 }
 
-/// Every listed sphere by itself.
+/// Copies of all listed spheres, one for each element of a list.
 fn copies(
     shape_indices: &[u32],
     sorted: &[[f32; 4]],

@@ -1,91 +1,94 @@
-//! What a grid must be, so that a kernel that walks it neither leaves an array nor loses a sphere.
+//! The checks that a grid is valid: that kernels that walk it neither read out of range nor miss a sphere.
 //!
-//! The geometry is done again, in f64 and by other means than the builder's, so that a mistake there is not
-//! made here as well.
+//! The geometry is computed in f64 and by other methods than in the builder, so that both do not share a mistake.
 
 use std::ops::RangeInclusive;
 
 use super::grid::{Grid, LAST, MAX_CELLS, word};
 use super::grid_geometry::{Cell, Level};
 
-/// The levels that a grid inside a cell may have: 2 to 32 cells along an axis.
+/// The valid levels of a grid inside a cell: 2 to 32 cells along an axis.
 const LEVELS: RangeInclusive<u32> = 1..=5;
 
-/// The builder's f32 may leave out a sphere that is nearer than `margin` by rounding, and list one that is
-/// farther. What a ray's own arithmetic needs is less than half a margin (see `SceneStatistics::margin`), so
-/// within half a margin a sphere must be listed; beyond two, listing it is a mistake.
-const MUST: f64 = 0.5;
-const MAY: f64 = 2.0;
+/// Rounding in the builder's f32 may leave out a sphere that is nearer than `margin`, and list one that is farther
+/// away. The arithmetic of a ray needs less than half a margin (see `SceneStatistics::margin`), so a sphere within half
+/// a margin of a cell must be listed; a sphere farther away than two margins must not be listed.
+const MUST_LIST: f64 = 0.5;
+const MAY_LIST: f64 = 2.0;
 
-/// Why a grid is not one that a kernel may walk.
+/// Why a grid is not valid for kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// The cells' size or number is not what cells are computed with.
-    #[error("the first level is not a box of cells")]
+    /// The size of the cells, their number, or the number of words is not valid.
+    #[error(
+        "the first level is not a valid box of cells: its cell size, cell counts or number of words is wrong"
+    )]
     Shape,
-    /// A word is of no kind that may stand at its place.
-    #[error("word {cell} is of no kind that may stand there")]
+    /// A word has a kind that is not allowed at its index.
+    #[error("word {cell} has a kind that is not valid at this index")]
     Kind {
         /// Index into [`Grid::cells`].
         cell: u32,
     },
     /// A grid inside a cell is too coarse or too fine.
-    #[error("the grid inside cell {cell} has the level {level}")]
+    #[error("the grid inside cell {cell} has the level {level}; it must be from 1 to 5")]
     Level {
         /// Index into [`Grid::cells`].
         cell: u32,
-        /// The logarithm, to base 2, of its cells along an axis.
+        /// The base-2 logarithm of its number of cells along an axis.
         level: u32,
     },
-    /// A grid inside a cell is not a run of words of its own.
-    #[error("the grid inside cell {cell} is not where it may be")]
+    /// The words of a grid inside a cell are out of range, or belong to another grid as well.
+    #[error("the grid inside cell {cell} is out of range, or overlaps another one")]
     Link {
         /// Index into [`Grid::cells`].
         cell: u32,
     },
-    /// A list starts or ends beyond the arrays, or names what is no place, or is a part of another list.
-    #[error("the list of cell {cell} is not where it may be, or has no end")]
+    /// A list starts or ends out of range, has an element that is out of range, or overlaps another list.
+    #[error("the list of cell {cell} is out of range, has no end, or overlaps another list")]
     List {
         /// Index into [`Grid::cells`].
         cell: u32,
     },
-    /// The ids of a list do not ascend.
-    #[error("the ids in the list of cell {cell} do not ascend")]
+    /// The ids of a list are not in ascending order.
+    #[error("the ids in the list of cell {cell} are not in ascending order")]
     Order {
         /// Index into [`Grid::cells`].
         cell: u32,
     },
-    /// A place's id is of no sphere of the input, of another one, or missing from the ids.
-    #[error("the sphere at index {shape_index} of the structure is not the one that its id says")]
+    /// The id at an index of the structure is not that of an input sphere, is that of another sphere, or is missing.
+    #[error(
+        "the sphere at index {shape_index} of the structure is not the one with its id, or has no id"
+    )]
     Sphere {
-        /// The place.
+        /// Index of the sphere in the order of the structure.
         shape_index: u32,
     },
-    /// A sphere, with the margin, is not within the cells.
-    #[error("sphere {id} reaches beyond the cells")]
+    /// A sphere, inflated by the margin, extends beyond the cells.
+    #[error("sphere {id} extends beyond the cells")]
     Outside {
         /// Index in input order.
         id: u32,
     },
-    /// A cell's list lacks a sphere whose surface is near the cell.
-    #[error("the list of cell {cell} lacks the sphere {id}")]
+    /// A list lacks a sphere whose surface is near the cell.
+    #[error("the list of cell {cell} lacks the sphere {id}, which is near the cell")]
     Missing {
         /// Index into [`Grid::cells`].
         cell: u32,
         /// Index in input order.
         id: u32,
     },
-    /// A cell's list has a sphere whose surface is not near the cell.
-    #[error("the list of cell {cell} has the sphere {id}, which is not there")]
+    /// A list has a sphere whose surface is not near the cell.
+    #[error("the list of cell {cell} has the sphere {id}, which is not near the cell")]
     Far {
         /// Index into [`Grid::cells`].
         cell: u32,
         /// Index in input order.
         id: u32,
     },
-    /// Not all cells are empty that an empty cell says are.
-    #[error("not all cells ahead of cell {cell} are empty that should be")]
+    /// An empty cell states that cells ahead of it are empty, but some of them are not.
+    #[error("not all cells ahead of cell {cell} are empty that it states to be empty")]
     Reach {
         /// Index into [`Grid::cells`].
         cell: u32,
@@ -93,15 +96,15 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// Whether the grid is one that a kernel may walk: every link leads to a place inside the arrays, every
-    /// list ends and ascends in id, and every sphere is listed in exactly the cells that it should be.
+    /// Checks that the grid is valid for kernels: every index is in range, every list has an end and ascending ids, and
+    /// every sphere is listed in exactly the cells that need it.
     ///
-    /// `spheres` and `ids` are in the order of the grid's places; `input` are the spheres that the grid was
-    /// built of, all of them, and `margin` how far from a surface a cell must know of it. Of spheres that
-    /// are the same, a list may lack all but that with the smallest id.
+    /// `spheres` and `ids` are in the order that the grid refers to. `input` are all spheres from which the grid was
+    /// built, and `margin` is the distance from a surface within which cells must list it. If several spheres are
+    /// equal, a list may lack all but the one with the smallest id.
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    /// If the grid is not valid; the error describes the first problem.
     pub fn validate(
         &self,
         spheres: &[[f32; 4]],
@@ -131,14 +134,14 @@ impl Grid {
         if self.cells.len() < padded || word::in_whole_units(self.cells.len()) != self.cells.len() {
             return Err(GridError::Shape);
         }
-        // A walk may, by rounding, read one cell too far.
+        // Because of rounding, a walk may read one cell too far, so the padding must be empty.
         match (self.first_level_len()..padded).find(|cell| self.cells[*cell] != word::EMPTY) {
             Some(cell) => Err(GridError::Kind { cell: cell as u32 }),
             None => Ok(()),
         }
     }
 
-    /// Each place has the sphere of its id; with references, each id has one place.
+    /// Checks that each index has the sphere of its id; with references, that each id has exactly one index.
     fn check_shapes(
         &self,
         spheres: &[[f32; 4]],
@@ -169,7 +172,7 @@ impl Grid {
     }
 }
 
-/// Where a cell's list is, in the references or, without them, in the spheres; empty without a list.
+/// The range of a cell's list in the references or, without references, in the spheres; empty without a list.
 type Range = std::ops::Range<usize>;
 
 struct Check<'a> {
@@ -180,13 +183,13 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// The list of every word, after checks that all links lead where they may.
+    /// The list of every word, after a check that all references are valid.
     fn lists(&self, spheres: &[[f32; 4]]) -> Result<Vec<Range>, GridError> {
         let words = &self.grid.cells;
         let first_level_len = self.grid.first_level_len();
         let padded = word::in_whole_units(first_level_len);
         let listed = self.grid.references.as_ref().map_or(spheres.len(), Vec::len);
-        // Each word behind the first level and each element of a list is some one cell's own.
+        // Each word after the first level, and each element of a list, must belong to exactly one cell.
         let mut is_inner = vec![false; words.len()];
         let mut is_listed = vec![false; listed];
         for (cell, value) in words.iter().enumerate().take(first_level_len) {
@@ -199,7 +202,7 @@ impl Check<'_> {
             let cell = index as u32;
             let is_first = index < first_level_len;
             match value & word::KIND {
-                // Behind the first level nothing is said of what is around.
+                // After the first level, empty words say nothing about the cells around them.
                 word::EMPTY if is_first || *value == word::EMPTY => {}
                 word::LIST if is_first || is_inner[index] => {
                     let list = self.list(spheres, cell, (value & !word::KIND) as usize)?;
@@ -239,7 +242,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Follows a list to its end, and checks that it names places, by ascending id.
+    /// Follows a list to its end, and checks that its elements are in range and their ids ascend.
     fn list(&self, spheres: &[[f32; 4]], cell: u32, start: usize) -> Result<Range, GridError> {
         let mut last_id = None;
         let mut at = start;
@@ -261,7 +264,7 @@ impl Check<'_> {
         }
     }
 
-    /// The place that an element of a list names.
+    /// The index of the sphere that an element of a list refers to.
     fn shape_index(&self, at: usize) -> usize {
         self.grid.references.as_ref().map_or(at, |references| (references[at] & !LAST) as usize)
     }
@@ -270,7 +273,8 @@ impl Check<'_> {
         self.ids[self.shape_index(at)]
     }
 
-    /// By a table of sums: how many cells are not empty in the box from the first cell to each.
+    /// Checks what empty cells state about the cells ahead, with a summed-volume table: the number of occupied cells
+    /// between the first cell and each cell.
     fn check_reach(&self) -> Result<(), GridError> {
         let [width, height, depth] = self.grid.cell_counts.map(|count| count as usize);
         let sum_index = |x: usize, y: usize, z: usize| (z * (height + 1) + y) * (width + 1) + x;
@@ -327,11 +331,11 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Every cell near the sphere's surface lists it, or the same sphere with a smaller id.
+    /// Checks that every cell near the surface of a sphere lists it, or an equal sphere with a smaller id.
     fn check_listed(&self, lists: &[Range], id: u32) -> Result<(), GridError> {
         let sphere = self.input[id as usize];
         let whole = Level::of(self.grid);
-        let reach = f64::from(sphere[3]) + MUST * self.margin;
+        let reach = f64::from(sphere[3]) + MUST_LIST * self.margin;
         for (axis, x) in sphere.into_iter().take(3).enumerate() {
             let center = f64::from(x) - whole.low[axis];
             let side = whole.size * whole.counts[axis] as f64;
@@ -351,7 +355,7 @@ impl Check<'_> {
     ) -> Result<(), GridError> {
         let reach = f64::from(sphere[3]) + self.margin;
         for cell in level.cells_around(sphere, reach) {
-            if !cell.is_near(sphere, MUST * self.margin) {
+            if !cell.is_near(sphere, MUST_LIST * self.margin) {
                 continue;
             }
             let value = self.grid.cells[cell.index];
@@ -365,7 +369,7 @@ impl Check<'_> {
     }
 
     fn lists_it(&self, list: &Range, id: u32, sphere: [f32; 4]) -> bool {
-        // Ids ascend.
+        // Binary search, because ids ascend.
         let (mut low, mut high) = (list.start, list.end);
         while low < high {
             let middle = low + (high - low) / 2;
@@ -377,7 +381,7 @@ impl Check<'_> {
         (low < list.end && self.id(low) == id) || (list.start..low).any(is_same)
     }
 
-    /// No cell lists a sphere that is not there.
+    /// Checks that no cell lists a sphere that is not near it.
     fn check_near(&self, lists: &[Range]) -> Result<(), GridError> {
         for cell in Level::of(self.grid).cells() {
             let value = self.grid.cells[cell.index];
@@ -394,7 +398,7 @@ impl Check<'_> {
 
     fn check_list_near(&self, cell: &Cell, list: &Range) -> Result<(), GridError> {
         for id in list.clone().map(|at| self.id(at)) {
-            if !cell.is_near(self.input[id as usize], MAY * self.margin) {
+            if !cell.is_near(self.input[id as usize], MAY_LIST * self.margin) {
                 return Err(GridError::Far { cell: cell.index as u32, id });
             }
         }

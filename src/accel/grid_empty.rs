@@ -1,20 +1,19 @@
-//! How far ahead of an empty cell all others are empty, so that a ray may cross them in one step.
+//! Computes how many cells ahead of an empty cell are empty, so that a ray may cross them in one step.
 
 use super::grid::word;
 use crate::parallel::map;
 
-/// The longest step, in cells beside the first.
-pub(super) const MOST_AHEAD: u8 = word::REACH as u8;
+/// The largest number of cells beyond the first that a step may cross.
+pub(super) const MAX_AHEAD: u8 = word::REACH as u8;
 
-/// Below this part of empty cells, there is little to skip.
+/// The fraction of empty cells below which skipping is not worthwhile.
 const WORTH_IT: f32 = 0.25;
 
-/// Writes into every empty word of the first level, for each of the eight octants that a ray may head for,
-/// how many cells ahead along all three axes are empty as well, in three bits each.
+/// Writes into every empty word of the first level, for each of the eight octants of ray directions, how many cells
+/// ahead along all three axes are empty as well, in three bits each.
 ///
-/// By dynamic programming, as for the largest square of ones in a matrix: the empty cube that starts at a
-/// cell is one larger than the least of those that start at its seven neighbours ahead. What lies
-/// outside the grid is empty.
+/// By dynamic programming, as for the largest square of ones in a matrix: the empty cube that starts at a cell is one
+/// larger than the smallest of those that start at its seven neighbours ahead. Everything outside the grid is empty.
 pub(super) fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     let counts = counts.map(|count| count as usize);
     let len = counts.iter().product();
@@ -35,11 +34,11 @@ pub(super) fn mark_empty_surroundings(words: &mut [u32], counts: [u32; 3]) {
     }
 }
 
-/// Of every empty cell, how many cells ahead of it are empty; bit i of the octant is set for a ray that
-/// descends along axis i.
+/// For every empty cell, the number of empty cells ahead of it. Bit i of the octant is set for a ray that descends
+/// along axis i.
 fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> {
     let [width, height, depth] = counts;
-    // Of each cell, the side of the empty cube that starts there.
+    // For each cell, the side of the empty cube that starts there.
     let mut sides = vec![0_u8; is_empty.len()];
     let in_order = |axis: usize, i: usize| {
         if octant >> axis & 1 == 1 { i } else { counts[axis] - 1 - i }
@@ -52,7 +51,7 @@ fn cubes_ahead(is_empty: &[bool], counts: [usize; 3], octant: usize) -> Vec<u8> 
                 if !is_empty[index(coordinates)] {
                     continue;
                 }
-                let mut side = MOST_AHEAD;
+                let mut side = MAX_AHEAD;
                 for neighbour in 1..8_usize {
                     let ahead = [0, 1, 2].map(|axis| {
                         let moves = neighbour >> axis & 1 == 1;

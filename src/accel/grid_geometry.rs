@@ -1,8 +1,8 @@
-//! Cells in f64, for checking a grid by other means than it was built with.
+//! Grid cells in f64, for checking a grid by other methods than those of the builder.
 
 use super::grid::{Grid, word};
 
-/// A cell of either level: the index of its word, and the box that it fills.
+/// A cell of either level: the index of its word, and its box.
 #[derive(Clone, Copy)]
 pub(super) struct Cell {
     pub(super) index: usize,
@@ -22,7 +22,7 @@ impl Cell {
         (near.sqrt(), far.sqrt())
     }
 
-    /// Whether the surface of a sphere comes as near to the cell as `margin`.
+    /// Whether the distance between the surface of a sphere and the cell is at most `margin`.
     pub(super) fn is_near(&self, [x, y, z, radius]: [f32; 4], margin: f64) -> bool {
         let radius = f64::from(radius);
         let (near, far) = self.distances([x, y, z].map(f64::from));
@@ -30,7 +30,7 @@ impl Cell {
     }
 }
 
-/// A box of cells whose words follow each other.
+/// A box of cells whose words are consecutive.
 pub(super) struct Level {
     pub(super) first: usize,
     pub(super) low: [f64; 3],
@@ -48,7 +48,7 @@ impl Level {
         }
     }
 
-    /// The grid inside a cell, whose word is `value`.
+    /// The grid inside a cell whose word is `value`.
     pub(super) fn inside(cell: &Cell, value: u32) -> Self {
         let side = 1_usize << word::level(value);
         let size = cell.size / side as f64;
@@ -59,7 +59,7 @@ impl Level {
         self.cells_between([0; 3], self.counts)
     }
 
-    /// At least those that come as near to a sphere's centre as `reach`.
+    /// The cells within `reach` of a sphere's centre, and possibly some others.
     pub(super) fn cells_around(
         &self,
         [x, y, z, _]: [f32; 4],

@@ -1,5 +1,5 @@
-//! Counting sort by cell: in time proportional to spheres and cells, on all cores, with the same result
-//! whatever their number.
+//! Counting sort by cell, in time proportional to the number of spheres and cells, on all cores. The result does not
+//! depend on the number of cores.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use super::cells::Cells;
 use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
-/// How many spheres or cells one task handles.
+/// The number of spheres or cells that one task handles.
 pub(super) const CHUNK: usize = 1 << 14;
 
-/// The spheres in the order of the cells that hold their centres, block by block, so that what is near in
-/// space is near in memory; within a cell, by id.
+/// Sorts spheres by the cells of their centres, block by block, so that spheres that are close in space are close in
+/// memory; within a cell, by id. Returns the spheres and their ids.
 pub(super) fn sort_by_cell(
     spheres: &[[f32; 4]],
     ids: &[u32],
@@ -33,7 +33,7 @@ pub(super) fn sort_by_cell(
             order[at as usize].store(*id, Ordering::Relaxed);
         }
     });
-    // Counted down, ends are starts.
+    // The ends have been counted down, so they are starts now.
     let starts = plain(ends);
     let mut order = plain(order);
     each_list(&mut order, &starts, |_, list| list.sort_unstable());
@@ -47,12 +47,12 @@ pub(super) fn sort_by_cell(
     (sorted, order)
 }
 
-/// How many spheres meet each cell.
+/// The number of spheres that overlap each cell.
 pub(super) fn count(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> Vec<AtomicU32> {
     let counts = zeros(cells.len());
     for_ranges(spheres.len(), |range| {
         for sphere in &spheres[range] {
-            cells.met_by(sphere, margin, |cell| {
+            cells.for_each_near(sphere, margin, |cell| {
                 counts[cell].fetch_add(1, Ordering::Relaxed);
             });
         }
@@ -64,13 +64,13 @@ pub(super) fn total(counts: &[AtomicU32]) -> u64 {
     counts.iter().map(|count| u64::from(count.load(Ordering::Relaxed))).sum()
 }
 
-/// The places of the spheres that meet each cell, cell by cell, and where each cell's start.
+/// The indices of the spheres that overlap each cell, cell by cell, and the start of each cell's list.
 pub(super) struct Lists {
     pub(super) shape_indices: Vec<u32>,
     pub(super) starts: Vec<u32>,
 }
 
-/// The second half of the counting sort.
+/// Fills the lists of all cells: the second half of the counting sort.
 pub(super) fn fill(
     spheres: &[[f32; 4]],
     cells: &Cells,
@@ -82,13 +82,13 @@ pub(super) fn fill(
     let shape_indices = zeros(total);
     for_ranges(spheres.len(), |range| {
         for shape_index in range {
-            cells.met_by(&spheres[shape_index], margin, |cell| {
+            cells.for_each_near(&spheres[shape_index], margin, |cell| {
                 let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
                 shape_indices[at as usize].store(shape_index as u32, Ordering::Relaxed);
             });
         }
     });
-    // Counted down, ends are starts.
+    // The ends have been counted down, so they are starts now.
     Lists { shape_indices: plain(shape_indices), starts: plain(ends) }
 }
 
@@ -100,7 +100,7 @@ fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
     atomics.into_iter().map(AtomicU32::into_inner).collect()
 }
 
-/// Turns the count of each list into where it ends; one more at the end is where all end.
+/// Turns the length of each list into the index where it ends, and appends the total length.
 fn add_up(mut counts: Vec<AtomicU32>) -> Vec<AtomicU32> {
     let mut end = 0;
     for count in &mut counts {
@@ -111,7 +111,7 @@ fn add_up(mut counts: Vec<AtomicU32>) -> Vec<AtomicU32> {
     counts
 }
 
-/// Calls `f` with every list and its cell.
+/// Calls `f` with every cell and its list.
 fn each_list(values: &mut [u32], starts: &[u32], f: impl Fn(usize, &mut [u32]) + Sync + Send) {
     let chunks = ranges(starts.len() - 1, CHUNK);
     let parts = split_mut(values, chunks.iter().map(|range| starts[range.end] as usize));

@@ -1,5 +1,5 @@
-//! Walks a grid in f32. Twin of `shaders/accel/nested_grid.wgsl`, in the same order of cells and spheres; `grid.wgsl`
-//! is that for one level, without the loops inside.
+//! Traversal of a grid in f32. The WGSL twin is `shaders/accel/nested_grid.wgsl`, with the same order of cells and spheres;
+//! `grid.wgsl` is the version for one level, without the inner loop.
 
 use glam::{BVec3, Vec3};
 
@@ -8,16 +8,16 @@ use super::query::{NO_HIT, Nearest, RayF32};
 use super::slab::inverse_direction;
 use super::sphere::intersect_sphere;
 
-/// The nearest sphere of this brick.
+/// The nearest sphere of the brick so far.
 struct Found {
     t: f32,
     shape_index: Option<u32>,
 }
 
 impl Grid {
-    /// Offers every sphere that may be nearer than `nearest`, until none can be.
+    /// Updates `nearest` with the nearest sphere of the grid.
     ///
-    /// `spheres` and `ids` are in the order of the grid's places.
+    /// `spheres` and `ids` are in the order that the grid refers to.
     pub fn find_nearest(
         &self,
         spheres: &[[f32; 4]],
@@ -32,10 +32,10 @@ impl Grid {
         }
     }
 
-    /// Whether any sphere is nearer than `t_max`.
+    /// Whether the ray hits any sphere before `t_max`.
     #[must_use]
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
-        // A list takes what is as near as the nearest so far.
+        // A list accepts a hit at the same distance as the nearest so far, so the limit is just below `t_max`.
         let mut found = Found { t: t_max.next_down(), shape_index: None };
         self.walk(spheres, ray, &mut found, true);
         found.shape_index.is_some()
@@ -107,12 +107,14 @@ impl Grid {
         }
     }
 
-    /// Rounding may name a cell beyond the last; a kernel then reads another word, and so may this.
+    /// The word at an index. Rounding may give the index of a cell beyond the last; a kernel then reads another word,
+    /// and so may this.
     fn word(&self, index: usize) -> u32 {
         self.cells.get(index).copied().unwrap_or(word::EMPTY)
     }
 
-    /// The nearest of a list replaces one that is as near; why, `shaders/accel/cell_list.wgsl` says.
+    /// Tests the spheres of a list. Its nearest hit replaces an earlier one at the same distance;
+    /// `shaders/accel/cell_list.wgsl` explains why.
     fn test_list(&self, spheres: &[[f32; 4]], ray: &RayF32, start: u32, found: &mut Found) {
         let mut best = Found { t: NO_HIT, shape_index: None };
         for shape_index in self.list(spheres, start) {

@@ -1,10 +1,10 @@
-//! The spheres of one leaf. Twin of `shaders/accel/leaf.wgsl`.
+//! Tests of the spheres of one leaf. The WGSL twin is `shaders/accel/leaf.wgsl`.
 
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::sphere::intersect_sphere;
 
-/// Offers the nearest sphere of a leaf. Ids ascend within a leaf, so `<` leaves a tie to the smaller one,
-/// and one offer is enough.
+/// Updates `nearest` with the nearest sphere of a leaf. Ids ascend within a leaf, so `<` prefers the smaller id at
+/// equal distances, and a single call of `offer` is enough.
 #[inline]
 pub(super) fn offer_leaf(
     spheres: &[[f32; 4]],
@@ -28,7 +28,7 @@ pub(super) fn offer_leaf(
     }
 }
 
-/// Whether a sphere of a leaf is hit before `t_max`.
+/// Whether the ray hits a sphere of a leaf before `t_max`.
 #[inline]
 pub(super) fn any_in_leaf(
     spheres: &[[f32; 4]],

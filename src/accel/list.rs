@@ -1,9 +1,9 @@
-//! No structure: every sphere. Twin of `shaders/accel/list.wgsl`.
+//! The search without a structure, which tests every sphere. The WGSL twin is `shaders/accel/list.wgsl`.
 
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::sphere::intersect_sphere;
 
-/// Offers the nearest of the spheres, which ascend in id.
+/// Updates `nearest` with the nearest of the spheres, whose ids ascend.
 pub fn find_nearest(spheres: &[[f32; 4]], ids: &[u32], ray: &RayF32, nearest: &mut Nearest) {
     let mut best = (NO_HIT, 0);
     for (shape_index, sphere) in spheres.iter().enumerate() {
@@ -17,7 +17,7 @@ pub fn find_nearest(spheres: &[[f32; 4]], ids: &[u32], ray: &RayF32, nearest: &m
     }
 }
 
-/// Whether any sphere is nearer than `t_max`.
+/// Whether the ray hits any sphere before `t_max`.
 #[must_use]
 pub fn find_any(spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
     spheres.iter().any(|sphere| intersect_sphere(ray, *sphere) < t_max)

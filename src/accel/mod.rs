@@ -1,9 +1,8 @@
-//! Acceleration structures: spheres in the scene's frame in, plain data out, and the traversal of that
-//! data on the CPU.
+//! Acceleration structures: built from spheres in the scene's frame, stored as plain data, and traversed on the CPU.
 //!
-//! Every structure is an index into the same spheres, and every traversal calls the same sphere test in
-//! f32, so that the answer, distance and id, is that of trying every sphere, to the bit. The kernels in
-//! `shaders/` walk the same data in the same order.
+//! Every structure refers to the same spheres, and every traversal calls the same sphere test in f32, so that the
+//! result, distance and id, is that of testing every sphere, to the bit. The kernels in `shaders/` walk the same data
+//! in the same order.
 
 mod binary_tree;
 mod binary_tree_trace;
@@ -56,7 +55,7 @@ pub use tree_check::{TreeError, TreeStatistics};
 pub use wide_node::{WIDE_LEAF, WideNode};
 pub use wide_tree::{WIDE_LEVELS, WideTree};
 
-/// What else kernels know, for the test that compares both.
+/// Constants that kernels share, for the test that compares both.
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) mod shared {
     pub(crate) use super::binary_tree_trace::NO_ENTRY;

@@ -1,4 +1,4 @@
-//! What will be built, why, and how large it may become: decided before anything is allocated.
+//! Plans: which structure is built, why, and how large it may become. Plans are made before anything is allocated.
 
 use std::fmt;
 
@@ -12,93 +12,92 @@ use super::wide_node::WideNode;
 use super::wide_tree::WideTree;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
 
-/// What a user asks for.
+/// The structure that a user chooses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AccelChoice {
-    /// What suits the data.
+    /// The structure that suits the scene.
     #[default]
     Auto,
-    /// Two levels of cells.
+    /// A grid with one or two levels of cells.
     Grid,
-    /// A tree with eight children a node.
+    /// A tree with eight children for each node.
     Tree,
-    /// A tree with two children a node: slower, and simpler.
+    /// A tree with two children for each node: slower, but simple.
     BinaryTree,
-    /// Every sphere is tried: slow, and what the others are compared with.
+    /// No structure: every sphere is tested. Slow; serves as the reference for the others.
     List,
 }
 
-/// Up to so many spheres no structure pays.
+/// The number of spheres up to which no structure is worth its cost.
 const FEW: usize = 32;
 
-/// With more spheres in about the smallest cell that a nested grid may have, a tree is better.
-const MOST_IN_A_CUBE: f32 = 256.0;
+/// The number of spheres, in a cube of about the smallest cell of a nested grid, above which a tree is better.
+const MAX_IN_A_CUBE: f32 = 256.0;
 
-/// How many spheres one dispatch tries without a structure: below the 65,535 iterations after which Mesa
-/// 22.3's lavapipe leaves a loop silently.
+/// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
+/// in Mesa 22.3 silently leaves a loop.
 pub(crate) const LIST_LEN: usize = 3 << 14;
 
-/// What a binding may have on most devices; lists of more would not be numbered by 30 bits.
-const MOST_BINDING_BYTES: u64 = i32::MAX as u64;
+/// The largest binding on most devices; larger lists could not be indexed with 30 bits.
+const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
-/// Up to so many spheres, lists are runs of copies: faster by a quarter on lavapipe, for about twice the
-/// memory.
-const MOST_COPIED: usize = 2_000_000;
+/// The number of spheres up to which lists store copies: faster by a quarter on lavapipe, for about twice the memory.
+const MAX_COPIED: usize = 2_000_000;
 
-/// With fewer rays for each sphere, making copies takes longer than they save: on lavapipe, 80 ns a sphere
-/// and 13 ns a ray of a million random spheres.
-const LEAST_RAYS_PER_COPIED: u64 = 6;
+/// The number of rays for each sphere below which making copies takes longer than they save: on lavapipe, 80 ns for
+/// each sphere and 13 ns for each ray of a million random spheres.
+const MIN_RAYS_PER_COPIED: u64 = 6;
 
-/// At most so many bytes of nodes a sphere: a node of 64 bytes has leaves of three or four, two of them.
+/// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
 const BINARY_BYTES_PER_SPHERE: usize = 32;
 
-/// Of one buffer.
+/// The planned size of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedBuffer {
-    /// What it holds.
+    /// What the buffer holds.
     pub name: &'static str,
-    /// At most so many bytes, in all bricks together.
+    /// The largest number of bytes, in all bricks together.
     pub bytes: u64,
-    /// At most so many bytes in one brick, which is what one binding must hold.
+    /// The largest number of bytes in one brick, which a single binding must hold.
     pub bytes_per_binding: u64,
 }
 
 impl PlannedBuffer {
-    /// A single buffer of so many bytes.
+    /// A buffer of `bytes` bytes in a single binding.
     #[must_use]
     pub const fn one(name: &'static str, bytes: u64) -> Self {
         Self { name, bytes, bytes_per_binding: bytes }
     }
 }
 
-/// What will be built of a scene.
+/// The acceleration structure that will be built for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccelPlan {
-    /// What it was decided from.
+    /// The statistics on which the decision is based.
     pub statistics: SceneStatistics,
-    /// The structure.
+    /// The structure that will be built.
     pub structure: Structure,
-    /// Why this one.
+    /// Why this structure was chosen.
     pub reason: String,
-    /// In how many bricks.
+    /// The number of bricks.
     pub brick_count: usize,
-    /// How large the grid of one brick may become.
+    /// The limits for the grid of one brick.
     budget: GridBudget,
-    /// Of the whole scene, on the device.
+    /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
 }
 
 impl AccelPlan {
-    /// Decides for a scene's spheres and a device whose bindings hold so many bytes. Many pictures will be
-    /// made.
+    /// Makes a plan for the spheres of a scene and a device whose bindings hold up to `binding_bytes`. Assumes that
+    /// many pictures will be rendered.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
         Self::for_rays(spheres, choice, binding_bytes, u64::MAX)
     }
 
-    /// As [`AccelPlan::new`], where only so many rays will be traced: a structure that is slower, but built
-    /// sooner, may be better then.
+    /// Makes a plan like [`AccelPlan::new`], for a known number of rays: if there are few, a structure that is slower
+    /// but faster to build may be better.
     #[must_use]
     pub fn for_rays(
         spheres: &[[f32; 4]],
@@ -106,7 +105,7 @@ impl AccelPlan {
         binding_bytes: u64,
         rays: u64,
     ) -> Self {
-        let binding_bytes = binding_bytes.min(MOST_BINDING_BYTES);
+        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
         let (structure, reason) = decide(&statistics, choice, rays);
         let count = statistics.count;
@@ -119,23 +118,23 @@ impl AccelPlan {
         plan
     }
 
-    /// Bytes of all buffers.
+    /// The number of bytes of all buffers.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         self.buffers.iter().map(|buffer| buffer.bytes).sum()
     }
 
-    /// Bytes of host memory that building takes at most, beside the scene itself.
+    /// The largest number of bytes of host memory that building needs, in addition to the scene itself.
     #[must_use]
     pub fn host_bytes(&self) -> u64 {
         let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
         let structure: u64 = self.device_bytes();
         let building = match self.structure {
             Structure::List => 0,
-            // The brick's spheres, their ids twice, and what a builder makes of each of them; vectors that
-            // grow leave some unused.
+            // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
+            // some memory unused.
             Structure::WideTree | Structure::BinaryTree => per_brick * 72,
-            // Sorted spheres with their ids; lists as places, twice.
+            // Sorted spheres with their ids, and lists of indices, twice.
             Structure::Grid(_) | Structure::NestedGrid(_) => {
                 per_brick * 24 + 8 * self.budget.listed as u64
             }
@@ -143,14 +142,14 @@ impl AccelPlan {
         structure + building
     }
 
-    /// Builds it, of the spheres that were planned for.
+    /// Builds the planned structure; `spheres` must be those of the plan.
     #[must_use]
     pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
         let (min, max) = self.statistics.inflated_bounds();
         let margin = self.statistics.margin();
         let per_brick = self.statistics.count.div_ceil(self.brick_count).max(1);
         let divided = match self.structure {
-            // Slices in the order of ids, whatever is in them.
+            // Without a structure, bricks are consecutive spheres in the order of ids.
             Structure::List => Divided { parts: Vec::new(), may_part_equals: self.brick_count > 1 },
             _ => divide(spheres, self.brick_count),
         };
@@ -220,8 +219,8 @@ impl AccelPlan {
 }
 
 impl Structure {
-    /// What to choose where rays take too many steps in this one, as among very many spheres in one place; a
-    /// list always ends.
+    /// The choice to use instead if rays take too many steps in this structure, for example among very many overlapping
+    /// spheres; `None` for the list, which always terminates.
     #[must_use]
     pub const fn instead(self) -> Option<AccelChoice> {
         match self {
@@ -246,9 +245,9 @@ impl fmt::Display for AccelChoice {
 
 fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Structure, String) {
     let count = statistics.count;
-    let (layout, why) = if count > MOST_COPIED {
+    let (layout, why) = if count > MAX_COPIED {
         (ListLayout::Referenced, "too many to copy into cells")
-    } else if rays / LEAST_RAYS_PER_COPIED < count as u64 {
+    } else if rays / MIN_RAYS_PER_COPIED < count as u64 {
         (ListLayout::Referenced, "too few rays for copies of them in cells to pay")
     } else {
         (ListLayout::Copied, "few enough to copy into cells")
@@ -259,12 +258,12 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Stru
         AccelChoice::Tree => (Structure::WideTree, "asked for".to_owned()),
         AccelChoice::BinaryTree => (Structure::BinaryTree, "asked for".to_owned()),
         AccelChoice::Auto if count <= FEW => {
-            (Structure::List, format!("up to {FEW} spheres, no structure pays"))
+            (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
         }
-        AccelChoice::Auto if statistics.densest > MOST_IN_A_CUBE => (
+        AccelChoice::Auto if statistics.densest > MAX_IN_A_CUBE => (
             Structure::WideTree,
             format!(
-                "about {:.0} spheres lie in 1/4096 of the scene's side, which two levels of cells cannot tell apart",
+                "about {:.0} spheres lie in a cube of 1/4096 of the scene's side, too close together for two levels of cells",
                 statistics.densest
             ),
         ),
@@ -274,7 +273,7 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Stru
 }
 
 fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBudget {
-    // A small scene may have more a sphere: it is little in all.
+    // Small scenes may have more cells and list elements for each sphere, because the total is small.
     let (listed, cells, bytes) = match structure {
         Structure::Grid(ListLayout::Copied) => {
             (count * 17 / 4 + (64 * count).min(1 << 20), count + (256 * count).min(1 << 21), 16)
@@ -286,12 +285,12 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
         ),
         _ => return GridBudget { listed: 0, cells: 0 },
     };
-    // Larger cells cost less than a second brick.
+    // Larger cells are cheaper than a second brick.
     let one_binding = (binding_bytes / bytes) as usize;
     GridBudget { listed: listed.min(one_binding.max(count * 10 / 3)), cells }
 }
 
-/// At most so many bytes of a tree's nodes, the root among them.
+/// The largest number of bytes of a tree's nodes, including the root.
 fn node_bytes(structure: Structure, count: u64) -> u64 {
     let (per_sphere, root) = match structure {
         Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
@@ -301,7 +300,7 @@ fn node_bytes(structure: Structure, count: u64) -> u64 {
     per_sphere as u64 * count + root as u64
 }
 
-/// How many spheres a brick may have, so that each of its buffers fits into a binding.
+/// The largest number of spheres in a brick whose buffers all fit into a binding.
 fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     let most = (binding_bytes / 16) as usize;
     let fits = |count: usize| {
@@ -325,7 +324,7 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     low
 }
 
-/// A grid is nested if one of its bricks is.
+/// The structure as built: it is nested if the grid of any brick is.
 fn final_structure(planned: Structure, bricks: &[Brick]) -> Structure {
     let is_nested =
         bricks.iter().any(|brick| matches!(&brick.index, Index::Grid(grid) if grid.is_nested()));
@@ -335,7 +334,7 @@ fn final_structure(planned: Structure, bricks: &[Brick]) -> Structure {
     }
 }
 
-/// A tree for each part; `build` gives that of some spheres, and their order in it.
+/// Builds a tree for each part. `build` returns the order of the given spheres in the tree, and the tree.
 fn build_trees(
     spheres: &[[f32; 4]],
     parts: impl Iterator<Item = Vec<u32>>,
@@ -353,7 +352,7 @@ fn build_trees(
     parts.map(brick).collect()
 }
 
-/// An empty scene has an empty brick.
+/// Adds an empty brick if there are none, because kernels need at least one.
 fn or_empty(mut bricks: Vec<Brick>) -> Vec<Brick> {
     if bricks.is_empty() {
         bricks.push(Brick { index: Index::List, spheres: Vec::new(), ids: Vec::new() });

@@ -1,21 +1,21 @@
-//! What a brick consists of. `ARCHITECTURE.md` says how to add a primitive.
+//! Primitives: the shapes of which bricks consist. `ARCHITECTURE.md` explains how to add one.
 
 use super::brick::Structure;
 
-/// What the shapes of a brick are. A brick has one kind of them, so that a kernel is made for each, and none asks.
+/// The kind of shapes in a brick. All shapes of a brick have the same kind, so that each kernel handles a single kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Primitive {
-    /// A centre and a radius.
+    /// A sphere: a centre and a radius.
     #[default]
     Sphere,
 }
 
 impl Primitive {
-    /// All of them.
+    /// All primitives.
     pub const ALL: &'static [Self] = &[Self::Sphere];
 
-    /// What it is called in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -24,17 +24,17 @@ impl Primitive {
     }
 }
 
-/// What kernels differ in by the brick that they search.
+/// The kind of brick for which a kernel is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BrickKind {
-    /// What finds the shapes.
+    /// The acceleration structure.
     pub structure: Structure,
-    /// What they are.
+    /// The kind of shapes.
     pub primitive: Primitive,
 }
 
 impl BrickKind {
-    /// Bricks of some structures and of some primitives, as far as there are such.
+    /// All combinations of the given structures and primitives that are supported.
     pub fn of<'a>(
         structures: &'a [Structure],
         primitives: &'a [Primitive],
@@ -45,7 +45,7 @@ impl BrickKind {
         kinds.filter(|kind| kind.exists())
     }
 
-    /// Whether a structure can find such shapes.
+    /// Whether the structure supports the primitive.
     const fn exists(self) -> bool {
         match self.primitive {
             Primitive::Sphere => true,

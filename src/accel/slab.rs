@@ -1,52 +1,51 @@
-//! A ray as tests of boxes want it, and why no test of a box may lose a sphere. Twin of
-//! `shaders/accel/slab.wgsl`.
+//! Rays prepared for box tests, and why no box test loses a sphere. The WGSL twin is `shaders/accel/slab.wgsl`.
 //!
 //! # The margin
-//! A tree must answer what trying every sphere answers, to the bit, though both the sphere test and the
-//! box test round. So boxes are those of spheres inflated by a margin m, which the host sets to 2⁻¹⁸ D,
-//! where D is the diagonal of the scene's box and every ray starts in that box. In units of u = 2⁻²⁴ D, m
-//! is 64. With L the vector from the ray's origin o to the centre, |L| ≤ D, and r the radius, r ≤ D/2:
+//! The result of a tree must equal that of testing every sphere, to the bit, although both the sphere test and the box
+//! test have rounding errors. Boxes are therefore those of spheres inflated by a margin m, which the host sets to 2⁻¹⁸
+//! D, where D is the diagonal of the scene's box and every ray starts in that box. In units of u = 2⁻²⁴ D, m is 64. Let
+//! L be the vector from the ray's origin o to the centre, |L| ≤ D, and r the radius, r ≤ D/2:
 //!
-//! 1. *A ray that the test says is hit comes within r + 11 u of the centre.* The foot vector f is off by at
+//! 1. *A ray that hits according to the test comes within r + 11 u of the centre.* The foot vector f is off by at
 //!    most 1 u from L, 4 u from b, 3 u from the direction's length and 2 u from its own product and
-//!    difference; that its square and r² are rounded moves the verdict by 1 u.
-//! 2. *The point P = o + t d that it reports is as near, or o lies in the box.* From t = b − h, P is at
-//!    √(|f|² + h²) from the centre, and h = √(r² − f²) was made from the same f: the large error of h near
+//!    difference; the rounding of its square and of r² moves the decision by 1 u.
+//! 2. *The point P = o + t d that the test reports is as near, or o lies in the box.* From t = b − h, P is at
+//!    √(|f|² + h²) from the centre, and h = √(r² − f²) was computed from the same f: the large error of h near
 //!    a tangent is along the tangent. b adds 5 u. From t = c/(b + h), c is off by δ ≤ 6 u |L|. If o is
-//!    more than m/2 outside the sphere, δ is small beside c. Either b + h ≥ |L|/2, and t is off by 12 u; or
+//!    more than m/2 outside the sphere, δ is small compared with c. Either b + h ≥ |L|/2, and t is off by 12 u; or
 //!    r > 0.8 |L|, and |P − centre|², which changes by at most 3 δ, puts P off by 3 δ/(2 r) < 12 u. If not,
 //!    the inflated box contains o with m/2 to spare, and its entry is 0, which is less than any t. The same
 //!    holds for hits from inside, and where rounding alone puts a hit in front of o.
 //! 3. *The box test moves a plane by at most 8 u.* (plane − o) · 1/d has three roundings, q · step + start
-//!    three more, each a relative one of a length of at most 2 D, and an error of t along the axis i is one
+//!    three more, each relative to a length of at most 2 D, and an error of t along the axis i is one
 //!    of `d_i` times that in space. Components of the direction below [`SMALLEST_COMPONENT`] are replaced by
 //!    it, which bends a ray by 2⁻⁴⁰ D at most.
 //!
-//! Together less than 40 u: if the sphere test gives t, then the box test of every box around the sphere
+//! The sum is less than 40 u: if the sphere test gives t, then the box test of every box around the sphere
 //! gives an entry that is not beyond its exit and not beyond t. A box is left out only if its entry is
 //! *greater* than the nearest distance, so that equal distances are compared by id. The rest of the margin
 //! serves rays that start up to half a diagonal outside the scene's box.
 //!
-//! These are the roundings of a device that rounds to the nearest, as all that were tried do. Where either
-//! neighbour is the result, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u and more, and so
-//! no proof; what a search of such cases attained is 38 u.
+//! These are the errors of a device that rounds to nearest, as all tested devices do. If a result may be either
+//! neighbour, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u or more, so this is not a proof
+//! for such devices; the largest error that a search of such cases found is 38 u.
 
 use glam::Vec3;
 
 use super::query::RayF32;
 
-/// Smaller components of a direction are replaced by this, with their sign: WGSL has no infinities, and
-/// with lengths up to 2⁵⁹ the distance to a plane stays below 2¹⁰⁰.
+/// The smallest magnitude of a direction's component in box tests; smaller components are replaced by it, with their
+/// sign. WGSL has no infinities, and with lengths up to 2⁵⁹ the distance to a plane stays below 2¹⁰⁰.
 pub const SMALLEST_COMPONENT: f32 = 1.0 / (1_u64 << 40) as f32;
 
-/// A ray's origin, and one over its direction.
+/// The origin of a ray, and the reciprocals of its direction's components.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlabRay {
     pub(super) origin: Vec3,
     pub(super) inverse: Vec3,
 }
 
-/// One over each component of a direction. Twin of the function in `shaders/scene/enter.wgsl`.
+/// The reciprocal of each component of a direction. The WGSL twin is the function in `shaders/scene/enter.wgsl`.
 pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
     let size = direction.abs().max(Vec3::splat(SMALLEST_COMPONENT));
     1.0 / Vec3::select(direction.cmpge(Vec3::ZERO), size, -size)
@@ -57,7 +56,7 @@ impl SlabRay {
         Self { origin: ray.origin, inverse: inverse_direction(ray.direction) }
     }
 
-    /// Bit i says whether the direction is negative along axis i.
+    /// The octant of the direction: bit i is set if the direction is negative along axis i.
     pub(super) fn octant(&self) -> u32 {
         let bit = |axis: usize| u32::from(self.inverse[axis] < 0.0) << axis;
         bit(0) | bit(1) | bit(2)

@@ -1,11 +1,12 @@
-//! One ray against one sphere, in f32. Twin of `intersect_sphere` in `shaders/scene/sphere.wgsl`, line by line.
+//! The intersection of a ray and a sphere, in f32. The WGSL twin is `intersect_sphere` in `shaders/scene/sphere.wgsl`, line
+//! by line.
 
 use glam::Vec3;
 
 use super::query::{NO_HIT, RayF32};
 
-/// The distance to the first point of the sphere in front of the ray's origin (from inside: the far
-/// wall), or [`NO_HIT`].
+/// The distance to the first point of the sphere in front of the ray's origin, or [`NO_HIT`]. From inside, this is the
+/// far side.
 #[inline]
 #[must_use]
 pub fn intersect_sphere(ray: &RayF32, [x, y, z, radius]: [f32; 4]) -> f32 {

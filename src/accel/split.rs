@@ -1,14 +1,14 @@
-//! Cuts a set of spheres in two where rays will pay least for it.
+//! Splitting a set of spheres in two at the lowest expected cost of rays.
 //!
-//! The surface area heuristic over bins, after Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies" (2007), along the longest axis of the centres only. Where it finds nothing to cut, as
-//! among coincident centres, and wherever a tree must not get deeper, the set is cut in half by number.
+//! The method is the surface area heuristic with bins of Wald, "On fast Construction of SAH-based Bounding Volume
+//! Hierarchies" (2007), along the longest axis of the centres only. If it finds no split, as among coincident centres,
+//! and wherever a tree must not become deeper, the set is split in half by number.
 
 use super::extent::{Extent, Item};
 
 const BINS: usize = 16;
 
-/// Spheres, and the boxes around them and around their centres.
+/// A set of spheres, the bounding box of these, and that of their centres.
 #[derive(Debug)]
 pub(super) struct Cluster<'a> {
     pub(super) items: &'a mut [Item],
@@ -26,7 +26,7 @@ impl<'a> Cluster<'a> {
         self.items.len()
     }
 
-    /// The `at` spheres with the smallest centres along the longest axis, and the others.
+    /// Splits the set into the `at` spheres with the smallest centres along the longest axis, and the others.
     pub(super) fn split_at(self, at: usize) -> (Self, Self) {
         let axis = self.centers.longest_axis();
         Item::select(self.items, at, axis);
@@ -34,12 +34,12 @@ impl<'a> Cluster<'a> {
         (Self::new(first), Self::new(second))
     }
 
-    /// Where the surface area heuristic says; in halves where it says nothing.
+    /// Splits the set where the surface area heuristic is lowest, or in half if it finds no split.
     pub(super) fn split_by_cost(self) -> (Self, Self) {
         let axis = self.centers.longest_axis();
         let low = self.centers.low[axis];
         let scale = BINS as f32 / (self.centers.high[axis] - low);
-        // The conversion saturates, and makes 0 of what is not a number.
+        // The conversion saturates, and turns NaN into 0.
         let bin_of = |item: &Item| (((item.center[axis] - low) * scale) as usize).min(BINS - 1);
         let mut bins = [Bin::EMPTY; BINS];
         for item in self.items.iter() {
@@ -82,7 +82,7 @@ impl Bin {
     }
 }
 
-/// The first bin after the cheapest cut, and what is before and after it; `None` if all spheres are in
+/// The first bin after the cheapest split, and the union of the bins before and after it; `None` if all spheres are in
 /// one bin, or every cost overflows.
 fn cheapest_cut(bins: &[Bin; BINS]) -> Option<(usize, Bin, Bin)> {
     let mut after = [Bin::EMPTY; BINS + 1];
@@ -104,7 +104,7 @@ fn cheapest_cut(bins: &[Bin; BINS]) -> Option<(usize, Bin, Bin)> {
     best.1
 }
 
-/// Moves the items that belong first before the others, and says how many they are.
+/// Moves the items for which `first` is true to the front, and returns their number.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let (mut low, mut high) = (0, items.len());
     while low < high {

@@ -1,17 +1,17 @@
-//! What a scene's spheres are like, from one pass over them.
+//! Statistics of a scene's spheres, from one pass over them.
 
 use glam::Vec3;
 
 use crate::parallel::map_chunks;
 
-/// Sizes and places of spheres.
+/// Statistics of a scene's spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneStatistics {
-    /// How many there are.
+    /// The number of spheres.
     pub count: usize,
-    /// The corner of their box, in the scene's frame, with the smallest coordinates.
+    /// The corner of the spheres' bounding box with the smallest coordinates, in the scene's frame.
     pub min: Vec3,
-    /// The opposite corner.
+    /// The corner with the largest coordinates.
     pub max: Vec3,
     /// The smallest radius.
     pub radius_min: f32,
@@ -19,14 +19,13 @@ pub struct SceneStatistics {
     pub radius_max: f32,
     /// The mean radius.
     pub radius_mean: f32,
-    /// How many different spheres are expected to have their centres in the densest of the equal cubes that
-    /// the box is divided into, 4096 along the longest side; from a sample, and 0 where that is too coarse to
-    /// tell.
+    /// The estimated number of different spheres whose centres lie in the densest cube, if the box is divided into
+    /// equal cubes, 4096 along the longest side. Estimated from a sample; 0 if the sample is too small for an estimate.
     pub densest: f32,
 }
 
 impl SceneStatistics {
-    /// Of spheres in the scene's frame: centre and radius.
+    /// Computes the statistics of spheres (centre in the scene's frame, radius).
     #[must_use]
     pub fn of(spheres: &[[f32; 4]]) -> Self {
         let parts = map_chunks(spheres, |_, spheres| {
@@ -61,22 +60,22 @@ impl SceneStatistics {
         Self { count: spheres.len(), min, max, radius_min, radius_max, radius_mean, densest }
     }
 
-    /// How far from a sphere's surface the f32 arithmetic of a ray that starts in the box can stray: 2⁻¹⁸
-    /// of the box's diagonal.
+    /// The largest error of the f32 arithmetic of a ray that starts in the box, as a distance from a sphere's surface:
+    /// 2⁻¹⁸ of the box's diagonal.
     ///
-    /// No vector from a ray's origin to a centre is longer than the diagonal D. With u = 2⁻²³ for one
-    /// rounding, because WGSL lets either neighbour be the result, the foot point of the sphere test is off
-    /// by less than 9 u D, and the positions of planes and cells by less than 6 u D; 2⁻¹⁸ D is 32 u D.
+    /// No vector from a ray's origin to a centre is longer than the diagonal D. With u = 2⁻²³ for one rounding, because
+    /// WGSL allows either neighbour as the result, the foot point of the sphere test is off by less than 9 u D, and the
+    /// positions of planes and cells by less than 6 u D; 2⁻¹⁸ D is 32 u D.
     #[must_use]
     pub fn margin(&self) -> f32 {
         const PART: f32 = 1.0 / (1 << 18) as f32;
         let diagonal = (self.max - self.min).length();
-        // A coordinate is rounded to f32 before anything else is.
+        // Coordinates have a rounding error before any arithmetic.
         let farthest = self.min.abs().max(self.max.abs()).max_element();
         (diagonal * PART).max(farthest * (1.0 / (1 << 22) as f32))
     }
 
-    /// The box that rays are moved to before they are traced.
+    /// The box to which rays are moved before they are traced.
     #[must_use]
     pub fn inflated_bounds(&self) -> (Vec3, Vec3) {
         let margin = 2.0 * self.margin();
@@ -84,7 +83,7 @@ impl SceneStatistics {
     }
 }
 
-/// From a sample, in which the densest cube must have several.
+/// Estimates [`SceneStatistics::densest`] from a sample, of which several spheres must be in one cube.
 fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
     const SAMPLES: usize = 1 << 16;
     const SEVERAL: usize = 8;
@@ -101,7 +100,7 @@ fn densest(spheres: &[[f32; 4]], min: Vec3, max: Vec3) -> f32 {
         })
         .collect();
     sample.sort_unstable();
-    // Of spheres that are the same, a list keeps one.
+    // A list keeps only one of several equal spheres.
     sample.dedup();
     let most = sample.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).max().unwrap_or(0);
     if most < SEVERAL { 0.0 } else { (most * stride) as f32 }

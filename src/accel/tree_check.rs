@@ -1,105 +1,104 @@
-//! What a tree must be, whatever its nodes look like, and what it costs.
+//! Validity checks for trees, whatever their node format, and statistics.
 
 use std::array::from_fn;
 
-/// Why a tree is not one that a kernel may walk.
+/// Why a tree is not valid for kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TreeError {
-    /// A child's box does not contain the spheres below it, with their margin.
-    #[error("the box of slot {slot} of node {node} does not contain what is below it")]
+    /// The box of a child does not contain the spheres below it, inflated by the margin.
+    #[error("the box of slot {slot} of node {node} does not contain the spheres below it")]
     Box {
         /// Index of the node.
         node: u32,
-        /// The child's slot.
+        /// The slot of the child.
         slot: u32,
     },
-    /// A child is not a later node that no other slot points to, or a leaf not a range of spheres.
+    /// An inner child is not a later node with a single parent, or a leaf is not a valid range of spheres.
     #[error(
         "slot {slot} of node {node} does not point to a later node of its own, or to a range of spheres"
     )]
     Link {
         /// Index of the node.
         node: u32,
-        /// The child's slot.
+        /// The slot of the child.
         slot: u32,
     },
-    /// The ids of a leaf do not ascend.
-    #[error("the ids of the leaf in slot {slot} of node {node} do not ascend")]
+    /// The ids of a leaf are not in ascending order.
+    #[error("the ids of the leaf in slot {slot} of node {node} are not in ascending order")]
     Order {
         /// Index of the node.
         node: u32,
-        /// The child's slot.
+        /// The slot of the child.
         slot: u32,
     },
-    /// A place in leaf order is not in exactly one leaf, or its id is not that of exactly one sphere.
+    /// An index in leaf order is not in exactly one leaf, or its id is not that of exactly one sphere.
     #[error("the sphere at index {shape_index} of the structure is not in exactly one leaf")]
     Sphere {
-        /// The place in leaf order.
+        /// The index in leaf order.
         shape_index: u32,
     },
-    /// A node is no child of any other.
-    #[error("node {node} is not reached")]
+    /// A node is not the child of any node.
+    #[error("node {node} is not the child of any node")]
     Unreached {
         /// Index of the node.
         node: u32,
     },
-    /// The tree has other levels than it says, or more than a kernel's stack serves.
-    #[error("the tree has {found} levels; it says {stated}, and may have {most}")]
+    /// The number of levels differs from the stated one, or exceeds the size of a kernel's stack.
+    #[error("the tree has {found} levels, but states {stated}; at most {most} are allowed")]
     Levels {
-        /// How many were counted.
+        /// The number of levels counted.
         found: u32,
-        /// How many the tree says it has.
+        /// The number of levels that the tree states.
         stated: u32,
-        /// How many a kernel's stack serves.
+        /// The largest number of levels for a kernel's stack.
         most: u32,
     },
 }
 
-/// What a tree takes, and what a ray pays for it.
+/// The size of a tree, and the expected cost of tracing a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TreeStatistics {
-    /// How many nodes there are.
+    /// The number of nodes.
     pub nodes: usize,
-    /// How many leaves there are.
+    /// The number of leaves.
     pub leaves: usize,
-    /// Nodes on the longest way from the root, both ends included.
+    /// The number of nodes on the longest path from the root, both ends included.
     pub levels: u32,
-    /// Bytes of nodes for each sphere.
+    /// The number of bytes of nodes for each sphere.
     pub bytes_per_sphere: f64,
-    /// Spheres in a leaf, on average.
+    /// The average number of spheres in a leaf.
     pub spheres_per_leaf: f64,
-    /// How many nodes a random line through the root's box is expected to meet, by the surface area of
-    /// boxes.
+    /// The expected number of nodes that a random line through the root's box visits, by the surface area of boxes.
     pub expected_nodes: f64,
-    /// How many spheres such a line is expected to be tried against.
+    /// The expected number of spheres against which such a line is tested.
     pub expected_spheres: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// Index of the node.
+    /// An inner child: index of its node.
     Inner(u32),
-    /// Place of the first sphere, and how many.
+    /// A leaf: index of its first sphere in leaf order, and number of spheres.
     Leaf(u32, u32),
 }
 
-/// A child, as the kernel reads it.
+/// A child of a node, decoded as kernels do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Child {
     pub(super) slot: u32,
-    /// Low and high, decoded.
+    /// The corners of the box with the smallest and the largest coordinates.
     pub(super) bounds: [[f64; 3]; 2],
     pub(super) target: Target,
 }
 
-/// A tree, as a kernel reads it.
+/// A tree, as kernels read it.
 pub(super) trait Tree {
     const BYTES_PER_NODE: usize;
-    /// How many levels the kernel's stack serves.
-    const MOST_LEVELS: u32;
-    const MOST_IN_LEAF: u32;
+    /// The largest number of levels for the kernel's stack.
+    const MAX_LEVELS: u32;
+    const MAX_IN_LEAF: u32;
 
     fn node_count(&self) -> usize;
     fn ids(&self) -> &[u32];
@@ -123,8 +122,8 @@ fn half_area([low, high]: Bounds) -> f64 {
     x * y + y * z + z * x
 }
 
-/// Walks the nodes from the last to the first. A child comes after its parent, so what is below a node is
-/// known when the node is met, and no link can lead in a circle.
+/// Visits the nodes from the last to the first. A child comes after its parent, so everything below a node is known
+/// when the node is visited, and no link can lead in a circle.
 pub(super) fn validate<T: Tree>(
     tree: &T,
     spheres: &[[f32; 4]],
@@ -164,7 +163,7 @@ pub(super) fn validate<T: Tree>(
                 Target::Leaf(first, length) => {
                     let (first, length) = (first as usize, length as usize);
                     let end = first.saturating_add(length);
-                    if length == 0 || length > T::MOST_IN_LEAF as usize || end > ids.len() {
+                    if length == 0 || length > T::MAX_IN_LEAF as usize || end > ids.len() {
                         return Err(link);
                     }
                     if !ids[first..end].is_sorted() {
@@ -195,8 +194,8 @@ pub(super) fn validate<T: Tree>(
         return Err(TreeError::Sphere { shape_index: shape_index as u32 });
     }
     let (found, stated) = (levels[0], tree.levels());
-    if found != stated || found > T::MOST_LEVELS {
-        return Err(TreeError::Levels { found, stated, most: T::MOST_LEVELS });
+    if found != stated || found > T::MAX_LEVELS {
+        return Err(TreeError::Levels { found, stated, most: T::MAX_LEVELS });
     }
     Ok(())
 }
@@ -209,14 +208,14 @@ fn inflated([x, y, z, radius]: [f32; 4], margin: f32) -> Bounds {
 pub(super) fn statistics<T: Tree>(tree: &T) -> TreeStatistics {
     let root = tree.children(0).fold(NOTHING, |all, child| union(all, child.bounds));
     let whole = half_area(root);
-    let (mut leaves, mut nodes_met, mut spheres_met) = (0, 1.0, 0.0);
+    let (mut leaves, mut expected_nodes, mut expected_spheres) = (0, 1.0, 0.0);
     for child in (0..tree.node_count()).flat_map(|node| tree.children(node)) {
         let chance = half_area(child.bounds) / whole;
         match child.target {
-            Target::Inner(_) => nodes_met += chance,
+            Target::Inner(_) => expected_nodes += chance,
             Target::Leaf(_, count) => {
                 leaves += 1;
-                spheres_met += chance * f64::from(count);
+                expected_spheres += chance * f64::from(count);
             }
         }
     }
@@ -227,7 +226,7 @@ pub(super) fn statistics<T: Tree>(tree: &T) -> TreeStatistics {
         levels: tree.levels(),
         bytes_per_sphere: (tree.node_count() * T::BYTES_PER_NODE) as f64 / spheres,
         spheres_per_leaf: tree.ids().len() as f64 / leaves.max(1) as f64,
-        expected_nodes: nodes_met,
-        expected_spheres: spheres_met,
+        expected_nodes,
+        expected_spheres,
     }
 }

@@ -1,4 +1,4 @@
-//! Damage that `validate` must find, and how deep trees may be.
+//! Tests that `validate` finds damage, and of the depth of trees.
 
 use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
 use super::tree_check::TreeError;
@@ -20,7 +20,7 @@ fn found_in_wide(plant: impl Fn(&mut WideTree)) -> Result<(), TreeError> {
     tree.validate(&spheres)
 }
 
-/// A node, and two of its slots, that hold leaves or inner children.
+/// A node, and two of its slots that both hold leaves or inner children.
 fn two_slots(tree: &WideTree, inner: bool) -> (usize, usize, usize) {
     (0..tree.nodes.len())
         .find_map(|n| {
@@ -88,7 +88,7 @@ fn damage_to_a_wide_tree_is_found() {
         for wrong in [0, 1, u32::MAX] {
             let offset = found_in_wide(|tree| {
                 let (n, ..) = two_slots(tree, word == 4);
-                // A wrong neighbour, too, if the value happens to be right.
+                // A wrong value is replaced by its neighbour if it happens to be right.
                 let right = tree.nodes[n].0[word];
                 tree.nodes[n].0[word] = if right == wrong { wrong + 1 } else { wrong };
             });
@@ -156,7 +156,7 @@ fn damage_to_a_binary_tree_is_found() {
     assert_eq!(BINARY_INNER, u32::MAX);
 }
 
-/// The depths are theorems; these are their arithmetic.
+/// The depths of trees are proven; this checks the arithmetic.
 #[test]
 fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert_eq!([1, 24, 25, 192, 193].map(levels_by_halves), [1, 1, 2, 2, 3]);

@@ -1,24 +1,24 @@
-//! Which children of a node of the 8-wide tree are still to be visited, and in which order. Twin of
+//! The children of a node of the 8-wide tree that are still to be visited, and their order. The WGSL twin is
 //! `shaders/accel/wide_group.wgsl`.
 
 use super::wide_node::WideNode;
 
-/// The inner children of one node that a ray enters and has not visited.
+/// The inner children of one node that a ray hits and has not visited.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group {
     /// Index of the node's first inner child.
     first_child: u32,
-    /// Which slots hold inner children.
+    /// Mask of the slots that hold inner children.
     inner_mask: u32,
-    /// Which children are left, in the order of visits.
+    /// Mask of the children left, in the order of visits.
     left: u32,
 }
 
 impl Group {
-    /// The root alone.
+    /// The group that consists of only the root.
     pub(super) const ROOT: Self = Self { first_child: 0, inner_mask: 0, left: 1 };
 
-    /// The inner children among the slots hit.
+    /// The inner children among the slots that the ray hits.
     pub(super) fn of(node: &WideNode, hits: u32, octant: u32) -> Self {
         let inner_mask = node.inner_mask();
         let left = octant_order(hits & inner_mask, octant);
@@ -29,20 +29,20 @@ impl Group {
         self.left == 0
     }
 
-    /// The node that comes first.
+    /// Index of the node to visit first.
     pub(super) fn first(self, octant: u32) -> u32 {
         let slot = self.left.trailing_zeros() ^ octant;
         self.first_child + (self.inner_mask & ((1 << slot) - 1)).count_ones()
     }
 
-    /// The group without its first.
+    /// The group without its first node.
     pub(super) fn rest(self) -> Self {
         Self { left: self.left & (self.left - 1), ..self }
     }
 }
 
-/// Moves bit s to bit `s ^ octant`: the first bit is then the child that a ray of this octant meets first.
-/// Twin of `octant_order` in `shaders/accel/wide_group.wgsl`.
+/// Moves bit s to bit `s ^ octant`: the lowest bit is then the child that a ray of this octant hits first. The WGSL
+/// twin is `octant_order` in `shaders/accel/wide_group.wgsl`.
 #[inline]
 fn octant_order(mask: u32, octant: u32) -> u32 {
     let mut mask = mask;
@@ -58,7 +58,7 @@ fn octant_order(mask: u32, octant: u32) -> u32 {
     mask
 }
 
-/// The root as the kernel packs groups.
+/// The group of the root in the kernel's format.
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) const PACKED_ROOT: [u32; 2] =
     [Group::ROOT.first_child, Group::ROOT.left << 24 | Group::ROOT.inner_mask];

@@ -1,20 +1,20 @@
 //! One node of the compressed 8-wide tree.
 //!
-//! After Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
-//! BVHs" (2017): the boxes of up to eight children on a grid of 256³ cells over the node, and the children
-//! in slots that say in which octant of the node they lie, so that one table of bits orders them for every
-//! direction. Changed here: a leaf's count is a number, not unary, and hits stay in slots until they are
-//! ordered at once; an inner child needs no byte of its own.
+//! The format follows Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+//! BVHs" (2017): the boxes of up to eight children on a grid of 256³ cells over the node, and the children in slots
+//! that tell in which octant of the node they lie, so that one table of bits orders them for every direction.
+//! Differences: the count of a leaf is a number, not unary; hits remain in slots until they are ordered at once; and an
+//! inner child needs no byte of its own.
 
 use glam::Vec3A;
 
 use super::extent::Extent;
 use super::slab::SlabRay;
 
-/// How many spheres a leaf may hold.
+/// The largest number of spheres in a leaf.
 pub const WIDE_LEAF: usize = 3;
 
-/// Of the byte of a leaf, the bits of its first sphere, and where its count starts.
+/// In the byte of a leaf: the mask of its first sphere, and the position of its count.
 pub(crate) const LEAF_FIRST: u32 = 31;
 pub(crate) const LEAF_COUNT_SHIFT: u32 = 5;
 
@@ -38,18 +38,18 @@ pub(crate) const LEAF_COUNT_SHIFT: u32 = 5;
 #[repr(transparent)]
 pub struct WideNode(pub [u32; 20]);
 
-/// What a slot holds.
+/// The content of a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     Empty,
-    /// Index of the node.
+    /// An inner child: index of its node.
     Inner(u32),
-    /// Place of the first sphere, and how many.
+    /// A leaf: index of its first sphere in leaf order, and number of spheres.
     Leaf(u32, u32),
 }
 
 impl WideNode {
-    /// Without children.
+    /// A node without children.
     pub(super) fn empty() -> Self {
         let mut words = [0; 20];
         words[3] = 0x007f_7f7f;
@@ -57,7 +57,7 @@ impl WideNode {
         Self(words)
     }
 
-    /// A node whose children have these boxes; slots hold nothing yet.
+    /// A node whose children have these boxes; the children themselves are added later.
     pub(super) fn with_boxes(boxes: &[Option<Extent>; 8]) -> Self {
         let whole = boxes.iter().flatten().fold(Extent::EMPTY, |all, b| all.union(*b));
         let mut node = Self::empty();
@@ -93,7 +93,7 @@ impl WideNode {
         self.0[3] |= 1 << (24 + slot);
     }
 
-    /// `offset` counts from the node's first sphere.
+    /// Makes a slot a leaf; `offset` counts from the node's first sphere.
     pub(super) fn set_leaf(&mut self, slot: usize, offset: usize, count: usize) {
         self.set_byte(6, slot, (count << LEAF_COUNT_SHIFT | offset) as u8);
     }
@@ -102,7 +102,7 @@ impl WideNode {
         self.0[3] >> 24
     }
 
-    /// What the kernel finds in a slot.
+    /// The content of a slot, decoded as kernels do.
     pub(super) fn slot(&self, slot: usize) -> Slot {
         let mask = self.inner_mask();
         if mask >> slot & 1 == 1 {
@@ -127,7 +127,7 @@ impl WideNode {
         Vec3A::from_array([0, 1, 2].map(size))
     }
 
-    /// The box of a slot: low and high of each axis.
+    /// The box of a slot: its corners with the smallest and the largest coordinates.
     pub(super) fn slot_box(&self, slot: usize) -> [[f64; 3]; 2] {
         [8, 14].map(|words| {
             [0, 1, 2].map(|axis| {
@@ -137,7 +137,7 @@ impl WideNode {
         })
     }
 
-    /// Bit s says whether the ray enters the box of slot s at `t_max` or before. Twin of `wide_node` in
+    /// A mask of the slots whose boxes the ray enters at or before `t_max`. The WGSL twin is `wide_node` in
     /// `shaders/accel/wide_node.wgsl`.
     #[inline]
     pub(super) fn hits(&self, ray: &SlabRay, t_max: f32) -> u32 {
@@ -163,7 +163,7 @@ impl WideNode {
     }
 }
 
-/// The exponent, as in an f32, of the smallest power of two of which 255 reach as far as `length`.
+/// The exponent, as in an f32, of the smallest power of two such that 255 times it is at least `length`.
 fn cell_exponent(length: f64) -> u32 {
     let cell = (length / 255.0) as f32;
     let exponent = (cell.to_bits() >> 23).clamp(1, 253);
@@ -171,8 +171,8 @@ fn cell_exponent(length: f64) -> u32 {
     if reaches(exponent) { exponent } else { exponent + 1 }
 }
 
-/// The slot of each child, by its box: the children that lie farthest out choose first, each the free
-/// octant that it lies in most.
+/// Chooses the slot of each child by its box: the children farthest from the centre choose first, and each takes the
+/// free octant that best matches its direction.
 pub(super) fn octant_slots(boxes: &[Extent]) -> [usize; 8] {
     let whole = boxes.iter().fold(Extent::EMPTY, |all, b| all.union(*b)).center();
     let mut outward = [Vec3A::ZERO; 8];
@@ -194,7 +194,7 @@ pub(super) fn octant_slots(boxes: &[Extent]) -> [usize; 8] {
                 best = Some((along, slot));
             }
         }
-        // There are as many slots as there can be children.
+        // A free slot always exists, because there are at most eight children.
         let slot = best.map_or(0, |(_, slot)| slot);
         slots[child] = slot;
         free &= !(1 << slot);

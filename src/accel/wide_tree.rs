@@ -1,18 +1,18 @@
-//! The compressed 8-wide tree: few bytes a sphere and few nodes a ray.
+//! The compressed 8-wide tree, which needs few bytes per sphere and few nodes per ray.
 
 use super::extent::Item;
 use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
 use super::wide_node::{Slot, WIDE_LEAF, WideNode};
 use super::wide_tree_build;
 
-/// How many levels a tree may have, and the size of the kernel's stack. `build` proves that no tree has
-/// more; a walk leaves at most one entry on the stack for each level but the first.
+/// The largest number of levels of a tree, and the size of the kernel's stack. `build` proves that no tree has more; a
+/// walk leaves at most one entry on the stack for each level except the first.
 pub const WIDE_LEVELS: u32 = 16;
 
-/// A tree of nodes with up to eight children, and the spheres' order in its leaves.
+/// A tree whose nodes have up to eight children, and the order of the spheres in its leaves.
 ///
-/// Node 0 is the root; children come after their parents, those of one node one behind the other. Without
-/// spheres there is one node without children, so a kernel needs no special case.
+/// Node 0 is the root; children come after their parents, and those of one node are consecutive. A tree without spheres
+/// is one node without children, so kernels need no special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WideTree {
     pub(super) nodes: Vec<WideNode>,
@@ -22,12 +22,12 @@ pub struct WideTree {
 }
 
 impl WideTree {
-    /// Builds the tree of spheres (centre, radius) in the scene's frame, each box larger than its spheres
+    /// Builds the tree of spheres (centre x, y, z in the scene's frame, radius). Each box contains its spheres inflated
     /// by `margin`.
     ///
-    /// Takes time in proportion to n log n whatever the spheres are, and 28 bytes a sphere besides the
-    /// tree, which has at most one node and 14 bytes of nodes for each sphere. The same spheres
-    /// make the same tree, to the bit, whatever the number of threads.
+    /// Takes time proportional to n log n for any spheres, and 28 bytes per sphere in addition to the tree, which has
+    /// at most 14 bytes of nodes per sphere and one more node. The same spheres give the same tree, to the bit, for any
+    /// number of threads.
     #[must_use]
     pub fn build(spheres: &[[f32; 4]], margin: f32) -> Self {
         let mut items = Item::all(spheres, margin);
@@ -35,33 +35,33 @@ impl WideTree {
         Self { nodes, ids, levels, margin }
     }
 
-    /// All nodes, as the kernel reads them.
+    /// All nodes, as kernels read them.
     #[must_use]
     pub fn nodes(&self) -> &[WideNode] {
         &self.nodes
     }
 
-    /// Of each place in leaf order, the index of its sphere in input order; ascending within a leaf.
+    /// For each index in leaf order, the index of the sphere in input order; ascending within a leaf.
     #[must_use]
     pub fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// How many nodes are on the longest way from the root, both ends included; at most [`WIDE_LEVELS`].
+    /// The number of nodes on the longest path from the root, both ends included; at most [`WIDE_LEVELS`].
     #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// Checks the tree against the spheres, in input order, that it was built from.
+    /// Checks the tree against the spheres it was built from, which are in input order.
     ///
     /// # Errors
-    /// The first thing that is wrong with it.
+    /// If the tree is not valid; the error describes the first problem.
     pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
         tree_check::validate(self, spheres, self.margin)
     }
 
-    /// What it takes, and what a ray pays for it.
+    /// The size of the tree, and the expected cost of tracing a ray.
     #[must_use]
     pub fn statistics(&self) -> TreeStatistics {
         tree_check::statistics(self)
@@ -70,8 +70,8 @@ impl WideTree {
 
 impl Tree for WideTree {
     const BYTES_PER_NODE: usize = size_of::<WideNode>();
-    const MOST_LEVELS: u32 = WIDE_LEVELS;
-    const MOST_IN_LEAF: u32 = WIDE_LEAF as u32;
+    const MAX_LEVELS: u32 = WIDE_LEVELS;
+    const MAX_IN_LEAF: u32 = WIDE_LEAF as u32;
 
     fn node_count(&self) -> usize {
         self.nodes.len()

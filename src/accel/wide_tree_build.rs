@@ -1,7 +1,7 @@
-//! Builds the compressed 8-wide tree from the top, level by level.
+//! Building the compressed 8-wide tree from the root, level by level.
 //!
-//! A node's spheres are cut in two, and the parts again, until there are eight; parts of at most three
-//! spheres are leaves. No binary tree is made first.
+//! The spheres of a node are split in two, and the parts again, until there are eight parts; parts of at most three
+//! spheres are leaves. No binary tree is built first.
 
 use super::extent::{Extent, Item};
 use super::split::Cluster;
@@ -9,27 +9,26 @@ use super::wide_node::{WIDE_LEAF, WideNode, octant_slots};
 use super::wide_tree::WIDE_LEVELS;
 use crate::parallel::{both, map_parts};
 
-/// A node of at most this many spheres has leaves only.
+/// The number of spheres up to which a node has only leaves.
 const LEAVES_ONLY: usize = 8 * WIDE_LEAF;
-/// A part becomes a child of its own if it has about so many spheres; fewer waste slots, more waste
-/// levels.
-const SPHERES_A_CHILD: usize = 16;
-/// From so many spheres on, two threads are worth their start.
+/// The number of spheres for which a part becomes a child of its own; fewer waste slots, more waste levels.
+const SPHERES_PER_CHILD: usize = 16;
+/// The number of spheres from which a second thread is worth its cost.
 const PARALLEL: usize = 1 << 13;
-/// How many nodes are held as drafts at a time.
+/// The number of nodes that are drafts at the same time.
 const DRAFTS: usize = 1 << 14;
 
-/// At most so many bytes of nodes a sphere, and one node more. Cuts by cost stay far below, unless spheres are
-/// placed so that most cuts take off very few; cuts in halves always stay below, which a test shows.
+/// The largest number of bytes of nodes per sphere, apart from one more node. Splits by cost stay far below it, unless
+/// spheres are placed so that most splits separate very few; splits in half always stay below it, which a test shows.
 pub(super) const WIDE_BYTES_PER_SPHERE: usize = 14;
 
-/// The most nodes of a tree of so many spheres.
-fn most_nodes(count: usize) -> usize {
+/// The largest number of nodes of a tree of `count` spheres.
+fn max_nodes(count: usize) -> usize {
     1 + count * WIDE_BYTES_PER_SPHERE / size_of::<WideNode>()
 }
 
-/// How many levels a tree of `count` spheres needs if every cut is a half: the least L ≥ 1 with
-/// 3 · 8^L ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c wherever n ≤ 8 c.
+/// The number of levels that a tree of `count` spheres needs if every split is in half: the smallest L ≥ 1 with 3 · 8^L
+/// ≥ count, because ⌈⌈⌈n/2⌉/2⌉/2⌉ ≤ c if n ≤ 8 c.
 pub(super) fn levels_by_halves(count: usize) -> u32 {
     let mut levels = 1;
     let mut reach = LEAVES_ONLY;
@@ -40,19 +39,19 @@ pub(super) fn levels_by_halves(count: usize) -> u32 {
     levels
 }
 
-/// Nodes, ids in leaf order, and the number of levels.
+/// Builds a tree: its nodes, the ids in leaf order, and the number of levels.
 ///
-/// There are at most [`WIDE_LEVELS`]. At every node of level l, from 0, with n spheres,
-/// l + [`levels_by_halves`]`(n)` is at most that: for the root because there are fewer than 2³² spheres,
-/// which need 11. Where it is less, cuts are free, since a child has fewer spheres than its parent. Where
-/// it is equal, cuts are halves, and a child needs one level less than its parent.
+/// There are at most [`WIDE_LEVELS`] levels. For every node of level l (from 0) with n spheres, l +
+/// [`levels_by_halves`]`(n)` is at most that number: for the root because there are fewer than 2³² spheres, which need
+/// eleven levels. If it is less, any split is allowed, since a child has fewer spheres than its parent. If it is equal,
+/// splits are in half, and a child needs one level less than its parent.
 pub(super) fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
-    let most = most_nodes(items.len());
-    let freely = nodes_by_level(items, false, most);
-    if freely.0.len() <= most { freely } else { nodes_by_level(items, true, usize::MAX) }
+    let most = max_nodes(items.len());
+    let by_cost = nodes_by_level(items, false, most);
+    if by_cost.0.len() <= most { by_cost } else { nodes_by_level(items, true, usize::MAX) }
 }
 
-/// Gives up once there are more than `most` nodes.
+/// Builds a tree level by level. Gives up if there are more than `most` nodes.
 fn nodes_by_level(
     items: &mut [Item],
     in_halves: bool,
@@ -76,7 +75,7 @@ fn nodes_by_level(
             }
             for draft in map_parts(some, |cluster| draft(cluster, levels, in_halves)) {
                 let mut node = draft.node;
-                // Fewer than 2³² spheres, and fewer nodes than spheres.
+                // There are fewer than 2³² spheres, and fewer nodes than spheres.
                 node.0[4] = (first_of_next + next.len()) as u32;
                 node.0[5] = ids.len() as u32;
                 ids.extend_from_slice(&draft.ids[..draft.leaf_spheres]);
@@ -91,18 +90,18 @@ fn nodes_by_level(
     (nodes, ids, levels)
 }
 
-/// A node that does not know yet where its children are.
+/// A node whose children do not have indices yet.
 struct Draft<'a> {
     node: WideNode,
-    /// The ids of its leaves' spheres.
+    /// The ids of the spheres in its leaves.
     ids: [u32; LEAVES_ONLY],
     leaf_spheres: usize,
-    /// Its inner children, in the order of their slots.
+    /// The inner children in the order of their slots.
     inner: Vec<Cluster<'a>>,
 }
 
 fn wanted_slots(count: usize) -> usize {
-    count.div_ceil(SPHERES_A_CHILD).min(8)
+    count.div_ceil(SPHERES_PER_CHILD).min(8)
 }
 
 fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
@@ -150,7 +149,8 @@ fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
     draft
 }
 
-/// Cuts a cluster into at most `slots` parts, each with a share of the slots by number.
+/// Splits a cluster into at most `slots` parts; each side of a split gets a share of the slots in proportion to its
+/// spheres.
 fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<Cluster<'a>>) {
     let count = cluster.len();
     if slots == 1 || count <= WIDE_LEAF {
@@ -176,7 +176,7 @@ fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<
     parts.extend(second);
 }
 
-/// Cuts a cluster into leaves, all of them full but one.
+/// Splits a cluster into leaves, all of them full except one.
 fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
     if cluster.len() <= WIDE_LEAF {
         parts.push(cluster);
@@ -192,7 +192,7 @@ fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
 mod tests {
     use super::*;
 
-    /// The sizes of the parts that `cut` makes in halves.
+    /// The sizes of the parts that `cut` makes if it splits in half.
     fn halves(count: usize, slots: usize, parts: &mut Vec<usize>) {
         if slots == 1 || count <= WIDE_LEAF {
             return parts.push(count);
@@ -201,8 +201,8 @@ mod tests {
         halves(count / 2, slots - slots / 2, parts);
     }
 
-    /// Of every number of spheres up to 2^16. From there on a node has eight children of sizes that differ by
-    /// less than its eighth, for which it holds already.
+    /// Checks every number of spheres up to 2^16. Above that, the eight children of a node differ in size by less than
+    /// an eighth of the node, and the limit already holds for them.
     #[test]
     fn halves_make_few_nodes() {
         let mut nodes = vec![0; WIDE_LEAF + 1];
@@ -212,12 +212,12 @@ mod tests {
                 halves(count, wanted_slots(count), &mut parts);
             }
             nodes.push(1 + parts.iter().map(|part| nodes[*part]).sum::<usize>());
-            assert!(nodes[count] <= most_nodes(count), "{count}: {} nodes", nodes[count]);
+            assert!(nodes[count] <= max_nodes(count), "{count}: {} nodes", nodes[count]);
         }
     }
 
-    /// A bunch of spheres, and others of which each is farther away than all before: cuts by cost take them
-    /// off one by one.
+    /// A bunch of spheres, and others that are each farther away than all before: splits by cost separate them one by
+    /// one.
     #[test]
     fn spheres_that_are_cut_off_one_by_one_do_not_cost_more_than_planned() {
         let bunch = (0..24).map(|_| [0.0, 0.0, 0.0, 1.0]);
@@ -225,9 +225,9 @@ mod tests {
         let spheres: Vec<_> = bunch.chain(outliers).collect();
         let mut items = Item::all(&spheres, 0.0);
         let (nodes, _, _) = nodes_by_level(&mut items, false, usize::MAX);
-        assert!(nodes.len() > most_nodes(spheres.len()));
+        assert!(nodes.len() > max_nodes(spheres.len()));
         let (nodes, ids, _) = build(&mut items);
-        assert!(nodes.len() <= most_nodes(spheres.len()));
+        assert!(nodes.len() <= max_nodes(spheres.len()));
         assert_eq!(ids.len(), spheres.len());
     }
 }

@@ -1,4 +1,4 @@
-//! The walk through the compressed 8-wide tree. Twin of `shaders/accel/wide_tree.wgsl`.
+//! Traversal of the compressed 8-wide tree. The WGSL twin is `shaders/accel/wide_tree.wgsl`.
 
 use super::leaf::{any_in_leaf, offer_leaf};
 use super::query::{Nearest, RayF32};
@@ -8,8 +8,8 @@ use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
 use super::wide_tree::{WIDE_LEVELS, WideTree};
 
 impl WideTree {
-    /// Improves `nearest` by the nearest sphere along the ray. `spheres` are in the order of
-    /// [`WideTree::ids`], and `ids` are what they are called in `nearest`.
+    /// Updates `nearest` with the nearest sphere along the ray. `spheres` are in the order of [`WideTree::ids`], and
+    /// `ids` are their ids in the result.
     ///
     /// # Panics
     /// If there are fewer spheres or ids than in the tree.
@@ -47,7 +47,7 @@ impl WideTree {
         }
     }
 
-    /// Whether a sphere is hit before `t_max`. `spheres` are in the order of [`WideTree::ids`].
+    /// Whether the ray hits a sphere before `t_max`. `spheres` are in the order of [`WideTree::ids`].
     ///
     /// # Panics
     /// If there are fewer spheres than ids.
@@ -82,7 +82,7 @@ impl WideTree {
     }
 }
 
-/// First sphere and length of each leaf that was hit.
+/// The index of the first sphere and the length of each leaf that the ray hits.
 #[inline]
 fn leaves(node: &WideNode, hits: u32) -> impl Iterator<Item = (u32, u32)> {
     let mut left = hits & !node.inner_mask();

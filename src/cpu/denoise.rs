@@ -1,10 +1,10 @@
-//! An edge-avoiding filter, in f64. Twin of `shaders/primary/denoise.wgsl`, where its sources are.
+//! An edge-avoiding denoising filter, in f64. Its WGSL twin, `shaders/primary/denoise.wgsl`, cites the sources.
 
 use crate::image::Image;
 use crate::image::denoise::{Guided, MissingGuide, PASSES};
 use crate::parallel;
 
-/// A picture with less noise: light is averaged among pixels of like shape and colour.
+/// Returns a picture with less noise: light is averaged among pixels of similar shape and colour.
 ///
 /// # Errors
 /// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`].
@@ -59,7 +59,8 @@ fn filtered(
     [r / weights, g / weights, b / weights, variance / (weights * weights)]
 }
 
-/// How alike two pixels are in shape and colour, whatever light is on them.
+/// The similarity of two pixels in shape and colour, regardless of their light: 1 for equal pixels, near 0 for
+/// different ones.
 fn likeness(guided: &Guided, a: usize, b: usize, distance: f64) -> f64 {
     let [shape, other] = [a, b].map(|index| guided.shapes[index].map(f64::from));
     let dot = |a: [f64; 4], b: [f64; 4]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -73,7 +74,7 @@ fn likeness(guided: &Guided, a: usize, b: usize, distance: f64) -> f64 {
     alike / (1.0 + 400.0 * tint)
 }
 
-/// Of a B3 spline, by the distance from the middle.
+/// The weight of a B3 spline at a distance from its centre, in steps.
 fn spline(distance: i64) -> f64 {
     match distance.abs() {
         0 => 0.375,

@@ -1,7 +1,7 @@
-//! The CPU reference: the simplest code that can be right, in f64.
+//! The CPU reference: code in f64 that is as simple as possible, so that it can be seen to be correct.
 //!
-//! It is what the GPU is judged by. It shares scene, camera and film with the GPU path and nothing
-//! else; where a choice is between clear and fast, it is clear.
+//! GPU results are judged against it. It shares only scene, camera and film with the GPU renderer. Where a choice is
+//! between clear and fast, it is clear.
 
 use crate::camera::View;
 use crate::image::{Image, ImageTooLarge, LayerSet, Pixel, RowMut};
@@ -19,31 +19,31 @@ pub use light::{Sample, SampledPicture, radiance};
 pub use shade::shade;
 pub use trace::trace;
 
-/// How many rows are handed out together, to all cores.
+/// The number of rows that are processed together, on all cores.
 const ROWS_AT_ONCE: usize = 4096;
 
-/// Why there is no picture.
+/// Why no picture is rendered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The settings, or the scene's materials, are refused.
+    /// The settings, or the materials of the scene, are not valid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The image does not fit into memory.
+    /// There is not enough memory for the image.
     #[error(transparent)]
     Image(#[from] ImageTooLarge),
 }
 
 /// Renders a picture.
 ///
-/// By primary rays, each pixel is what the ray through its centre meets. Of a lit picture colour, alpha and albedo are
-/// means of samples; depth, normal, position and id are those of the ray through the pixel's centre: of spheres alone,
-/// whatever they are made of. The variance is that of the mean of luminances.
+/// With the integrator `primary`, each pixel shows what the ray through its centre hits. With the other integrators,
+/// colour, alpha and albedo are means over the samples. Depth, normal, position and id come from the ray through the
+/// pixel's centre and its first sphere, whatever its material. The variance is that of the mean luminance.
 ///
-/// Rows run in parallel with the feature `parallel`; the picture does not depend on it.
+/// Rows are rendered in parallel with the feature `parallel`; the picture does not depend on it.
 ///
 /// # Errors
-/// What [`RenderSettings::check`] refuses; if the image does not fit into memory.
+/// If [`RenderSettings::check`] fails, or if there is not enough memory for the image.
 pub fn render(
     scene: &Scene,
     view: &View<'_>,
@@ -72,7 +72,7 @@ fn render_primary(
     Ok(image)
 }
 
-/// What the ray through a pixel's centre says.
+/// The pixel of the ray through its centre.
 fn primary_pixel(
     scene: &Scene,
     view: &View<'_>,
@@ -87,10 +87,10 @@ fn primary_pixel(
     }
 }
 
-/// Does something for each pixel, which is column and row, in its row of the image and at its place there.
+/// Calls `work` with each pixel (column and row), its index in its row, and the row.
 fn for_each_pixel(image: &mut Image, work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync) {
     let (width, height) = (image.width(), image.height() as usize);
-    // In parts, because what a row's layers are borrowed with may be larger than a narrow row.
+    // Rows are borrowed in batches, because the references to a row's layers may need more memory than a narrow row.
     for start in (0..height).step_by(ROWS_AT_ONCE) {
         let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
         for_each_row(rows, |j, row| {

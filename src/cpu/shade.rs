@@ -1,11 +1,11 @@
-//! From a hit to a pixel. Twin of `shaders/primary/shade.wgsl`.
+//! Shading of primary hits. The WGSL twin is `shaders/primary/shade.wgsl`.
 
 use crate::geometry::ray::{Hit, Ray};
 use crate::image::Pixel;
 use crate::render::{PrimarySettings, Shading};
 use crate::scene::Scene;
 
-/// The pixel of a primary ray that hit a sphere.
+/// The pixel of a primary ray that hits a sphere.
 #[must_use]
 pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> Pixel {
     let surface = scene.color(hit.id).to_array();

@@ -1,4 +1,4 @@
-//! One ray against one sphere.
+//! The intersection of a ray and a sphere, in f64.
 
 use glam::DVec3;
 
@@ -7,12 +7,12 @@ use crate::geometry::ray::Ray;
 /// The distance to the first point of the sphere in front of the ray's origin, and the unit normal
 /// there, which points away from the centre; `None` for a miss.
 ///
-/// From inside, or from the wall, the first point is on the far side. By Pythagoras: the centre's foot
-/// point on the ray lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent
-/// ray hits; a ray that only leaves the wall it starts on does not.
+/// If the ray starts inside the sphere or on its surface, the first point is on the far side. By Pythagoras: the foot
+/// point of the centre on the ray lies at the distance `b`, and half the chord is √(r² − |centre − foot|²). A tangent
+/// ray hits; a ray that starts on the surface and only leaves the sphere does not.
 ///
-/// The normal is taken from the same right triangle, not from the hit point, which far away from a
-/// small sphere is nothing but rounding.
+/// The normal is computed from the same right triangle, not from the hit point, which for a small sphere far away is
+/// nothing but rounding error.
 pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, DVec3)> {
     let to_center = center - ray.origin;
     let b = to_center.dot(ray.direction);
@@ -21,11 +21,11 @@ pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, D
     if half_chord_squared < 0.0 {
         return None;
     }
-    // The product of the distances to both walls: positive outside, zero on the wall.
+    // The product of the distances to both sides: positive outside, zero on the surface.
     let c = to_center.length_squared() - radius * radius;
     let half_chord = half_chord_squared.sqrt();
     let from_foot = if c > 0.0 { -half_chord } else { half_chord };
-    // b + from_foot; where the two would cancel, from (b + from_foot)(b − from_foot) = c.
+    // t is b + from_foot; if the two would cancel, it follows from (b + from_foot)(b − from_foot) = c.
     let t = if b * from_foot >= 0.0 { b + from_foot } else { c / (b - from_foot) };
     (t > 0.0).then(|| (t, (from_foot * ray.direction - foot_to_center) / radius))
 }
@@ -49,8 +49,8 @@ mod tests {
             ("behind", along_z(0.0, 5.0), None, None),
             ("beside", along_z(2.5, -5.0), None, None),
             ("tangent", along_z(2.0, -5.0), Some(5.0), Some(DVec3::X)),
-            ("leaving from the wall", along_z(0.0, 2.0), None, None),
-            ("entering from the wall: the far side", along_z(0.0, -2.0), Some(4.0), far),
+            ("leaving from the surface", along_z(0.0, 2.0), None, None),
+            ("entering from the surface: the far side", along_z(0.0, -2.0), Some(4.0), far),
         ] {
             let hit = intersect(&ray, DVec3::ZERO, 2.0);
             assert_eq!(hit.map(|h| h.0), t, "{case}");
@@ -58,7 +58,7 @@ mod tests {
         }
     }
 
-    /// In any direction, not only along an axis, where rounding is kind.
+    /// Tests random directions, because rounding errors are small along the axes.
     #[test]
     fn from_the_surface_only_the_far_side_is_hit() {
         let mut random = fastrand::Rng::with_seed(16);
@@ -76,11 +76,10 @@ mod tests {
         }
     }
 
-    /// With the eye on the wall, up to rounding, and looking along it, `c` and the half chord are
-    /// nothing but rounding; but what a ray that is so flat cuts off the sphere is short: √(8 · 2⁻⁵³) is
-    /// 3 · 10⁻⁸.
+    /// With the eye on the surface, up to rounding, and a ray along the surface, `c` and half the chord are nothing but
+    /// rounding error. But such a flat ray cuts only a short chord off the sphere: √(8 · 2⁻⁵³) is 3 · 10⁻⁸.
     #[test]
-    fn along_the_wall_no_hit_is_far() {
+    fn along_the_surface_no_hit_is_far() {
         let mut random = fastrand::Rng::with_seed(17);
         let mut hits = 0;
         for _ in 0..100_000 {

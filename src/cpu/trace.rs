@@ -1,4 +1,4 @@
-//! Nearest hit by trying every sphere. Twin of `shaders/primary/trace.wgsl`.
+//! The nearest hit, found by testing every sphere. The WGSL twin is `shaders/primary/trace.wgsl`.
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::sphere::intersect;
 use crate::geometry::ray::{Hit, Ray};
 use crate::scene::Scene;
 
-/// The nearest sphere in front of the ray's origin; of several at the same distance, the one with the
-/// smallest id.
+/// The nearest hit in front of the ray's origin; of several spheres at the same distance, that with the smallest id.
+/// `None` for a miss.
 #[must_use]
 pub fn trace(scene: &Scene, ray_in_world: &Ray) -> Option<Hit> {
     let ray = Ray { origin: ray_in_world.origin - scene.origin(), ..*ray_in_world };
@@ -17,7 +17,7 @@ pub fn trace(scene: &Scene, ray_in_world: &Ray) -> Option<Hit> {
         let Some((t, normal)) = intersect(&ray, center, radius.into()) else {
             continue;
         };
-        // Ids ascend, so `<` leaves a tie to the smaller id.
+        // Ids ascend, so `<` prefers the smaller id at equal distances.
         if nearest.is_none_or(|hit| t < hit.t) {
             nearest = Some(Hit { t, id: id as u32, normal });
         }

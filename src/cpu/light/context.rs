@@ -1,4 +1,4 @@
-//! All that is the same for every ray of a picture, in the scene's frame.
+//! The lighting context: all data that is the same for every ray of a picture, in the scene's frame.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub(super) struct LightingContext<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a RenderSettings,
     pub(super) ground: Option<Plane>,
-    /// In input order.
+    /// Lights of the settings in input order.
     pub(super) lights: Vec<LightKind>,
     pub(super) emitters: Emitters,
     pub(super) sky_image: Option<SkyImage<'a>>,
@@ -28,17 +28,17 @@ pub(super) struct LightingContext<'a> {
     energies: EnergyTables,
 }
 
-/// A ground.
+/// The ground plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     pub(super) point: DVec3,
-    /// Unit.
+    /// Unit normal.
     pub(super) normal: DVec3,
     pub(super) color: DVec3,
     pub(super) is_shadow_catcher: bool,
 }
 
-/// An image of the sky that is not black.
+/// An image of the sky, which is not black.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SkyImage<'a> {
     pub(super) environment: &'a Environment,
@@ -95,7 +95,7 @@ impl<'a> LightingContext<'a> {
         }
     }
 
-    /// Centre and radius.
+    /// Centre and radius of a sphere in the scene's frame.
     pub(super) fn sphere(&self, id: u32) -> (DVec3, f64) {
         let [x, y, z, radius] = self.scene.spheres()[id as usize].map(f64::from);
         (DVec3::new(x, y, z), radius)
@@ -120,7 +120,7 @@ impl<'a> LightingContext<'a> {
         }
     }
 
-    /// The radiance that an emissive sphere sends out.
+    /// The radiance that a surface emits; `None` if it is not emissive.
     pub(super) fn emission(&self, surface: Surface) -> Option<DVec3> {
         let Surface::Sphere(id) = surface else { return None };
         match self.scene.surface(id).material {
@@ -129,7 +129,7 @@ impl<'a> LightingContext<'a> {
         }
     }
 
-    /// A sphere's table of energies, from `skip` entries after its first on.
+    /// The energy table of a sphere's material, starting `skip` entries after its beginning.
     pub(super) fn energy(&self, id: u32, skip: usize) -> &[f32] {
         let surface = self.scene.checked_appearance().surface_index(id) as usize;
         let start = self.energies.starts()[surface].map_or(0, |start| start as usize);
@@ -145,7 +145,7 @@ pub(super) fn rgb(color: LinearRgb) -> DVec3 {
     wide(color.to_array())
 }
 
-/// Of a linear colour with the Rec. 709 primaries.
+/// Relative luminance of a linear colour with the Rec. 709 primaries.
 pub(super) fn luminance(color: DVec3) -> f64 {
     color.dot(DVec3::from(LUMINANCE))
 }

@@ -1,4 +1,4 @@
-//! Lights that are no spheres of the scene, seen from a point.
+//! Light that arrives at a point from the lights of the settings.
 
 use glam::DVec3;
 
@@ -9,16 +9,16 @@ use crate::light::LightKind;
 /// Light that arrives at a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
-    /// Where it comes from; unit.
+    /// Unit vector towards the light.
     pub(super) direction: DVec3,
-    /// What a white surface that faces it sends back.
+    /// Radiance that a white surface facing the light would reflect.
     pub(super) strength: DVec3,
-    /// How far away the light is.
+    /// Distance to the light.
     pub(super) distance: f64,
 }
 
-/// Light from a point of a lamp, chosen by chance; the mean of many is its light. `None` for a light at the eye, and
-/// where a light has no direction.
+/// Light from a random point of a light, such that the mean of many samples is the light's contribution. `None` for a
+/// light at the eye, and for a point light at the point itself.
 pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Arrival> {
     match *light {
         LightKind::Head { .. } => None,
@@ -61,7 +61,7 @@ pub(super) fn arrival(light: &LightKind, point: DVec3, u: [u32; 2]) -> Option<Ar
     }
 }
 
-/// The same of the light's middle, for a measure of how much light there could be.
+/// Light from the middle of a light, as a measure of how much light could arrive.
 pub(super) fn arrival_of_middle(light: &LightKind, point: DVec3) -> Option<Arrival> {
     let arrival = arrival(light, point, [1 << 31; 2])?;
     match *light {
@@ -74,12 +74,12 @@ pub(super) fn arrival_of_middle(light: &LightKind, point: DVec3) -> Option<Arriv
     }
 }
 
-/// The radiance of a sun's disk whose light has the given strength where a surface faces it, for strength 1.
+/// The radiance of a sun's disk for strength 1, which is the light that a surface facing it reflects.
 pub(super) fn sun_radiance(angular_radius: f64) -> f64 {
     1.0 / angular_radius.sin().powi(2)
 }
 
-/// The same times the cone's solid angle over π, which is 1 for what is infinitely small.
+/// [`sun_radiance`] times the solid angle of the disk over π; 1 for a light without angular radius.
 fn sun_factor(angular_radius: f64) -> f64 {
     if angular_radius > 0.0 {
         sun_radiance(angular_radius) * 2.0 * versine(angular_radius)
@@ -88,8 +88,8 @@ fn sun_factor(angular_radius: f64) -> f64 {
     }
 }
 
-/// The distance to a sphere's near side, or to its far side from inside, in a direction that meets it: where rounding
-/// says that it does not, to the foot point.
+/// The distance to a sphere's near side, or from inside to its far side, along a direction that hits it. If rounding
+/// makes the ray miss, the distance to the foot point.
 pub(super) fn distance_to_sphere(
     to_center: DVec3,
     radius: f64,

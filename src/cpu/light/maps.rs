@@ -1,16 +1,16 @@
-//! From random numbers to directions.
+//! Maps from random numbers to points and directions.
 
 use glam::{DVec2, DVec3};
 
 use crate::camera::sampling::unit;
 use crate::geometry::disk::concentric_disk;
 
-/// A point of the unit disk, evenly.
+/// A point that is uniformly distributed in the unit disk.
 pub(super) fn disk(u: [u32; 2]) -> DVec2 {
     concentric_disk(DVec2::from(u.map(unit)))
 }
 
-/// Two unit vectors that make a right-handed frame with a third.
+/// Two unit vectors that form a right-handed frame with a third.
 ///
 /// T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani and R. Villemin, "Building an Orthonormal
 /// Basis, Revisited", JCGT 6(1), 2017.
@@ -37,30 +37,31 @@ impl TangentFrame {
     }
 }
 
-/// A direction around +z, as dense as its cosine.
+/// A random direction around +z, with a density proportional to its cosine.
 pub(super) fn cosine(u: [u32; 2]) -> DVec3 {
     let spot = disk(u);
     spot.extend((1.0 - spot.length_squared()).max(0.0).sqrt())
 }
 
-/// A direction in a cone around +z, evenly; `k` is 1 less the cosine of its half-angle, and 2 means all directions.
+/// A random direction in a cone around +z, uniformly distributed. `k` is 1 minus the cosine of the half-angle; 2 means
+/// all directions.
 pub(super) fn cone(u: [u32; 2], k: f64) -> DVec3 {
     let spot = disk(u);
     let q = spot.length_squared() * k;
     (spot * (k * (2.0 - q)).sqrt()).extend(1.0 - q)
 }
 
-/// The density of [`cone`], per steradian.
+/// The density per steradian of [`cone`].
 pub(super) fn cone_density(k: f64) -> f64 {
     1.0 / (std::f64::consts::TAU * k)
 }
 
-/// 1 less the cosine of an angle.
+/// The versine of an angle: 1 minus its cosine, without cancellation.
 pub(super) fn versine(radians: f64) -> f64 {
     2.0 * (0.5 * radians).sin().powi(2)
 }
 
-/// The cone in which a sphere is seen from a distance to its centre, as [`cone`] has it; `None` from inside.
+/// The parameter `k` of [`cone`] for the cone that a sphere fills at a distance from its centre; `None` from inside.
 pub(super) fn cone_of_sphere(radius: f64, distance: f64) -> Option<f64> {
     let sine = radius / distance;
     (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))
@@ -88,7 +89,7 @@ mod tests {
         }
     }
 
-    /// Means over all directions of each kind, against integrals on paper.
+    /// Compares means over all directions of each distribution with integrals computed by hand.
     #[test]
     fn directions_have_the_moments_of_their_densities() {
         let mean = |f: &dyn Fn([u32; 2]) -> f64| grid().map(f).sum::<f64>() / 65536.0;

@@ -1,7 +1,7 @@
-//! Lit pictures: as the reference, in f64, with every sphere tried for every ray.
+//! Lighting of the CPU reference, in f64: for every ray, every sphere is tested.
 //!
-//! What is computed is what kernels compute, from the same random numbers, so that pictures may be compared sample
-//! by sample; nothing but the numbers that both are given is shared with them.
+//! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
+//! sample. Only the input is shared with them.
 
 use glam::DVec3;
 
@@ -29,7 +29,7 @@ mod surface_ray;
 
 pub use sample::Sample;
 
-/// A picture that is ready to be rendered, as a whole or sample by sample.
+/// A picture that can be rendered as a whole or sample by sample.
 #[derive(Debug)]
 pub struct SampledPicture<'a> {
     context: LightingContext<'a>,
@@ -38,10 +38,10 @@ pub struct SampledPicture<'a> {
 }
 
 impl<'a> SampledPicture<'a> {
-    /// Checks the settings, and makes ready what all samples need.
+    /// Checks the settings, and prepares the data that all samples share.
     ///
     /// # Errors
-    /// What [`RenderSettings::check`] refuses.
+    /// If [`RenderSettings::check`] fails.
     pub fn new(
         scene: &'a Scene,
         view: &View<'a>,
@@ -56,7 +56,8 @@ impl<'a> SampledPicture<'a> {
         })
     }
 
-    /// One sample of a pixel, which is column and row. By primary rays, all samples of a pixel are the same.
+    /// One sample of a pixel, given as column and row. With the integrator `primary`, all samples of a pixel are the
+    /// same.
     #[must_use]
     pub fn sample(&self, pixel: [u32; 2], sample: u32) -> Sample {
         let RenderSettings { integrator, sampling, is_transparent, .. } = self.context.settings;
@@ -100,7 +101,7 @@ impl<'a> SampledPicture<'a> {
             row.set_averages(i, &self.averages(pixel));
         });
         if settings.is_denoised {
-            // All guides are among the layers.
+            // This cannot fail, because `layers_for` includes all guides.
             image = denoise(&image).unwrap_or(image);
         }
         if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
@@ -134,16 +135,16 @@ impl<'a> SampledPicture<'a> {
         }
     }
 
-    /// What the ray through the pixel's centre says, without light.
+    /// The data layers of a pixel, from the ray through its centre.
     fn data(&self, pixel: [u32; 2]) -> Pixel {
         primary_pixel(self.context.scene, &self.view, &PrimarySettings::default(), pixel)
     }
 }
 
-/// One sample of a picture's pixel. Who wants many makes a [`SampledPicture`] once.
+/// One sample of a pixel. For many samples, create a [`SampledPicture`] once.
 ///
 /// # Errors
-/// What [`RenderSettings::check`] refuses.
+/// If [`RenderSettings::check`] fails.
 pub fn radiance(
     scene: &Scene,
     view: &View<'_>,

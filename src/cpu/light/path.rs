@@ -1,4 +1,4 @@
-//! Paths: light as it is scattered, from the camera back to where it came from.
+//! Path tracing: paths follow light backwards, from the camera to its sources.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use super::bsdf::Bsdf;
 use super::context::{LightingContext, rgb};
 use super::maps::TangentFrame;
 use super::sample::{Address, Found};
-use super::source::{Sought, SoughtLight};
+use super::source::{LightSample, SampledLight};
 use super::surface_ray::{Hiding, Interaction, Surface, SurfaceRay, is_occluded, nearest};
 use crate::camera::sampling::unit;
 use crate::geometry::ray::Ray;
@@ -16,7 +16,7 @@ use crate::light::LightKind;
 use crate::render::{LightSampling, PathTracing};
 use crate::scene::material::Material;
 
-/// Which pair of a surface's random numbers is for what.
+/// The use of each pair of random numbers at a surface.
 #[derive(Clone, Copy)]
 enum Purpose {
     Direction = 0,
@@ -26,16 +26,16 @@ enum Purpose {
     Roulette = 4,
 }
 
-/// How a ray came to be.
+/// How a ray was generated.
 #[derive(Clone, Copy)]
 enum Origin {
-    /// Without choice, or so that nothing else could have found what it meets.
+    /// Without a random choice of direction, or where light sampling could not have found what the ray hits.
     Only,
-    /// By chance at a point, with a density per steradian.
+    /// By scattering at a point, with a density per steradian.
     Scattered { point: DVec3, density: f64 },
 }
 
-/// What a ray from the camera brings.
+/// The light along a ray from the camera.
 pub(super) fn follow(
     context: &LightingContext<'_>,
     tracing: &PathTracing,
@@ -68,7 +68,7 @@ struct Path<'a> {
     surface_ray: SurfaceRay,
     found: Found,
     throughput: DVec3,
-    /// Of what the ray goes through, per length.
+    /// Absorption coefficient of the medium that the ray passes through, per unit length.
     absorption: DVec3,
     origin: Origin,
     has_scattered: bool,
@@ -79,7 +79,7 @@ impl Path<'_> {
         self.address.pair(2 + 8 * v + purpose as u32)
     }
 
-    /// Goes on to surface number `v` and beyond; `None` at the end.
+    /// Continues the path to surface number `v`; `None` if the path ends.
     fn step(&mut self, v: u32) -> Option<()> {
         let context = self.context;
         let Some(interaction) = nearest(context, &self.surface_ray) else {
@@ -108,11 +108,11 @@ impl Path<'_> {
         let frame = TangentFrame::around(interaction.normal);
         let out = frame.to_local(-self.surface_ray.ray.direction);
         let bsdf = Bsdf::of(context, &interaction, out)?;
-        if bsdf.seeks_light() {
+        if bsdf.uses_light_sampling() {
             if !self.has_scattered {
                 self.light_from_the_eye(&bsdf, out);
             }
-            self.seek_light(v, &interaction, &frame, &bsdf);
+            self.add_sampled_light(v, &interaction, &frame, &bsdf);
         }
         self.scatter(v, &interaction, &frame, &bsdf, choice)?;
         if v >= self.tracing.roulette_from {
@@ -125,15 +125,15 @@ impl Path<'_> {
         Some(())
     }
 
-    /// The share of light that a ray finds by chance, of what could be sought from the point where it was scattered
-    /// with a density; `None` if it could not.
+    /// The weight of light that a scattered ray happens to hit. `density_from` returns the density with which light
+    /// sampling at the point of scattering would have chosen the same direction; `None` if it could not.
     fn weight(&self, density_from: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
         let Origin::Scattered { point, density } = self.origin else { return 1.0 };
-        let Some(sought) = density_from(point) else { return 1.0 };
+        let Some(light_density) = density_from(point) else { return 1.0 };
         match self.tracing.light_sampling {
             LightSampling::Chance => 1.0,
             LightSampling::Direct => 0.0,
-            LightSampling::Multiple => density / (density + sought),
+            LightSampling::Multiple => density / (density + light_density),
         }
     }
 
@@ -154,7 +154,7 @@ impl Path<'_> {
         self.found.color += self.throughput * radiance;
     }
 
-    /// Goes through a surface as if it were not there.
+    /// Passes through a surface as if it were not there.
     fn pass(&mut self, interaction: &Interaction) {
         self.surface_ray.ray.origin = interaction.point;
         self.surface_ray.start = interaction.other_side();
@@ -164,7 +164,7 @@ impl Path<'_> {
         }
     }
 
-    /// The absorption within a sphere, if it is glass.
+    /// The absorption coefficient inside a sphere of glass; `None` for other surfaces.
     fn dielectric(&self, interaction: &Interaction) -> Option<DVec3> {
         let Surface::Sphere(id) = interaction.surface else { return None };
         match self.context.scene.surface(id).material {
@@ -186,15 +186,21 @@ impl Path<'_> {
         }
     }
 
-    fn seek_light(&mut self, v: u32, interaction: &Interaction, frame: &TangentFrame, bsdf: &Bsdf) {
+    fn add_sampled_light(
+        &mut self,
+        v: u32,
+        interaction: &Interaction,
+        frame: &TangentFrame,
+        bsdf: &Bsdf,
+    ) {
         let (choice, u) = (self.pair(v, Purpose::Source), self.pair(v, Purpose::Light));
-        let Some(sought) = self.context.seek(interaction.point, choice, u) else { return };
-        let Sought { direction, distance, sphere, light } = sought;
+        let Some(sampled) = self.context.sample_light(interaction.point, choice, u) else { return };
+        let LightSample { direction, distance, sphere, light } = sampled;
         let into = frame.to_local(direction);
         let Some(response) = bsdf.response(into) else { return };
         let light = match light {
-            SoughtLight::Lamp(strength) => PI * strength,
-            SoughtLight::Radiance(radiance, density) => match self.tracing.light_sampling {
+            SampledLight::Lamp(strength) => PI * strength,
+            SampledLight::Radiance(radiance, density) => match self.tracing.light_sampling {
                 LightSampling::Multiple => radiance / (density + response.density),
                 _ => radiance / density,
             },

@@ -1,4 +1,4 @@
-//! One sample of a pixel: its random numbers, its ray, and what comes of it.
+//! One sample of a pixel: its random numbers, its ray, and its result.
 
 use glam::{DVec2, DVec3};
 
@@ -8,19 +8,19 @@ use crate::camera::filter;
 use crate::camera::sampling::{self, pixel_seed};
 use crate::geometry::ray::Ray;
 
-/// What one sample of a pixel finds.
+/// The result of one sample of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Linear colour: radiance.
+    /// Radiance, in linear light.
     pub color: [f64; 3],
-    /// How much of what is behind everything is hidden: 0 to 1.
+    /// How much the sample hides the background: 0 to 1.
     pub alpha: f64,
-    /// The colour of the first surface, at most 1: on paths the first that does not let light pass; 0 for a miss, and
-    /// for a ground on which only shadows are seen.
+    /// Colour of the first surface, each component at most 1. With the path integrator, this is the first surface that
+    /// the path does not pass through. Zero for a miss, and for a shadow catcher.
     pub albedo: [f64; 3],
 }
 
-/// The same, while it is summed up.
+/// The result of a sample while it is accumulated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Found {
     pub(super) color: DVec3,
@@ -34,7 +34,7 @@ impl From<Found> for Sample {
     }
 }
 
-/// Whose random numbers.
+/// The address of a sample's random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Address {
     seed: u32,
@@ -50,19 +50,19 @@ impl Address {
         sampling::pair(self.seed, self.sample, pair)
     }
 
-    /// The j-th of `count` parts of the sample. Beyond 2³² samples repeat.
+    /// The address of the j-th of `count` parts of the sample. Beyond 2³² parts addresses repeat.
     pub(super) fn part(self, j: u32, count: u32) -> Self {
         let sample = self.sample.wrapping_mul(count).wrapping_add(j);
         Self { sample, ..self }
     }
 }
 
-/// How a sample becomes a ray.
+/// The generator of camera rays for samples.
 #[derive(Debug)]
 pub(super) struct Lens<'a> {
     view: View<'a>,
     offsets: [f32; 257],
-    /// Of the scene's frame.
+    /// Origin of the scene's frame.
     origin: DVec3,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Lens<'a> {
         Self { view: *view, offsets, origin }
     }
 
-    /// The ray of a sample, in the scene's frame; `None` where the camera sees nothing.
+    /// The ray of a sample in the scene's frame; `None` where the camera has no ray.
     pub(super) fn surface_ray(&self, pixel: [u32; 2], address: Address) -> Option<SurfaceRay> {
         let offset = address.pair(0).map(|u| filter::offset(&self.offsets, u));
         let [column, row] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);

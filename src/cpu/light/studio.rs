@@ -1,4 +1,4 @@
-//! A studio: light from lamps to surfaces, and no further.
+//! The studio integrator: light that arrives at visible surfaces directly from lights.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ use crate::geometry::ray::Ray;
 use crate::light::LightKind;
 use crate::render::Studio;
 
-/// What a ray from the camera brings.
+/// The light along a ray from the camera.
 pub(super) fn follow(
     context: &LightingContext<'_>,
     studio: &Studio,
@@ -23,10 +23,10 @@ pub(super) fn follow(
 ) -> Found {
     let mut found = Found::default();
     let mut clear = 1.0;
-    let mut way = 0.0;
+    let mut depth = 0.0;
     for m in 0..studio.max_surfaces {
         let Some(interaction) = nearest(context, &surface_ray) else { break };
-        way += interaction.distance;
+        depth += interaction.distance;
         let view = SeenSurface {
             context,
             studio,
@@ -51,7 +51,7 @@ pub(super) fn follow(
         clear *= 1.0 - opacity;
         found.alpha += weight;
         let (fade, fade_color) = studio.depth_cue.map_or((0.0, DVec3::ZERO), |cue| {
-            (((way - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
+            (((depth - cue.near) / (cue.far - cue.near)).clamp(0.0, 1.0), rgb(cue.color))
         });
         found.color += weight * (fade * fade_color + (1.0 - fade) * view.color());
         if clear == 0.0 {
@@ -66,15 +66,15 @@ pub(super) fn follow(
     found
 }
 
-/// A surface that is seen.
+/// A visible surface.
 struct SeenSurface<'a> {
     context: &'a LightingContext<'a>,
     studio: &'a Studio,
     interaction: Interaction,
-    /// Of the ray that sees it.
+    /// Direction of the ray that hits the surface.
     direction: DVec3,
     address: Address,
-    /// How many surfaces are before it.
+    /// The number of surfaces in front of it.
     m: u32,
 }
 
@@ -108,7 +108,7 @@ impl SeenSurface<'_> {
         color
     }
 
-    /// The share of ambient light that does not arrive.
+    /// The fraction of ambient light that is occluded.
     fn ambient_occlusion(&self) -> f64 {
         let Some(occlusion) = &self.studio.occlusion else { return 0.0 };
         let frame = TangentFrame::around(self.interaction.normal);
@@ -132,7 +132,8 @@ impl SeenSurface<'_> {
         is_occluded(self.context, &surface_ray, t_max, Hiding::Opaque, None)
     }
 
-    /// The share of light that is missing on the ground: of each light as much as its middle could send.
+    /// The fraction of light that is missing on the ground because of shadows; each light is weighted by the light of
+    /// its middle.
     fn shadow(&self, plane: &Plane) -> f64 {
         let mut whole = luminance(rgb(self.studio.ambient));
         let mut missing = whole * self.ambient_occlusion();

@@ -1,4 +1,4 @@
-//! Rays that know where they start, so that no distance is too short to count and none has to be skipped.
+//! Rays that know on which surface they start, so that they need no offset and no smallest distance.
 
 use glam::DVec3;
 
@@ -13,45 +13,45 @@ pub(super) struct SurfaceRay {
     pub(super) start: Start,
 }
 
-/// What a ray leaves, and on which side. Spheres with the same centre and radius as it are left with it: only the
-/// first of them is ever met.
+/// Where a ray starts: the surface that it leaves, and on which side. Spheres with the same centre and radius are left
+/// together, because only the first of them can be hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
-    /// The camera.
+    /// At the camera.
     Free,
-    /// A sphere, away from it: never hits it.
+    /// On a sphere, outwards: the ray cannot hit this sphere.
     Outside(u32),
-    /// A sphere, through its inside: hits its far side, if nothing is nearer.
+    /// On a sphere, inwards: the ray hits the far side of this sphere, if nothing is nearer.
     Inside(u32),
-    /// The ground, away from it: never hits it.
+    /// On the ground, upwards: the ray cannot hit the ground.
     Ground,
 }
 
-/// What is met.
+/// A surface that a ray can hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
-    /// A sphere.
+    /// The sphere with this index.
     Sphere(u32),
     /// The ground.
     Ground,
 }
 
-/// Where a ray meets a surface.
+/// The interaction of a ray with a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interaction {
     pub(super) surface: Surface,
-    /// From the ray's origin, along the ray.
+    /// Distance along the ray from its origin.
     pub(super) distance: f64,
-    /// On the surface, up to rounding.
+    /// Hit point; on the surface, up to rounding.
     pub(super) point: DVec3,
-    /// Unit normal on the side from which the ray comes.
+    /// Unit normal on the side from which the ray arrives.
     pub(super) normal: DVec3,
-    /// Whether the ray comes from outside of the sphere, or from above the ground.
+    /// Whether the ray arrives from outside the sphere, or from above the ground.
     pub(super) is_outside: bool,
 }
 
 impl Interaction {
-    /// Where rays start that stay on the side from which the ray came.
+    /// The start of rays that stay on the side from which the ray arrived.
     pub(super) fn this_side(&self) -> Start {
         match self.surface {
             Surface::Ground => Start::Ground,
@@ -60,7 +60,7 @@ impl Interaction {
         }
     }
 
-    /// Where rays start that cross the surface.
+    /// The start of rays that cross the surface.
     pub(super) fn other_side(&self) -> Start {
         match self.surface {
             Surface::Ground => Start::Ground,
@@ -70,17 +70,16 @@ impl Interaction {
     }
 }
 
-/// Which spheres hide what is behind them.
+/// Which spheres occlude light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hiding {
-    /// All.
+    /// All spheres.
     All,
-    /// Those whose opacity is 1.
+    /// Spheres whose opacity is 1.
     Opaque,
 }
 
-/// The nearest surface; of several spheres at the same distance, that with the smallest id, and a sphere before the
-/// ground.
+/// The nearest interaction. At equal distances, the sphere with the smallest id is hit, and a sphere before the ground.
 pub(super) fn nearest(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
@@ -117,7 +116,7 @@ pub(super) fn nearest(
     })
 }
 
-/// Whether anything but the sphere `exempt`, and what is in its place, is nearer than `t_max`.
+/// Whether any surface is nearer than `t_max`, apart from the sphere `exempt` and spheres equal to it.
 pub(super) fn is_occluded(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
@@ -129,7 +128,7 @@ pub(super) fn is_occluded(
         Hiding::All => true,
         Hiding::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
-    // Of what is in the place of the sphere that is left, that one alone is there.
+    // Of several spheres equal to the one on which the ray starts, only that one counts.
     let is_there = |id: u32| match surface_ray.start {
         Start::Inside(own) => id == own || !context.is_same(own, id),
         Start::Free | Start::Outside(_) | Start::Ground => true,
@@ -141,14 +140,14 @@ pub(super) fn is_occluded(
             .any(|id| sphere(context, surface_ray, id).is_some_and(|hit| hit.distance < t_max))
 }
 
-/// Where a ray meets a sphere.
+/// The intersection of a ray and a sphere.
 #[derive(Clone, Copy)]
 struct SphereHit {
     distance: f64,
-    /// Unit normal, away from the centre.
+    /// Unit normal, pointing away from the centre.
     outward: DVec3,
-    /// Whether the ray comes from outside. That is not asked of the normal: rounding turns it where a ray grazes, and
-    /// then light would get through.
+    /// Whether the ray arrives from outside. This is not computed from the normal, whose side rounding may change for
+    /// grazing rays, so that light would leak through.
     is_outside: bool,
 }
 
@@ -171,7 +170,7 @@ fn sphere(context: &LightingContext<'_>, surface_ray: &SurfaceRay, id: u32) -> O
     }
 }
 
-/// The distance to the ground.
+/// The distance to the ground along a ray; `None` for a miss.
 fn ground(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<f64> {
     let plane = context.ground.as_ref()?;
     let descent = surface_ray.ray.direction.dot(plane.normal);
@@ -202,10 +201,10 @@ mod tests {
         DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X)
     }
 
-    /// However flat, and whatever rounding says of the side to which it goes, a ray through the inside of a sphere
-    /// stays there until it is let out, and one that leaves it does not come back.
+    /// A ray that starts inwards on a sphere stays inside until it is let out, and a ray that leaves it does not come
+    /// back, however flat the ray is and whatever rounding says about its side.
     #[test]
-    fn no_wall_leaks() {
+    fn no_sphere_leaks() {
         let mut random = fastrand::Rng::with_seed(21);
         for radius in [1e-4, 1.0, 1e6] {
             with_spheres(&[Sphere::new([0.0; 3], radius, LinearRgb::WHITE)], |context| {
@@ -219,20 +218,20 @@ mod tests {
                     let outside = SurfaceRay { ray, start: Start::Outside(0) };
                     assert!(nearest(context, &outside).is_none());
                     let inside = SurfaceRay { ray, start: Start::Inside(0) };
-                    let met = nearest(context, &inside).unwrap();
-                    assert!(!met.is_outside, "{outward}, {tilt}");
-                    assert_eq!(met.this_side(), Start::Inside(0));
-                    assert!((met.point.length() / radius - 1.0).abs() < 1e-14);
+                    let hit = nearest(context, &inside).unwrap();
+                    assert!(!hit.is_outside, "{outward}, {tilt}");
+                    assert_eq!(hit.this_side(), Start::Inside(0));
+                    assert!((hit.point.length() / radius - 1.0).abs() < 1e-14);
                     let wanted = -2.0 * radius * tilt.min(0.0) / (1.0 + tilt * tilt).sqrt();
-                    assert!((met.distance - wanted).abs() < 1e-14 * radius);
+                    assert!((hit.distance - wanted).abs() < 1e-14 * radius);
                 }
             });
         }
     }
 
-    /// What is met from outside is met on its outer side, also where the ray is all but a tangent.
+    /// A sphere that is hit from outside is hit on its outer side, even if the ray is almost a tangent.
     #[test]
-    fn from_outside_the_outer_side_is_met() {
+    fn from_outside_the_outer_side_is_hit() {
         let mut random = fastrand::Rng::with_seed(22);
         let mut hits = 0;
         with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)], |context| {
@@ -242,8 +241,8 @@ mod tests {
                 let miss = 1.0 + (random.f64() - 0.6) * 10_f64.powf(-16.0 * random.f64());
                 let origin = miss * outward - (1.0 + 9.0 * random.f64()) * along;
                 let ray = Ray { origin, direction: along };
-                if let Some(met) = nearest(context, &SurfaceRay { ray, start: Start::Free }) {
-                    assert!(met.is_outside, "{outward}, {miss}");
+                if let Some(hit) = nearest(context, &SurfaceRay { ray, start: Start::Free }) {
+                    assert!(hit.is_outside, "{outward}, {miss}");
                     hits += 1;
                 }
             }
@@ -252,18 +251,18 @@ mod tests {
     }
 
     #[test]
-    fn of_equal_distances_the_smaller_id_is_met() {
+    fn at_equal_distances_the_smaller_id_is_hit() {
         with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE); 3], |context| {
             let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: -DVec3::Z };
-            let met = nearest(context, &SurfaceRay { ray, start: Start::Free }).unwrap();
-            assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
-            let ray = Ray { origin: met.point, ..ray };
-            let met = nearest(context, &SurfaceRay { ray, start: met.other_side() }).unwrap();
-            assert_eq!((met.surface, met.distance), (Surface::Sphere(0), 2.0));
+            let hit = nearest(context, &SurfaceRay { ray, start: Start::Free }).unwrap();
+            assert_eq!((hit.surface, hit.distance), (Surface::Sphere(0), 2.0));
+            let ray = Ray { origin: hit.point, ..ray };
+            let hit = nearest(context, &SurfaceRay { ray, start: hit.other_side() }).unwrap();
+            assert_eq!((hit.surface, hit.distance), (Surface::Sphere(0), 2.0));
         });
     }
 
-    /// Where several spheres are in one place, they are one.
+    /// Several equal spheres behave like one.
     #[test]
     fn equal_spheres_do_not_hide_each_other() {
         let mut random = fastrand::Rng::with_seed(23);
@@ -280,15 +279,15 @@ mod tests {
                 if is_outward {
                     assert!(nearest(context, &surface_ray).is_none() && !hides(None));
                 } else {
-                    let met = nearest(context, &surface_ray).unwrap();
-                    assert_eq!((met.surface, met.is_outside), (Surface::Sphere(0), false));
+                    let hit = nearest(context, &surface_ray).unwrap();
+                    assert_eq!((hit.surface, hit.is_outside), (Surface::Sphere(0), false));
                     assert!(hides(None) && !hides(Some(2)));
                 }
             }
         });
     }
 
-    /// Shadow rays end at the light, and see all but what they start on and where they end.
+    /// Shadow rays end at the light, and hit every surface between except those on which they start and end.
     #[test]
     fn what_is_between_hides() {
         let at = |z: f64, opacity: f32| {

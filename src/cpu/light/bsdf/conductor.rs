@@ -1,11 +1,11 @@
-//! Rough metal.
+//! Rough metal, as a BSDF.
 
 use glam::DVec3;
 
 use super::ggx::{Ggx, half, mirrored};
 use super::{Response, Scattered};
 
-/// A metal; `energy` is what a white one of its roughness keeps towards the viewer.
+/// A rough metal. `energy` is the energy that a white metal of its roughness keeps towards the viewer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conductor {
     pub(super) color: DVec3,
@@ -14,12 +14,13 @@ pub(super) struct Conductor {
 }
 
 impl Conductor {
-    /// What a normal reflects: C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994.
+    /// Reflectance at a microfacet normal: C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering"
+    /// (1994).
     fn reflected(&self, cosine: f64) -> DVec3 {
         self.color + (1.0 - self.color) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
     }
 
-    /// What light that is scattered several times within the surface adds, after Turquin.
+    /// The factor that compensates for light that is scattered several times within the surface, after Turquin.
     fn compensation(&self) -> DVec3 {
         1.0 + self.color * ((1.0 - self.energy) / self.energy)
     }

@@ -1,12 +1,12 @@
-//! Glass, smooth or rough.
+//! Glass, smooth or rough, as a BSDF.
 
 use glam::DVec3;
 
 use super::Scattered;
 use super::ggx::{Ggx, mirrored};
 
-/// Glass; `eta` is the index of refraction where light goes to, relative to where it comes from, and `rough` the
-/// distribution of normals and the energy that they keep.
+/// Glass. `eta` is the index of refraction on the far side relative to the viewer's side. `rough` is the distribution
+/// of normals and the energy that it keeps; `None` for smooth glass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dielectric {
     pub(super) eta: f64,
@@ -33,7 +33,8 @@ impl Dielectric {
     }
 }
 
-/// The share of unpolarised light that is reflected, and the cosine of what is refracted (Fresnel's equations).
+/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction (Fresnel's
+/// equations).
 fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
     if sine_squared >= 1.0 {
@@ -54,16 +55,17 @@ mod tests {
         let (straight, _) = fresnel(1.0, 1.5);
         assert!((straight - 0.04).abs() < 1e-15);
         assert!(fresnel(0.0, 1.5).0 >= 1.0);
-        // Brewster's angle: only light that is polarised across is reflected, ((η² − 1)/(η² + 1))² of it.
+        // At Brewster's angle, only light polarised perpendicular to the plane of incidence is reflected: the fraction
+        // ((η² − 1)/(η² + 1))² of it.
         let (brewster, inside) = fresnel(1.0 / 3.25_f64.sqrt(), 1.5);
         assert!((brewster - 0.5 * (1.25_f64 / 3.25).powi(2)).abs() < 1e-15, "{brewster}");
-        // The same way back.
+        // The reverse direction reflects the same fraction.
         let (back, _) = fresnel(inside, 1.0 / 1.5);
         assert!((back - brewster).abs() < 1e-15);
-        // Total reflection beyond sin = 2/3.
+        // Total reflection occurs beyond sin = 2/3.
         assert!(fresnel((1.0 - 0.45_f64).sqrt(), 1.0 / 1.5).0 >= 1.0);
         assert!(fresnel((1.0 - 0.44_f64).sqrt(), 1.0 / 1.5).0 < 1.0);
-        // Nothing where there is no boundary.
+        // Without a change of the index, nothing is reflected.
         assert!(fresnel(0.3, 1.0).0 < 1e-30);
     }
 }

@@ -1,11 +1,11 @@
-//! Rough mirrors: normals distributed by GGX (Trowbridge and Reitz), shadowed after Smith. Directions are in a frame
-//! with the normal as z.
+//! Rough reflection: microfacet normals with the GGX distribution (Trowbridge and Reitz), and shadowing after Smith.
+//! Directions are in a frame with the surface normal as z.
 
 use glam::DVec3;
 
 use crate::cpu::light::maps::disk;
 
-/// A distribution of normals; the number is α, the square of the roughness.
+/// A distribution of microfacet normals; the number is α, the square of the roughness.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ggx(f64);
 
@@ -14,18 +14,18 @@ impl Ggx {
         Self(f64::from(roughness) * f64::from(roughness))
     }
 
-    /// Smith's Λ.
+    /// Smith's Λ at a cosine.
     fn lambda(self, cosine: f64) -> f64 {
         let square = cosine * cosine;
         0.5 * ((1.0 + self.0 * self.0 * (1.0 - square) / square).sqrt() - 1.0)
     }
 
-    /// The share of a direction's normals that are seen from it.
+    /// The fraction of microfacets that are visible from a direction.
     pub(super) fn g1(self, cosine: f64) -> f64 {
         1.0 / (1.0 + self.lambda(cosine))
     }
 
-    /// The share that is seen from two directions on the same side.
+    /// The fraction of microfacets that are visible from two directions on the same side.
     pub(super) fn g2(self, out: f64, into: f64) -> f64 {
         1.0 / (1.0 + self.lambda(out) + self.lambda(into))
     }
@@ -36,18 +36,18 @@ impl Ggx {
         1.0 / (std::f64::consts::PI * square * t * t)
     }
 
-    /// D G2/(4 cos cos), what a mirror of white normals does, without the cosine of `into`.
+    /// The reflection of a white rough mirror, D G2/(4 cos cos), without the cosine factor of `into`.
     pub(super) fn reflection(self, out: DVec3, into: DVec3) -> f64 {
         let h = half(out, into);
         self.density_of_normals(h) * self.g2(out.z, into.z) / (4.0 * out.z * into.z)
     }
 
-    /// The density by which reflection at a normal of [`Ggx::visible_normal`] gives a direction.
+    /// The density of directions that are reflected at normals from [`Ggx::visible_normal`].
     pub(super) fn reflection_density(self, out: DVec3, into: DVec3) -> f64 {
         self.g1(out.z) * self.density_of_normals(half(out, into)) / (4.0 * out.z)
     }
 
-    /// A normal, as dense as it is seen from `out`.
+    /// A random microfacet normal, with the density of normals that are visible from `out`.
     ///
     /// E. Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018.
     pub(super) fn visible_normal(self, out: DVec3, u: [u32; 2]) -> DVec3 {
@@ -69,12 +69,12 @@ impl Ggx {
     }
 }
 
-/// The direction half-way between two on the same side.
+/// The half vector of two directions on the same side.
 pub(super) fn half(out: DVec3, into: DVec3) -> DVec3 {
     (out + into).normalize_or(DVec3::Z)
 }
 
-/// A direction mirrored at a normal.
+/// A direction reflected at a normal.
 pub(super) fn mirrored(out: DVec3, h: DVec3) -> DVec3 {
     2.0 * out.dot(h) * h - out
 }

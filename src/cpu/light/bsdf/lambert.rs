@@ -1,4 +1,4 @@
-//! Lambert's law, with a share of light that a rough mirror reflects.
+//! A Lambert surface with an optional glossy lobe, as a BSDF.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,8 @@ use super::ggx::{Ggx, mirrored};
 use super::{Response, Scattered};
 use crate::cpu::light::maps;
 
-/// A matt surface; `lobe` is the mirror, the share of light that it reflects, and its energy towards the viewer.
+/// A matt surface. `lobe` is the distribution of the glossy lobe's normals, the fraction of light that it reflects, and
+/// its energy towards the viewer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lambert {
     pub(super) color: DVec3,
@@ -40,7 +41,7 @@ impl Lambert {
             return None;
         }
         let Response { value, density } = self.response(out, direction);
-        // Exactly the colour where there is no lobe.
+        // Without a lobe, the weight is exactly the colour.
         let weight = if self.lobe.is_some() { value * direction.z / density } else { self.color };
         Some(Scattered { direction, weight, density: Some(density) })
     }

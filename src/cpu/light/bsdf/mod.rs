@@ -1,4 +1,4 @@
-//! What surfaces do with light. Directions are in a frame with the normal on the viewer's side as z.
+//! BSDFs: how surfaces scatter light. Directions are in a frame with the normal on the viewer's side as z.
 
 use glam::DVec3;
 
@@ -16,10 +16,10 @@ mod dielectric;
 mod ggx;
 mod lambert;
 
-/// Flatter views count as if they were no flatter.
+/// The smallest cosine of a direction; smaller ones are replaced by it.
 const MIN_COSINE: f64 = 1e-6;
 
-/// A surface that scatters light, at a point, seen from a direction.
+/// The BSDF of a surface at a point, for light towards a given direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bsdf {
     out: DVec3,
@@ -33,32 +33,33 @@ enum Kind {
     Dielectric(Dielectric),
 }
 
-/// What of the light from a direction goes to the viewer, per cosine, and how densely the direction is sampled.
+/// The BSDF's value for light from a direction, without the cosine factor, and the density with which the direction is
+/// sampled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Response {
     pub(super) value: DVec3,
     pub(super) density: f64,
 }
 
-/// A direction that was chosen by chance.
+/// A direction chosen at random by a BSDF.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scattered {
-    /// On the other side if its z is negative.
+    /// On the other side of the surface if its z is negative.
     pub(super) direction: DVec3,
     pub(super) weight: DVec3,
-    /// Per steradian; `None` if light must not be sought in directions of choice.
+    /// Density per steradian; `None` if light sampling cannot choose the direction.
     pub(super) density: Option<f64>,
 }
 
 impl Bsdf {
-    /// The surface that was met, seen from the local direction `out`. An emissive sphere scatters nothing and has
-    /// none.
+    /// The BSDF of a surface for light towards the local direction `out`; `None` for an emissive sphere, which does not
+    /// scatter light.
     pub(super) fn of(
         context: &LightingContext<'_>,
         interaction: &Interaction,
         out: DVec3,
     ) -> Option<Self> {
-        // Tilted no further than it takes to divide by its cosine.
+        // Clamped so that divisions by the cosine are safe.
         let out = DVec3::new(out.x, out.y, out.z.max(MIN_COSINE));
         let color = context.color(interaction.surface);
         let Surface::Sphere(id) = interaction.surface else {
@@ -89,7 +90,7 @@ impl Bsdf {
         Some(Self { out, kind })
     }
 
-    /// As a studio shades it: matt, with its lobe if it is Lambert's.
+    /// The BSDF that the studio integrator uses: metal and glass become matt; Lambert surfaces keep their lobe.
     pub(super) fn in_studio(
         context: &LightingContext<'_>,
         interaction: &Interaction,
@@ -105,7 +106,8 @@ impl Bsdf {
         })
     }
 
-    /// The response to light from a direction, if light is sought there: glass waits for what chance brings.
+    /// The response to light from a direction. `None` for directions from behind, and for glass, whose light comes only
+    /// from scattered rays.
     pub(super) fn response(&self, into: DVec3) -> Option<Response> {
         if into.z <= 0.0 {
             return None;
@@ -117,12 +119,12 @@ impl Bsdf {
         }
     }
 
-    /// Whether light is sought.
-    pub(super) fn seeks_light(&self) -> bool {
+    /// Whether light sampling is useful for this surface.
+    pub(super) fn uses_light_sampling(&self) -> bool {
         !matches!(self.kind, Kind::Dielectric(_))
     }
 
-    /// A direction by chance; `None` if light is lost.
+    /// A random scattered direction; `None` if the light is lost.
     pub(super) fn scatter(&self, u: [u32; 2], choice: f64) -> Option<Scattered> {
         match &self.kind {
             Kind::Lambert(lambert) => lambert.scatter(self.out, u, choice),

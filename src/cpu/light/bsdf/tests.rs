@@ -1,4 +1,4 @@
-//! Energy and densities of each surface, at each angle.
+//! Tests of the energy and the densities of each surface, at several angles.
 
 use std::f64::consts::{PI, TAU};
 
@@ -37,7 +37,7 @@ fn glass(out: DVec3, ior: f32, roughness: f32, is_leaving: bool) -> Bsdf {
     Bsdf { out, kind: Kind::Dielectric(Dielectric { eta, rough }) }
 }
 
-/// The mean over directions and choices that are placed evenly.
+/// The mean over evenly distributed directions and choices.
 fn mean(bsdf: &Bsdf, of: impl Fn(&Scattered) -> f64) -> f64 {
     const COUNT: u32 = 1 << 18;
     let of_sample = |i: u32| {
@@ -47,12 +47,12 @@ fn mean(bsdf: &Bsdf, of: impl Fn(&Scattered) -> f64) -> f64 {
     (0..COUNT).map(of_sample).sum::<f64>() / f64::from(COUNT)
 }
 
-/// The integral over the hemisphere, by midpoints.
+/// The integral over the hemisphere, by the midpoint rule.
 fn integral(of: impl Fn(DVec3) -> f64) -> f64 {
     const STEPS: u32 = 400;
     let mut sum = 0.0;
     for i in 0..STEPS {
-        // More of them where light grazes and where lobes are narrow.
+        // Midpoints are denser at small angles, where lobes are narrow.
         let angle = 0.5 * PI * (f64::from(i) + 0.5) / f64::from(STEPS);
         let (sine, cosine) = angle.sin_cos();
         for j in 0..2 * STEPS {
@@ -84,14 +84,14 @@ fn white_surfaces_lose_nothing_at_any_angle() {
     }
 }
 
-/// What is sampled follows the density, and weights are responses over densities: means over samples are integrals.
+/// Samples follow the density, and weights are responses divided by densities: means over samples equal integrals.
 #[test]
 fn samples_follow_densities() {
     for out in views() {
         for roughness in &ROUGHNESSES[1..] {
             let color = DVec3::new(0.9, 0.5, 0.1);
             for bsdf in [lambert(out, *roughness, 0.4), conductor(out, *roughness, color)] {
-                // Two functions of direction, one of them not symmetric.
+                // Two functions of direction; the first is not symmetric.
                 for test in [|w: DVec3| 1.0 + w.x - 0.5 * w.y, |w: DVec3| w.z * w.z] {
                     let found = mean(&bsdf, |s| test(s.direction));
                     let wanted = integral(|w| test(w) * bsdf.response(w).unwrap().density);
@@ -105,7 +105,7 @@ fn samples_follow_densities() {
     }
 }
 
-/// Light goes both ways alike, but for what compensates for energy.
+/// The reflection is the same in both directions, apart from energy compensation.
 #[test]
 fn lobes_are_reciprocal() {
     let ggx = Ggx::of_roughness(0.5);
@@ -117,7 +117,7 @@ fn lobes_are_reciprocal() {
     }
 }
 
-/// Smooth glass sends light where Snell's law says.
+/// Smooth glass refracts light according to Snell's law.
 #[test]
 fn light_is_refracted() {
     let out = DVec3::new(0.6, 0.0, 0.8);
