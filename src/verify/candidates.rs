@@ -1,5 +1,5 @@
-//! Which spheres a ray may meet: a search tree of the checker's own, in f64 and as simple as can be, because
-//! what it judges was found by other structures.
+//! The spheres that a ray may hit, found with a search tree of the checker's own. It is in f64 and as simple as
+//! possible, because the results that it judges were found by other structures.
 
 use glam::{DVec3, Vec3};
 
@@ -9,18 +9,18 @@ use crate::geometry::math::wide;
 use crate::parallel::{both, try_map};
 use crate::scene::SceneError;
 
-/// The most spheres of a leaf.
+/// The largest number of spheres in a leaf.
 const LEAF: usize = 6;
 
-/// A tree has at most as many levels as an id has bits.
+/// The largest number of levels, because a tree has at most as many levels as an id has bits.
 const LEVELS: usize = 32;
 
-/// Subtrees of so many levels are built by one thread.
+/// Subtrees of up to this number of levels are built by one thread.
 const SMALL: u32 = 10;
 
-/// How far outside its box, in parts of the longest vector to a sphere, a kernel may take a sphere to be hit.
-/// Across the ray |f|² and r² are off by less than 13 u |f| |l| together (`sphere.rs`). Along it, a search among
-/// twenty million hostile cases found 28 u.
+/// The distance from a box, relative to the longest vector to a sphere, at which a kernel may still find that the
+/// sphere in it is hit. Across the ray, |f|² and r² together are off by less than 13 u |f| |l| (`sphere.rs`). Along it,
+/// a search among twenty million adversarial cases found 28 u.
 const BESIDE: f64 = 64.0 * U;
 
 /// A sphere in the scene's frame.
@@ -36,8 +36,8 @@ struct Node {
     high: Vec3,
 }
 
-/// A tree of boxes over halves of the spheres. A node's left child follows it, and the right one follows all
-/// of the left: nothing need be stored but boxes.
+/// A tree of boxes in which each node halves its spheres. The left child of a node comes right after it, and the right
+/// child after the whole left subtree, so that only boxes are stored.
 #[derive(Debug)]
 pub(super) struct Candidates {
     items: Vec<Candidate>,
@@ -45,7 +45,7 @@ pub(super) struct Candidates {
     levels: u32,
 }
 
-/// A node on the way, and the spheres below it.
+/// A node during the traversal, and the range of spheres below it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Visit {
     node: usize,
@@ -72,8 +72,8 @@ impl Candidates {
         (self.nodes[0].low, self.nodes[0].high)
     }
 
-    /// Offers every sphere that a ray, moved by up to `moved`, may meet before `nearest`, which the offer returns
-    /// anew.
+    /// Calls `offer` for every sphere that a ray, displaced by up to `moved`, may hit before `nearest`. The return
+    /// value of `offer` is the new `nearest`.
     pub(super) fn visit(
         &self,
         line: &Line,
@@ -88,7 +88,7 @@ impl Candidates {
             inverse: line.inverse(),
             beside: (BESIDE + 2.0 * line.bend) * longest + moved,
         };
-        // A box that is not entered is entered at infinity, which is farther.
+        // The entry of a box that is not hit is infinite, which is farther than any limit.
         nearest = nearest.min(f64::MAX);
         let mut stack = [Visit::default(); LEVELS];
         let mut top = 0;
@@ -97,10 +97,10 @@ impl Candidates {
         let mut next = Visit { node: 0, level: self.levels, start: 0, end, entry };
         loop {
             if next.entry > nearest || next.start == next.end {
-                // Nothing to be found there.
+                // Nothing nearer can be found there.
             } else if next.level == 0 {
                 let items = self.items[next.start..next.end].iter();
-                for item in items.filter(|item| slab.may_meet(line, item)) {
+                for item in items.filter(|item| slab.may_hit(line, item)) {
                     nearest = offer(item).min(f64::MAX);
                 }
             } else {
@@ -122,7 +122,7 @@ impl Candidates {
         }
     }
 
-    /// Both children, the nearer first.
+    /// Both children, the nearer one first.
     fn children(&self, slab: &Slab, Visit { node, level, start, end, .. }: Visit) -> [Visit; 2] {
         let (middle, level) = (start + (end - start) / 2, level - 1);
         let (left, right) = (node + 1, node + (2 << level));
@@ -134,7 +134,7 @@ impl Candidates {
     }
 }
 
-/// Orders the spheres, and fills the boxes of a subtree, whose first node is its root.
+/// Orders the spheres, and computes the boxes of a subtree whose root is the first node.
 fn build(items: &mut [Candidate], nodes: &mut [Node], level: u32) {
     if level == 0 {
         for Candidate { sphere: [x, y, z, radius], .. } in items {
@@ -161,12 +161,12 @@ fn build(items: &mut [Candidate], nodes: &mut [Node], level: u32) {
     root[0] = Node { low: left[0].low.min(right[0].low), high: left[0].high.max(right[0].high) };
 }
 
-/// In f32, beyond the number itself.
+/// Converts to f32 and moves each component one step outwards.
 fn rounded(v: DVec3, beyond: fn(f32) -> f32) -> Vec3 {
     Vec3::from(v.as_vec3().to_array().map(beyond))
 }
 
-/// Along which centres are farthest apart.
+/// The axis along which the centres are farthest apart.
 fn longest_axis(items: &[Candidate]) -> usize {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for Candidate { sphere: [x, y, z, _], .. } in items {
@@ -176,7 +176,7 @@ fn longest_axis(items: &[Candidate]) -> usize {
     (high - low).max_position()
 }
 
-/// The length of the longest vector from a point into a box.
+/// The length of the longest vector from a point to a point of a box.
 fn farthest(point: DVec3, node: &Node) -> f64 {
     let low = (node.low.as_dvec3() - point).abs();
     low.max((node.high.as_dvec3() - point).abs()).length()
@@ -189,8 +189,8 @@ struct Slab {
 }
 
 impl Slab {
-    /// Whether the ray comes near the sphere.
-    fn may_meet(
+    /// Whether the ray comes close enough to the sphere that a kernel may find a hit.
+    fn may_hit(
         &self,
         line: &Line,
         Candidate { sphere: [x, y, z, radius], .. }: &Candidate,
@@ -201,7 +201,7 @@ impl Slab {
         foot.length_squared() <= (f64::from(*radius) + self.beside).powi(2)
     }
 
-    /// Where the ray enters the box, made wider by `beside` on all sides; infinity if it does not.
+    /// The distance at which the ray enters the box, widened by `beside` on all sides; infinity if it misses.
     fn entry(&self, node: &Node) -> f64 {
         let low = (node.low.as_dvec3() - self.beside - self.origin) * self.inverse;
         let high = (node.high.as_dvec3() + self.beside - self.origin) * self.inverse;

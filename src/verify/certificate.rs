@@ -1,14 +1,14 @@
-//! What the checker found.
+//! Certificates: the results of the checker.
 
 use std::fmt;
 
 use super::upload::UploadError;
 use super::violation::Violation;
 
-/// What is known of a pixel.
+/// The verdict about a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// There is one legal answer, and the device gave it.
+    /// There is a single legal answer, and the device gave it.
     Decided,
     /// Both a sphere and a miss are legal, and the device gave one of them.
     Silhouette,
@@ -19,10 +19,10 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// All of them, in the order of reports.
+    /// All verdicts, in the order of reports.
     pub const ALL: &'static [Self] = &[Self::Decided, Self::Silhouette, Self::Tie, Self::Violation];
 
-    /// What it is called in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -34,7 +34,7 @@ impl Verdict {
     }
 }
 
-/// At most so many violations are kept in words; all are counted.
+/// The largest number of violations that are kept; all are counted.
 pub(super) const KEPT: usize = 1000;
 
 /// Whether a device rendered a picture as a conforming WGSL implementation may.
@@ -42,36 +42,36 @@ pub(super) const KEPT: usize = 1000;
 pub struct Certificate {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Of every pixel, row by row from the top.
+    /// The verdict about every pixel, row by row from the top.
     pub verdicts: Vec<Verdict>,
-    /// The first of them, in the order of pixels.
+    /// The first violations, in the order of pixels.
     pub violations: Vec<Violation>,
-    /// In how many pixels the picture of [`Headless::render`](crate::gpu::Headless::render) has other values than the
-    /// recording's, which then are judged by themselves; `None` if there is no such picture.
+    /// The number of pixels in which the picture of [`Headless::render`](crate::gpu::Headless::render) differs from the
+    /// recording's picture, and which are judged separately; `None` if there is no such picture.
     pub rendered_otherwise: Option<usize>,
-    /// What the device was given is not what was asked for: then nothing that it made of it counts.
+    /// A mismatch between the data on the device and the requested data. If there is one, no pixel is judged.
     pub upload: Option<UploadError>,
-    /// Of all hits, how far the distance is at most from the middle of what is legal, in parts of half the
-    /// width; at most 1 if it is legal.
+    /// The largest deviation of a hit's distance from the middle of its legal interval, relative to half the width of
+    /// the interval; at most 1 if legal.
     pub worst_depth: f64,
-    /// The same of normals, as distances from the exact one.
+    /// The largest deviation of a normal from the exact one, relative to its bound; at most 1 if legal.
     pub worst_normal: f64,
 }
 
 impl Certificate {
-    /// How many pixels have a verdict.
+    /// The number of pixels with a verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.verdicts.iter().filter(|of_pixel| **of_pixel == verdict).count()
     }
 
-    /// The pixels with one legal answer that was given, of all.
+    /// The fraction of pixels with a single legal answer, which the device gave.
     #[must_use]
     pub fn decided_fraction(&self) -> f64 {
         self.count(Verdict::Decided) as f64 / self.verdicts.len().max(1) as f64
     }
 
-    /// Whether every pixel is as it may be.
+    /// Whether the uploaded data are correct and every pixel is legal.
     #[must_use]
     pub fn is_legal(&self) -> bool {
         self.upload.is_none() && self.violations.is_empty()
@@ -79,7 +79,7 @@ impl Certificate {
 }
 
 impl fmt::Display for Certificate {
-    /// A short table, and the first violation.
+    /// Writes a short table and the first violation.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pixels = self.verdicts.len().max(1) as f64;
         for verdict in Verdict::ALL {

@@ -1,4 +1,4 @@
-//! A scene, ready to judge recordings.
+//! The checker of recordings of a scene.
 
 use super::camera::CameraModel;
 use super::candidates::Candidates;
@@ -12,17 +12,17 @@ use super::violation::Violation;
 use crate::parallel::{map_parts, ranges};
 use crate::scene::{Scene, SceneError};
 
-/// How many pixels a thread takes at a time.
+/// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 1 << 12;
 
-/// Judges what devices make of a scene.
+/// Judges recordings of a scene.
 #[derive(Debug)]
 pub struct Checker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) candidates: Candidates,
 }
 
-/// What was found in some pixels.
+/// The results for a range of pixels.
 #[derive(Default)]
 struct JudgedPixels {
     verdicts: Vec<Verdict>,
@@ -33,21 +33,21 @@ struct JudgedPixels {
 }
 
 impl Checker<'_> {
-    /// The most bytes that it takes for a sphere.
+    /// The largest number of bytes that the checker needs for each sphere.
     pub const BYTES_PER_SPHERE: u64 = 40;
 }
 
 impl<'a> Checker<'a> {
-    /// Prepares a scene: 24 bytes a sphere, and 8 to 16 of boxes.
+    /// Prepares a scene, which takes 24 bytes for each sphere, and 8 to 16 for boxes.
     ///
     /// # Errors
-    /// If there is no memory for it.
+    /// If there is not enough memory.
     pub fn new(scene: &'a Scene) -> Result<Self, SceneError> {
         Ok(Self { scene, candidates: Candidates::new(scene.spheres())? })
     }
 
-    /// Every answer that a conforming device may give to a ray of exactly these numbers, in the scene's frame;
-    /// the direction is of about unit length.
+    /// Every answer that a conforming device may give for a ray with exactly these numbers, in the scene's frame. The
+    /// length of the direction must be about one.
     #[must_use]
     pub fn legal_hits(&self, origin: [f32; 3], direction: [f32; 3]) -> LegalHits {
         let mut legal = LegalHits::default();
@@ -55,7 +55,7 @@ impl<'a> Checker<'a> {
         legal
     }
 
-    /// Judges every pixel.
+    /// Judges every pixel of a recording.
     #[must_use]
     pub fn certify(&self, recording: &Recording) -> Certificate {
         let Recording { camera, uploaded, film, .. } = recording;
@@ -99,7 +99,7 @@ fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>, width: u32) -> J
         JudgedPixels { verdicts: Vec::with_capacity(range.len()), ..JudgedPixels::default() };
     let mut legal = LegalHits::default();
     for index in range {
-        // A film's sides are u32.
+        // The sides of a film are u32.
         let pixel = [(index % width as usize) as u32, (index / width as usize) as u32];
         let judged = check.judge(index, pixel, &mut legal);
         let rendered = check.judge_rendered(index, pixel, &mut legal);

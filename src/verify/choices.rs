@@ -1,25 +1,25 @@
-//! Decisions of a kernel that bounds leave open: either way is legal. A stage is followed once for every
-//! combination of them, until one leads to what the device did.
+//! Decisions of a kernel that error bounds leave open, so that both outcomes are legal. A stage is evaluated once for
+//! every combination of outcomes, until one combination leads to the device's result.
 
-/// More combinations are not tried.
-const MOST: u32 = 512;
+/// The largest number of combinations that are tried.
+const MAX: u32 = 512;
 
-/// One combination after another.
+/// Enumerates the combinations of outcomes.
 #[derive(Debug, Default)]
 pub(super) struct Choices {
-    /// Of each open decision in turn, which way is gone, and how many there are.
+    /// For each open decision in turn: the current outcome, and the number of outcomes.
     taken: Vec<[u32; 2]>,
     next: usize,
     tried: u32,
 }
 
 impl Choices {
-    /// What was decided, or one way after the other.
+    /// Returns a certain outcome, or for an open decision the outcome of the current combination.
     pub(super) fn decide(&mut self, certain: Option<bool>) -> bool {
         certain.unwrap_or_else(|| self.choose(2) == 1)
     }
 
-    /// One of the whole numbers from one to another, which are not many.
+    /// Returns one of the whole numbers from `low` to `high`, of which there must be few.
     pub(super) fn pick(&mut self, [low, high]: [f64; 2]) -> f64 {
         let count = (high - low).clamp(0.0, 64.0) as u32 + 1;
         if count == 1 { low } else { low + f64::from(self.choose(count)) }
@@ -29,33 +29,33 @@ impl Choices {
         if self.next == self.taken.len() {
             self.taken.push([0, count]);
         }
-        let [way, _] = self.taken[self.next];
+        let [outcome, _] = self.taken[self.next];
         self.next += 1;
-        way
+        outcome
     }
 
-    /// Goes on to the next combination; false if there is none.
+    /// Moves on to the next combination; false if there is none.
     pub(super) fn advance(&mut self) -> bool {
         self.taken.truncate(self.next);
         self.next = 0;
         self.tried += 1;
-        while let Some([way, count]) = self.taken.pop() {
-            if way + 1 < count {
-                self.taken.push([way + 1, count]);
-                return self.tried < MOST;
+        while let Some([outcome, count]) = self.taken.pop() {
+            if outcome + 1 < count {
+                self.taken.push([outcome + 1, count]);
+                return self.tried < MAX;
             }
         }
         false
     }
 
-    /// Whether anything was open.
+    /// Whether any decision was open.
     pub(super) fn were_open(&self) -> bool {
         self.tried > 0 || self.next > 0
     }
 
-    /// Whether combinations were left out.
+    /// Whether combinations were left out because there are too many.
     pub(super) fn were_too_many(&self) -> bool {
-        self.tried >= MOST
+        self.tried >= MAX
     }
 }
 
@@ -69,7 +69,7 @@ mod tests {
         let mut seen = Vec::new();
         loop {
             let first = choices.decide(None);
-            // Only one way leads to a second decision.
+            // Only one outcome leads to a second decision.
             let second = if first { choices.pick([3.0, 5.0]) } else { 0.0 };
             assert!(choices.decide(Some(true)));
             seen.push((first, second));

@@ -1,18 +1,18 @@
-//! The nearest hit of a ray: every answer that a conforming device may give.
+//! The nearest hit of a ray: the set of answers that a conforming device may give.
 
 use super::candidates::{Candidate, Candidates};
 use super::line::Line;
 use super::rounding::Interval;
 use super::sphere::{Slack, SphereTest};
 
-/// What a device may answer to a ray.
+/// The legal answers of a device to a ray.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LegalHits {
-    /// The spheres that may be the nearest, in no order.
+    /// The spheres that may be the nearest, in no particular order.
     pub spheres: Vec<LegalHit>,
-    /// Some sphere is hit for certain, and no farther away than this; or infinity.
+    /// An upper limit for the distance: a sphere is certainly hit at or before it. Infinity if no hit is certain.
     pub limit: f64,
-    /// Whether it may be that none is hit.
+    /// Whether a miss is legal.
     pub miss: bool,
 }
 
@@ -21,9 +21,9 @@ pub struct LegalHits {
 pub struct LegalHit {
     /// Index in input order.
     pub id: u32,
-    /// Distances to its near side.
+    /// Legal distances to the near side.
     pub near: Option<Interval>,
-    /// Distances to its far side, if the ray may start inside.
+    /// Legal distances to the far side, if the ray may start inside.
     pub far: Option<Interval>,
     pub(super) sphere: [u32; 4],
 }
@@ -33,7 +33,7 @@ impl LegalHit {
         [self.near, self.far].into_iter().flatten()
     }
 
-    /// The interval in which a distance lies.
+    /// The interval that contains a distance.
     #[must_use]
     pub fn crossing_at(&self, t: f64) -> Option<Interval> {
         self.crossings().find(|crossing| crossing.contains(t))
@@ -49,38 +49,38 @@ impl LegalHit {
 }
 
 impl LegalHits {
-    /// How many answers there are, apart from distances.
+    /// The number of legal answers, regardless of distances.
     #[must_use]
     pub fn count(&self) -> usize {
         self.spheres.len() + usize::from(self.miss)
     }
 
-    /// The legal hit of a sphere.
+    /// The legal hit of the sphere with this index.
     #[must_use]
     pub fn of(&self, id: u32) -> Option<&LegalHit> {
         self.spheres.iter().find(|hit| hit.id == id)
     }
 
-    /// Whether the answer may be that this sphere is hit, at this distance.
+    /// Whether a hit of this sphere at this distance is legal.
     #[must_use]
     pub fn allows(&self, id: u32, t: f64) -> bool {
         t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())
     }
 
-    /// Only a miss; keeps the memory.
+    /// Resets to a miss; keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         self.spheres.clear();
         self.limit = f64::INFINITY;
         self.miss = true;
     }
 
-    /// Finds them anew; keeps the memory.
+    /// Computes the legal hits of a ray; keeps the allocated memory.
     pub(super) fn find(&mut self, candidates: &Candidates, line: &Line) {
         self.clear();
         self.find_nearer(candidates, line, Slack::default(), |_| false);
     }
 
-    /// Finds what may be nearer than what is known, but for spheres that are left out.
+    /// Adds the hits that may be nearer than those already known, except of spheres for which `is_left_out` is true.
     pub(super) fn find_nearer(
         &mut self,
         candidates: &Candidates,
@@ -107,9 +107,10 @@ impl LegalHits {
         self.drop_copies();
     }
 
-    /// Of spheres that are the same to the bit, kernels find the same distance to the bit, because they have one
-    /// sphere test; and of equal distances the smaller id wins. This is a promise of this crate's. WGSL does not
-    /// promise that two kernels compile it alike, as those of two bricks.
+    /// Of spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
+    /// equal spheres, to the bit, because they share one sphere test, and at equal distances the smaller id wins. This
+    /// is a guarantee of this crate: WGSL does not guarantee that two kernels, such as those of two bricks, compile the
+    /// test in the same way.
     fn drop_copies(&mut self) {
         if self.spheres.len() > 1 {
             self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));
@@ -137,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// Every sphere is tried.
+    /// The reference, which tests every sphere.
     fn without_search(spheres: &[[f32; 4]], line: &Line) -> LegalHits {
         let mut legal = LegalHits::default();
         legal.clear();
@@ -166,7 +167,7 @@ mod tests {
         Vec3::from([0; 3].map(|_| random.f32() * 2.0 - 1.0))
     }
 
-    /// Of all sizes, some of them twice.
+    /// Spheres of various sizes, some of them twice.
     fn spheres(random: &mut Rng, scale: f32, count: usize) -> Vec<[f32; 4]> {
         let decades = random.f32() * 6.0;
         let mut spheres: Vec<[f32; 4]> = (0..count)
@@ -191,7 +192,7 @@ mod tests {
             let spheres = spheres(&mut random, scale, 1 << (round % 10));
             let candidates = Candidates::new(&spheres).unwrap();
             for _ in 0..300 {
-                // At a silhouette, half of them where a box ends, and along its side.
+                // Rays near a silhouette; half of them at the end of a box, along its side.
                 let [x, y, z, r] = spheres[random.usize(0..spheres.len())];
                 let mut outward = point(&mut random).normalize_or(Vec3::X);
                 if random.bool() {

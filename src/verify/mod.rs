@@ -1,28 +1,29 @@
-//! Decides whether a picture is one that a conforming device may have made.
+//! The checker decides whether a conforming device may have rendered a picture.
 //!
-//! A GPU's f32 arithmetic is not exact, and WGSL leaves it free in many ways: either neighbour in rounding,
-//! fused or not, in any order. So two devices differ, and comparing pictures with a tolerance proves nothing.
-//! Here instead, from the very numbers that the device was given, a running error bound in f64 gives the set
-//! of answers that a conforming implementation of the kernels may come to: which spheres may be the nearest and
-//! at which distances, whether a miss is possible, which normals, depths and colours follow. A pixel is
-//! *decided* if that set has one element, up to distances within their bounds.
+//! The f32 arithmetic of a GPU is not exact, and WGSL gives it freedom: a result may be rounded to either neighbour,
+//! operations may be fused, and sums may be evaluated in any order. Devices therefore differ, and comparing pictures
+//! with a tolerance proves nothing. The checker instead starts from the very numbers that the device was given. With
+//! running error bounds in f64, it computes the set of answers that a conforming implementation of the kernels may
+//! give: which spheres may be the nearest and at which distances, whether a miss is possible, and which normals, depths
+//! and colours follow. A pixel is *decided* if that set has a single element, apart from distances within their bounds.
 //!
-//! Stages are judged one by one, each given what the device recorded of the one before, so that errors do not
-//! add up: the camera's ray, the nearest hit, and what is made of it. The checker shares no code with the
-//! kernels' twins and knows nothing of the structure that found the spheres.
+//! Stages are judged separately, each from the device's recorded result of the one before, so that errors do not
+//! accumulate: the camera's ray, the nearest hit, and the shading. The checker shares no code with the twins of the
+//! kernels, and does not use the structure that found the spheres.
 //!
-//! The picture of [`Headless::render`](crate::gpu::Headless::render) comes from kernels that keep no rays. It is
-//! compared with the recording's, value by value; a pixel in which it is another is judged by itself, against every ray
-//! that a device may make of that pixel.
+//! The picture of [`Headless::render`](crate::gpu::Headless::render) comes from kernels that do not record rays. It is
+//! compared with the recording's picture, value by value. A pixel that differs is judged separately, against every ray
+//! that a device may compute for that pixel.
 //!
-//! What is assumed beside WGSL's table of accuracies: `fence` in `shaders/math/fence.wgsl` keeps a compiler from
-//! looking through it, and the square root of zero is zero: both of which
-//! [`Headless::self_test`](crate::gpu::Headless::self_test) checks. And of spheres that are the same to the bit the
-//! smallest id wins, also where they are in different bricks: all kernels of a picture find the same for the same.
+//! In addition to WGSL's table of accuracies, the checker assumes that `fence` in `shaders/math/fence.wgsl` stops a compiler
+//! from optimizing across it, and that the square root of zero is zero;
+//! [`Headless::self_test`](crate::gpu::Headless::self_test) checks both. It also assumes that among spheres that are
+//! equal to the bit the smallest id wins, even if they are in different bricks, because all kernels of a picture
+//! compute the same result from the same numbers.
 //!
-//! Paths of lit pictures are judged in the same way, dispatch by dispatch ([`Checker::certify_paths`]). There a number
-//! that stands in two places of a kernel's text, and is fenced, is taken to be the same in both; and products of sums
-//! are taken not to be multiplied out.
+//! The paths of pictures with lighting are judged in the same way, dispatch by dispatch ([`Checker::certify_paths`]).
+//! There the checker also assumes that a fenced number that a kernel's text computes in two places is the same in both,
+//! and that products of sums are not expanded.
 //!
 //! ```no_run
 //! # use pinhole::{RenderSettings, Scene, View, gpu::{Headless, HeadlessOptions}};

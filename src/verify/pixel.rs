@@ -1,4 +1,4 @@
-//! One pixel, stage by stage.
+//! The check of one pixel, stage by stage.
 
 use super::camera::{CameraModel, EnteredRay};
 use super::certificate::Verdict;
@@ -13,19 +13,19 @@ use super::violation::ViolationKind;
 use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
 
-/// What pixels are judged by.
+/// The data with which pixels are judged.
 pub(super) struct PixelCheck<'a> {
     pub(super) checker: &'a Checker<'a>,
     pub(super) model: CameraModel,
     pub(super) recording: &'a Recording,
 }
 
-/// A pixel that is as it may be.
+/// The result for a legal pixel.
 pub(super) struct Judged {
     pub(super) verdict: Verdict,
-    /// How far the distance is from the middle of what is legal, in parts of half the width.
+    /// The deviation of the distance from the middle of its legal interval, relative to half the width of the interval.
     pub(super) depth: f64,
-    /// The same of the normal.
+    /// The deviation of the normal from the exact one, relative to its bound.
     pub(super) normal: f64,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// A picture that is judged has all layers.
+    /// The layers of a pixel; a picture that is judged has all of them.
     pub(super) fn of(image: &Image, index: usize) -> Self {
         Self {
             color: image.color()[index],
@@ -51,7 +51,7 @@ impl Layers {
 }
 
 impl PixelCheck<'_> {
-    /// The first stage that went wrong is the error. `legal` is memory that is used again.
+    /// Judges a pixel; the error is the first stage with an illegal result. `legal` is memory that is reused.
     pub(super) fn judge(
         &self,
         index: usize,
@@ -78,7 +78,7 @@ impl PixelCheck<'_> {
         check_ray(&entered, &ray)?;
 
         legal.clear();
-        if entered.may_meet_box {
+        if entered.may_hit_box {
             legal.find(&self.checker.candidates, &line);
             legal.miss |= entered.may_miss_box;
         }
@@ -98,8 +98,8 @@ impl PixelCheck<'_> {
         if !legal.allows(id, t.into()) {
             return Err(illegal(legal));
         }
-        let wall = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
-        let depth = wall.map_or(0.0, |crossing| crossing.fraction(t.into()));
+        let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
+        let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
         let normal = self.check_hit(&layers, &entered, &line, depths, id)?;
         Ok(Judged { verdict, depth, normal })
@@ -128,7 +128,7 @@ impl PixelCheck<'_> {
         check_color(layers.color, background.map(exactly))
     }
 
-    /// How far the normal is from the exact one, of how far it may be.
+    /// Judges the layers of a hit. Returns the deviation of the normal from the exact one, relative to its bound.
     fn check_hit(
         &self,
         layers: &Layers,
@@ -146,8 +146,8 @@ impl PixelCheck<'_> {
         self.check_shading(layers, line, entered.slack(), entered.direction)
     }
 
-    /// Judges normal and colour, of a sphere that was hit. How far the normal is from the exact one, of how far it
-    /// may be.
+    /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its
+    /// bound.
     pub(super) fn check_shading(
         &self,
         layers: &Layers,

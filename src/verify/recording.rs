@@ -1,74 +1,74 @@
-//! What a device was given, and what it made of it.
+//! Recordings: the data that a device was given, and its results.
 
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraKind, CameraVectors};
 use crate::image::Image;
 use crate::render::PrimarySettings;
 
-/// The picture of a scene as a device rendered it, the rays and hits that it got there by, and the numbers
-/// that it was given. Beside the scene, this is all that the checker needs.
+/// A recording: a picture as a device rendered it, the rays and hits that led to it, and the numbers that the device
+/// was given. The checker needs only this and the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// The camera that was asked for.
+    /// The requested camera.
     pub camera: RequestedCamera,
-    /// What was made of it for the device.
+    /// The numbers of the view on the device.
     pub uploaded: UploadedView,
-    /// The picture's size.
+    /// The size of the picture.
     pub film: Film,
     /// How hits and misses become colours.
     pub primary: PrimarySettings,
-    /// Of every pixel, as in [`Image`].
+    /// The ray and hit of every pixel, in the order of [`Image`].
     pub pixels: Vec<TracedPixel>,
-    /// All layers.
+    /// The picture with all layers.
     pub image: Image,
-    /// The picture that the device makes of the same view when nothing is recorded.
+    /// The picture of the same view that the device renders without recording.
     pub rendered: Rendered,
 }
 
-/// A picture of the same view by the kernels that keep no rays, as [`Headless::render`](crate::gpu::Headless::render)
-/// makes it. The kernels are others, and so may round otherwise.
+/// The picture of the same view from kernels that do not record rays, as
+/// [`Headless::render`](crate::gpu::Headless::render) renders it. These are different kernels, so rounding may differ.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Rendered {
-    /// There is none.
+    /// There is no such picture.
     #[default]
     None,
-    /// It has the values of the recording's picture, in all layers.
+    /// All layers equal those of the recording's picture.
     Same,
-    /// It has others somewhere. All layers.
+    /// Some value differs from the recording's picture. Holds all layers.
     Other(Box<Image>),
 }
 
 impl Recording {
-    /// Takes a picture of the same view by kernels that keep no rays, and keeps it if it is another.
+    /// Compares with a picture of the same view from kernels that do not record rays, and keeps it if it differs.
     pub fn compare(&mut self, rendered: Image) {
         let is_same = rendered == self.image;
         self.rendered = if is_same { Rendered::Same } else { Rendered::Other(Box::new(rendered)) };
     }
 }
 
-/// A camera, in f64 and in the world.
+/// A camera in f64 and in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RequestedCamera {
-    /// Which one.
+    /// The kind of camera.
     pub kind: CameraKind,
-    /// Its vectors.
+    /// The vectors of the camera.
     pub vectors: CameraVectors,
 }
 
 impl RequestedCamera {
-    /// What a camera says of itself.
+    /// The kind and the vectors of a camera.
     #[must_use]
     pub fn of(camera: &dyn Camera) -> Self {
         Self { kind: camera.kind(), vectors: camera.vectors() }
     }
 }
 
-/// The numbers of a view that kernels compute with, in the scene's frame.
+/// The numbers of a view with which kernels compute, in the scene's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UploadedView {
-    /// The camera, moved by `advance` times `forward`.
+    /// The position of the camera, moved by `advance` times `forward`.
     pub origin: [f32; 3],
-    /// See `origin`.
+    /// The factor of `forward` in `origin`.
     pub advance: f32,
     /// See [`CameraVectors::right`].
     pub right: [f32; 3],
@@ -78,19 +78,19 @@ pub struct UploadedView {
     pub forward: [f32; 3],
     /// See [`CameraVectors::numbers`].
     pub numbers: [f32; 3],
-    /// The corner of the box that rays are moved to, with the smallest coordinates.
+    /// The corner, with the smallest coordinates, of the box to which rays are moved.
     pub scene_min: [f32; 3],
-    /// The opposite corner.
+    /// The corner of that box with the largest coordinates.
     pub scene_max: [f32; 3],
 }
 
-/// The distance of a miss: kernels have no infinity.
+/// The distance of a miss, because kernels have no infinity.
 pub const NO_HIT: f32 = 1e30;
 
-/// The ray that a device traced for a pixel, and its answer.
+/// The ray that a device traced for a pixel, and its hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TracedPixel {
-    /// The ray; `None` where the device was told that no ray can meet the scene's box. Then there is no hit.
+    /// The ray; `None` if the device was told that no ray can hit the scene's box. The pixel is then a miss.
     pub ray: Option<TracedRay>,
     /// Distance along the ray to the nearest sphere, or [`NO_HIT`].
     pub t: f32,
@@ -98,13 +98,13 @@ pub struct TracedPixel {
     pub id: u32,
 }
 
-/// A ray that a device traced, in the scene's frame, from where it enters the scene's box.
+/// A ray that a device traced, in the scene's frame, starting where it enters the scene's box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TracedRay {
-    /// Where it starts.
+    /// The start of the ray.
     pub origin: [f32; 3],
-    /// Of unit length, up to rounding.
+    /// The direction; unit length, up to rounding.
     pub direction: [f32; 3],
-    /// How far the origin is from the camera.
+    /// The distance of the start from the camera.
     pub distance: f32,
 }

@@ -1,5 +1,5 @@
-//! A pixel of a picture whose rays were not kept: whether there is a ray of that pixel, among all that a device may make,
-//! by which it is legal.
+//! The check of a pixel whose ray was not recorded: whether the pixel is legal for some ray that a device may compute
+//! for it.
 
 use super::camera::AnyRay;
 use super::hit::LegalHits;
@@ -11,7 +11,8 @@ use super::violation::ViolationKind;
 use crate::image::NO_ID;
 
 impl PixelCheck<'_> {
-    /// `None` where nothing was rendered beside the recording, or with the same values.
+    /// Judges a pixel of the picture without recording; `None` if there is no such picture, or if the pixel equals the
+    /// recorded one.
     pub(super) fn judge_rendered(
         &self,
         index: usize,
@@ -37,7 +38,7 @@ impl PixelCheck<'_> {
     ) -> Result<(), ViolationKind> {
         let ray = self.model.ray(pixel).any(&self.model);
         legal.clear();
-        if ray.may_meet_box {
+        if ray.may_hit_box {
             legal.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
             legal.miss |= ray.may_miss_box;
         }
@@ -59,23 +60,23 @@ impl PixelCheck<'_> {
 }
 
 impl PixelCheck<'_> {
-    /// The depths of a sphere that is met by one wall for certain: bounded more closely, because they do not depend on
-    /// where the ray enters the scene's box.
+    /// The legal depths of a sphere of which the ray certainly hits one side: a tighter bound, because they do not
+    /// depend on where the ray enters the scene's box.
     fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
         let sphere = *self.checker.scene.spheres().get(id as usize)?;
         let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
         let test = SphereTest::new(&ray.line, sphere, ray.slack_of_distance)?.as_the_kernel();
         let closer = test.roots();
-        let wall = match ((roots.near, roots.far), (closer.near, closer.far)) {
-            ((Some(_), None), (Some(wall), None)) | ((None, Some(_)), (None, Some(wall))) => wall,
+        let side = match ((roots.near, roots.far), (closer.near, closer.far)) {
+            ((Some(_), None), (Some(side), None)) | ((None, Some(_)), (None, Some(side))) => side,
             _ => return None,
         };
-        Some(ray.depths(wall))
+        Some(ray.depths(side))
     }
 }
 
 impl AnyRay {
-    /// Distances from the camera: one sum.
+    /// Distances from the camera; the device computes them with one sum.
     fn depths(&self, Interval { low, high }: Interval) -> Interval {
         let (near, far) = (low + self.distance.low, high + self.distance.high);
         Interval { low: near - PAD * U * near.abs(), high: far + PAD * U * far.abs() }
@@ -83,9 +84,9 @@ impl AnyRay {
 }
 
 impl LegalHits {
-    /// Counts distances from the camera.
+    /// Converts distances along the line to distances from the camera.
     fn start_from(&mut self, ray: &AnyRay) {
-        let moved = |wall| ray.depths(wall);
+        let moved = |side| ray.depths(side);
         for hit in &mut self.spheres {
             (hit.near, hit.far) = (hit.near.map(moved), hit.far.map(moved));
         }

@@ -1,5 +1,5 @@
-//! From a hit to a pixel's layers: what `shaders/primary/shade.wgsl` may write. It makes the ray and the sphere test
-//! anew, so that both may differ from those of the trace by a little.
+//! The check of shading: the layers that `shaders/primary/shade.wgsl` may write for a hit. The shader computes the ray and the
+//! sphere test again, so both may differ slightly from those of the trace.
 
 use glam::DVec3;
 
@@ -8,45 +8,45 @@ use super::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use super::sphere::{Slack, SphereTest};
 use crate::render::Shading;
 
-/// The unit normals that a device may write: all within a distance of one of these.
+/// The unit normals that a device may write: those within a distance of one of these.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LegalNormals {
-    walls: [Option<(DVec3, f64)>; 2],
+    sides: [Option<(DVec3, f64)>; 2],
 }
 
 impl LegalNormals {
-    /// Of a sphere and a ray, or one that is nearly the same.
+    /// The legal normals of a sphere for a ray, or for a ray within `slack` of it.
     pub(super) fn new(line: &Line, sphere: [f32; 4], slack: Slack) -> Self {
         let Some(test) = SphereTest::new(line, sphere, slack) else {
             return Self::default();
         };
-        let wall = |is_behind: bool| {
+        let side = |is_behind: bool| {
             let chord = Chord { half: test.half, exact: test.exact_half(), is_behind };
             normal_at(&test, line, chord, sphere[3], slack)
         };
         Self {
-            walls: [
-                test.may_start_outside().then(|| wall(false)),
-                test.may_start_inside().then(|| wall(true)),
+            sides: [
+                test.may_start_outside().then(|| side(false)),
+                test.may_start_inside().then(|| side(true)),
             ],
         }
     }
 
-    /// How far a normal is from the nearest that is exact, of how far it may be; above 1 it is not legal.
+    /// The distance of a normal from the nearest exact one, relative to its bound; above 1 it is not legal.
     pub(super) fn fraction(&self, normal: DVec3) -> f64 {
         let fractions =
-            self.walls.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
-        // The minimum of two numbers ignores one that is none.
+            self.sides.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
+        // `f64::min` would ignore NaN.
         fractions.reduce(|a, b| if a < b { a } else { b }).unwrap_or(f64::INFINITY)
     }
 
-    /// The exact ones, and by how much each may be missed.
+    /// The exact normals, and the bounds of their errors.
     pub(super) fn crossings(&self) -> impl Iterator<Item = (DVec3, f64)> {
-        self.walls.into_iter().flatten()
+        self.sides.into_iter().flatten()
     }
 }
 
-/// Half of what a sphere cuts out of a ray, and whether the hit is at the far end of it.
+/// Half of the chord that a sphere cuts out of a ray, and whether the hit is at the far end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
     pub(super) half: Interval,
@@ -54,7 +54,7 @@ pub(super) struct Chord {
     pub(super) is_behind: bool,
 }
 
-/// The exact normal at one end of a chord, and how far a device's may be from it.
+/// The exact normal at one end of a chord, and the bound of a device's error.
 pub(super) fn normal_at(
     test: &SphereTest,
     line: &Line,
@@ -62,7 +62,7 @@ pub(super) fn normal_at(
     radius: f32,
     slack: Slack,
 ) -> (DVec3, f64) {
-    // The legs of a triangle whose hypotenuse is the radius, nearly.
+    // The normal is the hypotenuse of a triangle, approximately as long as the radius.
     let Chord { half, exact, is_behind } = chord;
     let from_foot = if is_behind { exact } else { -exact };
     let half_error = (half.high - exact).max(exact - half.low);
@@ -81,13 +81,13 @@ pub(super) fn normal_at(
     (normal, (PAD * turned + 2.0 * unit).min(2.0 + unit))
 }
 
-/// The depths that may be written for a hit at `t` of a ray that starts `distance` away: their sum.
+/// The legal depths of a hit at `t` of a ray that starts at `distance` from the camera: the sum of both.
 pub(super) fn legal_depth(distance: f32, t: f32) -> Interval {
     let sum = f64::from(distance) + f64::from(t);
     Interval::around(sum, PAD * U * sum.abs() + 2.0 * FLUSH)
 }
 
-/// The colours that may be written for a normal that was written.
+/// The legal colours for the normal that the device wrote.
 pub(super) fn legal_color(
     shading: Shading,
     color: [f32; 3],
@@ -111,7 +111,7 @@ pub(super) fn legal_color(
     })
 }
 
-/// A number that is handed through; or zero, if it is below the normal ones.
+/// A number that is passed on unchanged, or zero if it is subnormal.
 pub(super) fn exactly(value: f32) -> Interval {
     let value = f64::from(value);
     let low = if value.abs() < FLUSH { value.min(0.0) } else { value };

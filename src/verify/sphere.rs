@@ -1,10 +1,10 @@
-//! One ray against one sphere: everything that `intersect_sphere` in `shaders/scene/sphere.wgsl` may answer.
+//! The check of the sphere test: every result of `intersect_sphere` in `shaders/scene/sphere.wgsl` that is legal.
 //!
-//! The kernel's four lines that end in a fence are followed in f64, each with a bound of what its f32 value may
-//! differ by. With the vector l to the centre, b = l·d and the foot vector f = l − b d, the rounding of l and of
-//! f itself is an error δ of f, and that of b is one along d, which is nearly perpendicular to f: so of
-//! |f|² it changes 2 Δb f·d = 2 Δb b (1 − d²), which is of second order, and a ray far from a small
-//! sphere still knows whether it hits.
+//! The four lines of the kernel that end in a fence are evaluated in f64, each with a bound of the error of its f32
+//! value. With the vector l to the centre, b = l·d and the foot vector f = l − b d, the rounding errors of l and of f
+//! itself are an error δ of f, and that of b is an error along d, which is nearly perpendicular to f. It changes |f|²
+//! by 2 Δb f·d = 2 Δb b (1 − d²), which is of second order, so that the result is still reliable for a ray that starts
+//! far from a small sphere.
 
 use glam::DVec3;
 
@@ -12,50 +12,50 @@ use super::line::Line;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
 use crate::geometry::math::wide;
 
-/// How far a ray may be from the one that is followed, because another kernel made it anew.
+/// How far a ray may be from the one that is checked, because another kernel computed it again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slack {
-    /// Across.
+    /// The distance across the ray.
     pub(super) across: f64,
-    /// Along.
+    /// The distance along the ray.
     pub(super) along: f64,
-    /// Of its direction.
+    /// The difference of the directions.
     pub(super) direction: f64,
 }
 
-/// The intermediates of a test, with their bounds.
+/// The intermediate results of a sphere test, with error bounds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SphereTest {
     /// The distance to the foot point.
     b: f64,
     b_error: f64,
-    /// From the foot point to the centre.
+    /// The vector from the foot point to the centre.
     pub(super) foot: DVec3,
-    /// A bound of the error's length.
+    /// A bound of the length of its error.
     pub(super) foot_error: f64,
     /// The square of half the chord.
     discriminant: f64,
     error: f64,
     /// Half the chord.
     pub(super) half: Interval,
-    /// The product of the distances to both walls.
+    /// The product of the distances to both sides.
     c: f64,
     c_error: f64,
     bend: f64,
 }
 
-/// What the test may answer.
+/// The legal results of a sphere test.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Roots {
-    /// Distances to the near side.
+    /// Legal distances to the near side.
     pub(super) near: Option<Interval>,
-    /// Distances to the far side, from inside.
+    /// Legal distances to the far side, from inside.
     pub(super) far: Option<Interval>,
     pub(super) may_miss: bool,
 }
 
 impl SphereTest {
-    /// `None` for a ray that cannot hit.
+    /// Evaluates the test; `None` for a ray that cannot hit the sphere.
     pub(super) fn new(line: &Line, [x, y, z, radius]: [f32; 4], slack: Slack) -> Option<Self> {
         let d = line.direction.abs();
         let l = wide([x, y, z]) - line.origin;
@@ -69,7 +69,7 @@ impl SphereTest {
         let b_terms = l.abs().dot(d);
         let b_rounding = l_error.dot(d);
         let b_error = b_rounding + gamma(3) * (b_terms + b_rounding) + 8.0 * FLUSH;
-        // The two roundings of f, from whatever l and b were before.
+        // The two roundings of f itself, after those of l and b.
         let product = U * (b.abs() + b_error) * d;
         let difference = U * (1.0 + U) * (foot.abs() + l_error + (b_error + U * b.abs()) * d);
         let across = l_error + product + difference + 3.0 * FLUSH;
@@ -79,7 +79,7 @@ impl SphereTest {
             + 2.0 * b_error * b.abs() * line.bend
             + foot_errors.length_squared()
             + (2.0 * (foot2.sqrt() + foot_errors.length()) + beside) * beside;
-        // An exact answer need not know that the kernel takes the direction's length to be one: the last term.
+        // The last term: an exact answer need not assume, as the kernel does, that the direction has unit length.
         let error = PAD
             * (square_error
                 + gamma(4) * (r2 + foot2 + square_error)
@@ -116,28 +116,28 @@ impl SphereTest {
         })
     }
 
-    /// Whether the kernel may take the ray to start outside.
+    /// Whether the kernel may decide that the ray starts outside.
     pub(super) fn may_start_outside(&self) -> bool {
         self.c + self.c_error > 0.0
     }
 
-    /// Whether the kernel may take the ray to start inside, or on the wall.
+    /// Whether the kernel may decide that the ray starts inside, or on the surface.
     pub(super) fn may_start_inside(&self) -> bool {
         self.c - self.c_error <= 0.0
     }
 
-    /// Without what is granted beyond the kernel's own lines: that an answer may know better than to take the
-    /// direction's length to be one.
+    /// The same test without the additional slack for exact answers, which do not assume that the direction has unit
+    /// length.
     pub(super) fn as_the_kernel(self) -> Self {
         Self { bend: 0.0, ..self }
     }
 
-    /// Half the chord, exactly.
+    /// Half the chord of the exact test.
     pub(super) fn exact_half(&self) -> f64 {
         self.discriminant.max(0.0).sqrt()
     }
 
-    /// The distances that the last lines of the test may come to.
+    /// The legal results of the last lines of the test.
     pub(super) fn roots(&self) -> Roots {
         let mut roots =
             Roots { near: None, far: None, may_miss: self.discriminant - self.error < 0.0 };
@@ -150,26 +150,26 @@ impl SphereTest {
         roots
     }
 
-    /// b − h, or c/(b + h) where the two would cancel.
+    /// The near distance: b − h, or c/(b + h) if the two would cancel.
     fn near(&self) -> Option<Interval> {
         let (b, h) = (Interval::around(self.b, self.b_error), self.half);
         if b.high <= 0.0 {
             return None;
         }
         let b_low = b.low.max(0.0);
-        // What lies behind is a difference of negative numbers, and so no hit.
+        // A sphere behind the origin gives a difference of negative numbers, which is not a hit.
         let c_low = if b.low > 0.0 { (self.c - self.c_error).max(0.0) } else { 0.0 };
         let quotient = Interval {
             low: c_low / (b.high + h.high) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c + self.c_error) / (b_low + h.low) * (1.0 + DIVIDE + 2.0 * U),
         };
-        // The kernel asks whether −b h is negative; a product that becomes zero is not.
+        // The kernel tests whether −b h is negative; a product that is flushed to zero is not.
         let may_be_sum = b_low * h.low <= FLUSH;
         let sum = Interval { low: b_low * (1.0 - U), high: b.high * (1.0 + U) };
         Some(if may_be_sum { quotient.union(sum) } else { quotient })
     }
 
-    /// b + h, or c/(b − h) where the two would cancel.
+    /// The far distance: b + h, or c/(b − h) if the two would cancel.
     fn far(&self) -> Option<Interval> {
         let (b, h) = (Interval::around(self.b, self.b_error), self.half);
         let sum = (b.high >= 0.0).then(|| Interval {
@@ -180,14 +180,14 @@ impl SphereTest {
             low: (-self.c - self.c_error).max(0.0) / (h.high - b.low) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c_error - self.c) / (h.low + (-b.high).max(0.0)) * (1.0 + DIVIDE + 2.0 * U),
         });
-        // b h may become zero only where both, or one of them, are nothing.
-        let nothing = (b.high < 0.0 && h.low * -b.high <= FLUSH)
+        // b h may be flushed to zero only if both or one of them are tiny.
+        let flushed = (b.high < 0.0 && h.low * -b.high <= FLUSH)
             .then(|| Interval { low: 0.0, high: h.high.min(FLUSH.sqrt()) });
-        [sum, quotient, nothing].into_iter().flatten().reduce(Interval::union)
+        [sum, quotient, flushed].into_iter().flatten().reduce(Interval::union)
     }
 
-    /// Only what lies in front is a hit; and the exact answer, which need not know that the kernel takes the
-    /// direction's length to be one, is among those that are legal.
+    /// Widens a distance so that exact answers, which do not assume that the direction has unit length, are legal as
+    /// well. Only positive distances are hits.
     fn root(&self, root: Option<Interval>, may_miss: &mut bool) -> Option<Interval> {
         let Some(Interval { low, high }) = root else {
             *may_miss = true;
@@ -196,7 +196,7 @@ impl SphereTest {
         let aside = 2.0 * self.bend;
         let low = low * (1.0 - aside) / PAD - FLUSH;
         let high = high * (1.0 + aside) * PAD + FLUSH;
-        // A quotient of nothing by nothing is not a number.
+        // Zero divided by zero is NaN.
         let high = if high.is_nan() { f64::INFINITY } else { high };
         if low <= FLUSH {
             *may_miss = true;

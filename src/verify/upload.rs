@@ -1,4 +1,4 @@
-//! Whether the numbers that a device was given are those of the camera and the scene that were asked for.
+//! The check of uploaded data: whether the numbers on the device are those of the requested camera and scene.
 
 use glam::{DVec3, Vec3};
 
@@ -9,48 +9,48 @@ use crate::geometry::bounds::Bounds;
 use crate::geometry::math::wide;
 use crate::scene::Scene;
 
-/// Spheres must lie inside the box that rays are moved to by at least this, of the box's diagonal: twice what
-/// the roundings of a ray's entry can come to.
+/// The smallest margin between the spheres and the box to which rays are moved, relative to the box's diagonal: twice
+/// the largest rounding error of a ray's entry point.
 const LEAST_MARGIN: f64 = 16.0 * U;
 
-/// A number that the device was given is not what was asked for.
+/// Why the data on the device are not those that were requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UploadError {
-    /// A vector of the camera.
+    /// A vector of the camera is wrong.
     #[error("the camera's vector {name} is {found:?} on the device; it should be {expected:?}")]
     Vector {
         /// Which vector.
         name: &'static str,
-        /// What the device was given.
+        /// The vector on the device.
         found: [f32; 3],
-        /// What it should have been given.
+        /// The vector that was requested.
         expected: [f32; 3],
     },
-    /// The camera was not moved up to the scene's box, or past a part of it.
+    /// Rays do not start at the scene's box, or start inside it.
     #[error(
-        "rays start {advance} times the forward vector into the picture; the scene's box is {nearest:?} times away"
+        "rays start {advance} times the forward vector ahead of the camera; they should start at the scene's box, {nearest:?} times ahead"
     )]
     Advance {
-        /// What the device was given.
+        /// The factor on the device.
         advance: f32,
-        /// What it should have been given.
+        /// The factor that was expected.
         nearest: f64,
     },
-    /// The box that rays are moved to does not hold the spheres.
+    /// The box to which rays are moved does not contain the spheres.
     #[error(
-        "the scene's box on the device, {found:?}, does not hold the spheres' own, {spheres:?}"
+        "the scene's box on the device, {found:?}, does not contain the box of the spheres, {spheres:?}"
     )]
     Box {
-        /// Both corners, as the device was given them.
+        /// Both corners of the box on the device.
         found: [[f32; 3]; 2],
-        /// Both corners of the spheres' box.
+        /// Both corners of the spheres' bounding box.
         spheres: [[f32; 3]; 2],
     },
-    /// The recording is of another size than its film.
-    #[error("there are {pixels} pixels, and a picture of {}x{}; the film is {}x{}", image[0], image[1], film[0], film[1])]
+    /// The size of the recording differs from that of its film.
+    #[error("the recording has {pixels} pixels and a picture of {}x{}, but the film is {}x{}", image[0], image[1], film[0], film[1])]
     Size {
-        /// How many pixels were traced.
+        /// The number of pixels that were traced.
         pixels: u64,
         /// Width and height of the picture.
         image: [u32; 2],
@@ -58,11 +58,11 @@ pub enum UploadError {
         film: [u32; 2],
     },
     /// A layer of the picture is missing.
-    #[error("the picture has not all of its layers: color, depth, normal and id")]
+    #[error("the picture lacks one of its layers color, depth, normal and id")]
     Layers,
 }
 
-/// Compares them, in f64.
+/// Compares the recording with the scene, in f64.
 pub(super) fn check(
     scene: &Scene,
     candidates: &Candidates,
@@ -84,7 +84,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Compares the camera and the scene's box.
+/// Compares the camera and the scene's box with those on the device.
 pub(super) fn check_view(
     scene: &Scene,
     candidates: &Candidates,
@@ -101,7 +101,7 @@ pub(super) fn check_view(
         ("forward", view.forward, vectors.forward),
         ("origin", view.origin, moved),
     ] {
-        // Of the origin, what f64 itself may round where large numbers cancel.
+        // For the origin, the rounding error of f64 if large numbers cancel.
         let slack = match name {
             "origin" => f64::EPSILON * 4.0 * (origin.abs() + (advance * vectors.forward).abs()),
             _ => DVec3::ZERO,
@@ -114,7 +114,7 @@ pub(super) fn check_view(
         }
     }
     let asked = vectors.numbers.map(|number| number as f32);
-    // By value: a zero has no sign.
+    // Compared by value, because the sign of a zero does not matter.
     if Vec3::from(view.numbers) != Vec3::from(asked) {
         let (name, found, expected) = ("of numbers", view.numbers, asked);
         return Err(UploadError::Vector { name, found, expected });
@@ -128,7 +128,7 @@ pub(super) fn check_view(
         .fold(f64::INFINITY, f64::min)
         .max(0.0);
     let nearest = if camera.kind.is_linear() { nearest } else { 0.0 };
-    // A rounding to f32, and those of f64 where the box lies far from the camera.
+    // The rounding to f32, and rounding errors of f64 if the box is far from the camera.
     let far =
         f64::EPSILON * 64.0 * (origin.length() + high.length().max(low.length())) * across.length()
             / vectors.forward.dot(across).abs();

@@ -1,4 +1,4 @@
-//! What a device answered that no conforming one may.
+//! Violations: results of a device that no conforming device may give.
 
 use std::fmt;
 
@@ -7,99 +7,99 @@ use super::recording::NO_HIT;
 use super::rounding::Interval;
 use crate::image::NO_ID;
 
-/// An answer that is not legal, and what would be.
+/// A result that is not legal, and the legal results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
-    /// Column and row of the pixel, from the upper left.
+    /// Column and row of the pixel, from the top left.
     pub pixel: [u32; 2],
     /// What is wrong.
     pub kind: ViolationKind,
 }
 
-/// What is wrong with a pixel.
+/// The kind of violation at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ViolationKind {
-    /// The device was told to leave out a pixel whose ray meets the scene's box.
+    /// No ray was traced, although the ray of the pixel hits the scene's box.
     NotTraced,
-    /// A component of the ray's direction.
+    /// A component of the ray's direction is not legal.
     Direction {
-        /// 0, 1 or 2.
+        /// The axis: 0, 1 or 2.
         axis: usize,
-        /// What the device had.
+        /// The value on the device.
         found: f32,
-        /// What it may have.
+        /// The legal values.
         legal: Interval,
     },
-    /// A component of the ray's origin.
+    /// A component of the ray's origin is not legal.
     Origin {
-        /// 0, 1 or 2.
+        /// The axis: 0, 1 or 2.
         axis: usize,
-        /// What the device had.
+        /// The value on the device.
         found: f32,
-        /// What it may have.
+        /// The legal values.
         legal: Interval,
     },
-    /// The ray's distance from the camera.
+    /// The ray's distance from the camera is not legal.
     Distance {
-        /// What the device had.
+        /// The value on the device.
         found: f32,
-        /// What it may have.
+        /// The legal values.
         legal: Interval,
     },
-    /// The nearest sphere, or how far away it is.
+    /// The nearest sphere, or its distance, is not legal.
     Hit {
-        /// The sphere that the device found; [`NO_ID`] for none.
+        /// The sphere that the device found; [`NO_ID`] for a miss.
         id: u32,
-        /// Its distance along the ray.
+        /// Distance of the hit along the ray.
         t: f32,
-        /// What it may answer.
+        /// The legal answers.
         legal: LegalHits,
     },
-    /// The distance of a miss, which must be [`NO_HIT`](super::NO_HIT).
+    /// The distance of a miss is not [`NO_HIT`](super::NO_HIT).
     MissDistance {
-        /// What the device answered.
+        /// The value on the device.
         found: f32,
     },
-    /// The id in the picture is not the id that was found.
+    /// The id in the picture differs from that of the hit.
     Id {
-        /// The one in the picture.
+        /// The id in the picture.
         found: u32,
-        /// The one that was found.
+        /// The id of the hit.
         traced: u32,
     },
-    /// The depth in the picture.
+    /// The depth in the picture is not legal.
     Depth {
-        /// What the picture has.
+        /// The value in the picture.
         found: f32,
-        /// What it may have.
+        /// The legal values.
         legal: Interval,
     },
-    /// The normal in the picture.
+    /// The normal in the picture is not legal.
     Normal {
-        /// What the picture has.
+        /// The value in the picture.
         found: [f32; 3],
-        /// The exact one.
+        /// The exact normal.
         exact: [f64; 3],
-        /// How far it may be from that; its length, from one.
+        /// The largest legal distance from the exact normal, and deviation from unit length.
         error: f64,
     },
-    /// A component of the linear colour in the picture.
+    /// A component of the linear colour in the picture is not legal.
     Color {
-        /// 0 is red, 1 green, 2 blue.
+        /// The channel: 0 is red, 1 green, 2 blue.
         channel: usize,
-        /// What the picture has.
+        /// The value in the picture.
         found: f32,
-        /// What it may have.
+        /// The legal values.
         legal: Interval,
     },
-    /// Something in the picture of [`Headless::render`](crate::gpu::Headless::render), where that is not the
-    /// recording's; of a hit, distances are from the camera.
+    /// A violation in the picture of [`Headless::render`](crate::gpu::Headless::render), at a pixel that differs from
+    /// the recording; distances of hits are from the camera.
     Rendered(Box<ViolationKind>),
 }
 
 impl ViolationKind {
-    /// The stage that went wrong, in a word.
+    /// The name of the stage with the illegal result.
     #[must_use]
     pub fn stage(&self) -> &'static str {
         match self {
@@ -116,7 +116,7 @@ impl ViolationKind {
 }
 
 impl fmt::Display for Violation {
-    /// On one line.
+    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [i, j] = self.pixel;
         write!(f, "pixel ({i}, {j}), {}: {}", self.kind.stage(), self.kind)
@@ -128,7 +128,7 @@ impl fmt::Display for ViolationKind {
         const AXES: [&str; 3] = ["x", "y", "z"];
         const CHANNELS: [&str; 3] = ["red", "green", "blue"];
         match self {
-            Self::NotTraced => f.write_str("no ray was traced, although it meets the scene's box"),
+            Self::NotTraced => f.write_str("no ray was traced, although it hits the scene's box"),
             Self::Direction { axis, found, legal } => {
                 write!(f, "the direction's {} is {found:?}; legal is {legal}", AXES[*axis])
             }
@@ -165,7 +165,7 @@ impl fmt::Display for Interval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { low, high } = self;
         if low.to_bits() == high.to_bits() {
-            // As the f32 that it was.
+            // The number is written like the f32 that it is.
             write!(f, "{:?}", *low as f32)
         } else {
             write!(f, "[{low:.10e}, {high:.10e}]")
@@ -177,8 +177,8 @@ impl fmt::Display for LegalHits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut answers: Vec<String> = Vec::new();
         for hit in &self.spheres {
-            let walls = [hit.near, hit.far].into_iter().flatten();
-            answers.extend(walls.map(|wall| format!("sphere {} at {wall}", hit.id)));
+            let sides = [hit.near, hit.far].into_iter().flatten();
+            answers.extend(sides.map(|side| format!("sphere {} at {side}", hit.id)));
         }
         if self.miss {
             answers.push("a miss".to_owned());
@@ -191,7 +191,7 @@ impl fmt::Display for LegalHits {
     }
 }
 
-/// An id in words.
+/// A hit or a miss in words.
 fn name(id: u32) -> String {
     if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") }
 }

@@ -180,7 +180,7 @@ fn what_is_cut_off_is_refused() {
     }
     let longer = [&bytes[..], b"x"].concat();
     assert_eq!(run_file::read(&longer).unwrap_err(), RunFileError::Altered);
-    contradicts(&signed(longer), "bytes behind the last array");
+    contradicts(&signed(longer), "bytes after the last array");
 }
 
 #[test]
@@ -222,10 +222,10 @@ fn hostile_contents_with_a_right_digest() {
         ("\"shading\":\"flat\"", "\"shading\":\"round\"", "there is no shading `round`"),
         ("[3,4]", "[4,3]", "the array `spheres` is F32 [4, 3]; it must be F32 [4, 4]"),
         ("[2,3,3]", "[3,2,3]", "it must be"),
-        ("[2,3,3]", "[18]", "has not the shape (H, W, 3)"),
+        ("[2,3,3]", "[18]", "does not have the shape (H, W, 3)"),
         ("[2,3,3]", "[18,0,3]", "header"),
         ("\"U32\"", "\"F32\"", "it must be U32"),
-        ("18446744073709551615", "many", "the limit `max_buffer_size` is no number"),
+        ("18446744073709551615", "many", "the limit `max_buffer_size` is not a valid number"),
     ] {
         contradicts(&with_header(&bytes, from, to), words);
     }
@@ -263,7 +263,7 @@ fn what_scenes_cameras_and_settings_refuse() {
         ("spheres", 12, &0_f32.to_le_bytes()[..], "`scene_sha256`|sphere 0: its radius is 0.0"),
         ("spheres", 16, &nan, "sphere 1: its center"),
         ("scene_origin", 0, &f64::INFINITY.to_le_bytes(), "the scene: its origin"),
-        ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is of other spheres"),
+        ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is not the digest of the spheres"),
         (
             "color_index",
             8,
@@ -274,7 +274,7 @@ fn what_scenes_cameras_and_settings_refuse() {
         ("background", 4, &nan, "the array `background`: the color"),
         ("camera", 24, &[0; 24], "the camera: the length of right is 0.0"),
         ("camera", 0, &f64::NAN.to_le_bytes(), "the camera: the origin is"),
-        ("traced", 5, &[2], "the array `traced` has no truth value at 5"),
+        ("traced", 5, &[2], "the array `traced` has a value other than 0 and 1 at index 5"),
     ] {
         let words = words.split('|').next_back().unwrap();
         contradicts(&with_numbers(&bytes, name, at, numbers), words);

@@ -181,9 +181,9 @@ fn runs_that_are_damaged() {
         (
             "none",
             b"PK\x03\x04 something else",
-            "none: this is no run file; `pinhole verify --save`",
+            "none: this is not a run file; `pinhole verify --save`",
         ),
-        ("empty", b"", "empty: this is no run file"),
+        ("empty", b"", "empty: this is not a run file"),
     ] {
         std::fs::write(folder.path(name), contents).unwrap();
         refused(&folder, &format!("verify --replay {name} --json a.json --report a"), 1, words);

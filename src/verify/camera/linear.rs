@@ -1,5 +1,5 @@
-//! Cameras whose rays meet in a point or in none. Twin of `shaders/camera/pinhole.wgsl`,
-//! `camera_orthographic.wgsl`, `camera_thin-lens.wgsl` and `disk.wgsl`.
+//! The check of cameras whose rays intersect at one point or are parallel. The WGSL twins are
+//! `shaders/camera/pinhole.wgsl`, `camera_orthographic.wgsl`, `camera_thin-lens.wgsl` and `disk.wgsl`.
 
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
@@ -11,10 +11,10 @@ use crate::geometry::disk::concentric_disk;
 use crate::verify::line::Line;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, gamma};
 
-/// A point of the view plane, from its middle.
+/// A point of the view plane, relative to its middle.
 struct Aside {
     exact: DVec3,
-    /// The sum's terms; and what they may be off by because the location is.
+    /// The magnitudes of the sum's terms, and the error due to that of the location.
     terms: DVec3,
     location_error: DVec3,
 }
@@ -45,7 +45,7 @@ impl CameraModel {
         self.advanced(self.origin + along, origin_error, &unit)
     }
 
-    /// A ray that starts `advance` times as far along as it is long.
+    /// A ray whose start is moved along it by `advance` times the length of the vector.
     fn advanced(&self, origin: DVec3, origin_error: DVec3, unit: &Unit) -> CameraRay {
         let Unit { direction, direction_error, length, length_error } = *unit;
         CameraRay {
@@ -74,7 +74,7 @@ impl CameraModel {
         }
     }
 
-    /// Through a point of the lens, in the unit square.
+    /// The ray through a point of the lens, which is in the unit square.
     pub(super) fn thin_lens(&self, location: Location, lens: DVec2) -> CameraRay {
         let Aside { exact, terms, location_error } = self.aside(location);
         let error = location_error + gamma(3) * (terms + location_error) + 4.0 * FLUSH;
@@ -98,7 +98,7 @@ impl CameraModel {
         });
         let (near, far) = (1.0 - self.advance, self.advance);
         let origin = self.origin + far * aside.exact + near * offset.exact;
-        // A product; a difference and a product; a sum of three.
+        // The error of a product; of a difference and a product; of a sum of three terms.
         let (far, near) = (far.abs(), near.abs());
         let origin_error = far * (aside.error + U * aside.size())
             + near * (offset.error + gamma(2) * offset.size())
@@ -108,17 +108,17 @@ impl CameraModel {
     }
 }
 
-/// The point of the unit disk for one of the unit square, and how far a device's may be from it along an axis.
+/// The point of the unit disk for a point of the unit square, and the bound of a device's error along an axis.
 fn disk(square: DVec2) -> (DVec2, f64) {
     let radius = (2.0 * square - 1.0).abs().max_element();
-    // The middle is exact.
+    // The centre is exact.
     if radius == 0.0 {
         return (DVec2::ZERO, 0.0);
     }
-    // The map moves a point at most twice as far as its argument, also from one case to the other: its derivatives
-    // are at most 1 + pi/4. The argument is rounded once.
+    // The map moves a point at most twice as far as its argument, also between its two cases: its derivatives are at
+    // most 1 + pi/4. The argument is rounded once.
     let moved = 2.0 * SQRT_2 * U * radius;
-    // A quotient of at most 1, and its product with a constant.
+    // The errors of a quotient of at most 1 and of its product with a constant.
     let turned = FRAC_PI_4 * (DIVIDE + gamma(3));
     let error = moved + radius * (turned + EIGHTH_ERROR + U);
     (concentric_disk(square), PAD * error + 4.0 * FLUSH)

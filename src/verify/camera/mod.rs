@@ -1,4 +1,4 @@
-//! The rays of a camera: how far a device's may be from the exact ones. Twin of `shaders/camera/film.wgsl` and
+//! The check of camera rays: bounds of the error of a device's rays. The WGSL twins are `shaders/camera/film.wgsl` and
 //! `camera_*.wgsl`.
 
 mod any;
@@ -19,41 +19,41 @@ use crate::geometry::math::wide;
 pub(super) use any::AnyRay;
 pub(super) use entered::EnteredRay;
 
-/// The lens's centre, through which all rays of a recording go.
+/// The centre of the lens; all rays of a recording go through it.
 const LENS_CENTER: DVec2 = DVec2::splat(0.5);
 
-/// The exact ray of a pixel, before it is moved to the scene's box, and how far a device's may be from it.
+/// The exact ray of a pixel, before it is moved to the scene's box, and error bounds for a device's ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CameraRay {
     pub(super) line: Line,
-    /// From the camera's own origin of this ray to where the line starts.
+    /// Distance from the origin of this ray at the camera to the start of the line.
     pub(super) distance: f64,
     pub(super) origin_error: DVec3,
     pub(super) direction_error: DVec3,
     pub(super) distance_error: f64,
-    /// Whether the device may find that there is a ray, and that there is none.
+    /// Whether the device may find that there is a ray, and whether it may find that there is none.
     pub(super) may_be_seen: bool,
     pub(super) may_be_unseen: bool,
 }
 
-/// Every ray that a conforming device may make of exactly these numbers, in the scene's frame, before it is moved
-/// to the scene's box: component by component.
+/// Every ray that a conforming device may compute from exactly these numbers, component by component. The ray is in the
+/// scene's frame, before it is moved to the scene's box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegalCameraRay {
-    /// Where it starts.
+    /// Legal values of the start.
     pub origin: [Interval; 3],
-    /// Of unit length, up to rounding.
+    /// Legal values of the direction, which has unit length up to rounding.
     pub direction: [Interval; 3],
-    /// How far the origin is from the camera.
+    /// Legal distances of the start from the camera.
     pub distance: Interval,
-    /// Whether there may be a ray.
+    /// Whether it is legal that there is a ray.
     pub may_be_seen: bool,
-    /// Whether there may be none.
+    /// Whether it is legal that there is no ray.
     pub may_be_unseen: bool,
 }
 
 impl LegalCameraRay {
-    /// Of a relative location, and of a point of the lens in the unit square; see
+    /// The legal rays of a relative location and a point of the lens, which is in the unit square; see
     /// [`Camera::ray_through_lens`](crate::camera::Camera::ray_through_lens).
     #[must_use]
     pub fn new(kind: CameraKind, view: &UploadedView, location: [f32; 2], lens: [f32; 2]) -> Self {
@@ -74,7 +74,7 @@ impl LegalCameraRay {
     }
 }
 
-/// The camera's numbers, wide.
+/// The numbers of a camera and the scene's box, in f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CameraModel {
     kind: CameraKind,
@@ -89,7 +89,7 @@ pub(super) struct CameraModel {
     scene_max: DVec3,
 }
 
-/// A relative location, exactly, and how far a device's may be from it.
+/// An exact relative location, and the bound of a device's error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Location {
     pub(super) exact: DVec2,
@@ -112,15 +112,15 @@ impl CameraModel {
         }
     }
 
-    /// The ray through the centres of a pixel and of the lens.
+    /// The ray through the centre of a pixel and the centre of the lens.
     pub(super) fn ray(&self, [i, j]: [u32; 2]) -> CameraRay {
-        // One quotient of exact numbers.
+        // The device computes one quotient of exact numbers.
         let exact = self.film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
         let location = Location { exact, error: (DIVIDE + U * DIVIDE) * exact.abs() + FLUSH };
         self.ray_through_lens(location, LENS_CENTER)
     }
 
-    /// The ray of a location through a point of the lens, in the unit square.
+    /// The ray of a location through a point of the lens, which is in the unit square.
     pub(super) fn ray_through_lens(&self, location: Location, lens: DVec2) -> CameraRay {
         match self.kind {
             CameraKind::Pinhole => self.pinhole(location),
@@ -132,7 +132,7 @@ impl CameraModel {
     }
 }
 
-/// A vector that a device computed, exactly, and how far the device's may be from it.
+/// The exact value of a vector that a device computed, and the bound of the device's error.
 #[derive(Clone, Copy, Debug)]
 struct Computed {
     exact: DVec3,
@@ -140,13 +140,13 @@ struct Computed {
 }
 
 impl Computed {
-    /// As large as the device's may be, component by component.
+    /// The largest magnitude of each component on a device.
     fn size(&self) -> DVec3 {
         self.exact.abs() + self.error
     }
 }
 
-/// A vector that was divided by its length, as every camera does it.
+/// A vector that was divided by its length, as every camera does.
 #[derive(Clone, Copy, Debug)]
 struct Unit {
     direction: DVec3,
@@ -159,10 +159,10 @@ impl Unit {
     fn of(toward: Computed) -> Self {
         let Computed { exact, error } = toward;
         let length = exact.length();
-        // No longer than the vector's change, and what the length itself adds.
+        // The length changes by at most the error of the vector; its own computation adds an error.
         let length_error = PAD * error.length() + error_of_length(length);
         let shortest = (length - length_error).max(f64::MIN_POSITIVE);
-        // One over the length, and a product.
+        // The errors of a reciprocal of the length and of a product.
         let direction_error =
             (error + exact.abs() * (length_error / length) + toward.size() * (DIVIDE + 2.0 * U))
                 / shortest

@@ -1,4 +1,5 @@
-//! Cameras whose rays go by angles. Twin of `shaders/camera/panorama.wgsl` and `camera_fisheye.wgsl`.
+//! The check of cameras whose rays are computed from angles. The WGSL twins are `shaders/camera/panorama.wgsl` and
+//! `camera_fisheye.wgsl`.
 
 use glam::{DVec2, DVec3};
 
@@ -7,10 +8,10 @@ use super::{CameraModel, CameraRay, Computed, Location, Unit};
 use crate::verify::line::Line;
 use crate::verify::rounding::{DIVIDE, FLUSH, PAD, U, error_of_length, gamma};
 
-/// As in `shaders/camera/fisheye.wgsl`.
+/// The same constant as in `shaders/camera/fisheye.wgsl`.
 const SMALLEST_SPOT: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// a p + b q of a device, where each factor may be off by its error.
+/// The sum a p + b q on a device, where each factor has an error bound.
 fn sum_of_products(
     [(a, a_error), (b, b_error)]: [(f64, f64); 2],
     p: Computed,
@@ -59,7 +60,7 @@ impl CameraModel {
         let radius_error = PAD * spot_error.length() + error_of_length(nonzero);
 
         let part = radius.min(1.0) * half_angle;
-        // Beyond the disk, all are on its edge.
+        // Locations beyond the disk use the ray at its edge.
         let [least, most] = [radius - radius_error, radius + radius_error].map(|r| r.min(1.0));
         let part_error = half_angle.abs() * (most - least);
         let part_error = PAD * (part_error + U * (part.abs() + part_error)) + FLUSH;
@@ -78,7 +79,7 @@ impl CameraModel {
     }
 }
 
-/// A ray that starts at the camera, and may be turned by an angle besides.
+/// A ray that starts at the camera, and may be rotated by an additional angle.
 fn ray(
     start: Computed,
     toward: Computed,

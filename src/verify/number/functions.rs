@@ -1,18 +1,19 @@
-//! Roots, exponentials, angles. Twins of `shaders/math/trigonometry.wgsl`, `turns.wgsl` and `trigonometry_inverse.wgsl`.
+//! Roots, exponentials and angles. The WGSL twins are `shaders/math/trigonometry.wgsl`, `turns.wgsl` and
+//! `trigonometry_inverse.wgsl`.
 
 use super::Number;
 use crate::verify::choices::Choices;
 use crate::verify::rounding::{FLUSH, Interval, PAD, SQRT, U};
 
 impl Number {
-    /// The root; that of zero is zero. Of what may be negative, of the rest.
+    /// The square root; that of zero is zero. Negative values in the interval are ignored.
     pub(in crate::verify) fn sqrt(self) -> Self {
         let Interval { low, high } = self.interval();
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         Self::between(low * (1.0 - SQRT) / PAD, high * (1.0 + SQRT) * PAD)
     }
 
-    /// To within 3 + 2|x| ULP.
+    /// The exponential, to within 3 + 2|x| ULP.
     pub(in crate::verify) fn exp(self) -> Self {
         let Interval { low, high } = self.interval();
         let relative = |x: f64| PAD * (3.0 + 2.0 * x.abs()) * U;
@@ -24,15 +25,15 @@ impl Number {
         .bounded()
     }
 
-    /// c0 + x (c1 + x (c2 + …)), with constants of the kernel's text; or the same multiplied out, whose powers come
-    /// through as many more roundings.
+    /// The polynomial c0 + x (c1 + x (c2 + …)) with constants from the kernel's text. A compiler may expand it, so that
+    /// powers pass through additional roundings.
     fn polynomial(self, coefficients: &[f64]) -> Self {
         let sum =
             coefficients.iter().rev().fold(Self::ZERO, |sum, c| Self::constant(*c) + self * sum);
         Self { products: sum.products + coefficients.len() as u32, ..sum }
     }
 
-    /// The whole numbers that `floor` may give.
+    /// The lowest and the highest whole number that `floor` may return.
     pub(in crate::verify) fn floor(self) -> [f64; 2] {
         let Interval { low, high } = self.interval();
         [low.floor(), high.floor()]
@@ -52,7 +53,7 @@ pub(in crate::verify) fn sin_cos_eighth(angle: Number) -> [Number; 2] {
 /// Sine and cosine of an angle in turns.
 pub(in crate::verify) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> [Number; 2] {
     let quarter = choices.pick((Number::known(4.0) * turns + Number::HALF).floor());
-    // Numbers that are nearly equal: their difference is exact, unless a compiler takes it apart.
+    // The difference of numbers that are nearly equal is exact, unless a compiler rearranges it.
     let Interval { low, high } = turns.interval();
     let rest =
         Number { products: 1, ..Number::between(low - 0.25 * quarter, high - 0.25 * quarter) };
@@ -69,7 +70,7 @@ pub(in crate::verify) fn sin_cos_turns(turns: Number, choices: &mut Choices) -> 
     }
 }
 
-/// The angle of a vector, in turns.
+/// The angle of a vector in turns.
 pub(in crate::verify) fn atan2_turns(y: Number, x: Number, choices: &mut Choices) -> Number {
     const SERIES: [f64; 9] = [
         0.159_154_94,

@@ -1,10 +1,11 @@
-//! What a number of a kernel may be: an interval that grows by whatever WGSL leaves free.
+//! The values of a number in a kernel: an interval that grows by the freedom that WGSL allows.
 //!
-//! Between two fences a compiler may fuse products and sums and take the terms of a sum in any order. So a number
-//! is kept as what exact arithmetic would make of it, with how large its terms are together and through how many
-//! roundings a term may have come; only when a kernel compares it, divides by it or fences it, does it grow by all
-//! of them: by γ(k) times the terms' magnitudes (`rounding.rs`). That products of sums are not multiplied out, and
-//! that a number is only flushed to zero where the kernel's text says that it stands, are assumptions.
+//! Between two fences, a compiler may fuse products and sums, and add the terms of a sum in any order. A number is
+//! therefore stored as the result of exact arithmetic, with the sum of the magnitudes of its terms and the number of
+//! roundings that a term may have passed through. Only when a kernel compares it, divides by it or fences it, the
+//! interval grows by the error of all of them: γ(k) times the terms' magnitudes (`rounding.rs`). Two things are
+//! assumed: that products of sums are not expanded, and that a number is flushed to zero only where it appears in the
+//! kernel's text.
 
 mod functions;
 #[cfg(test)]
@@ -18,24 +19,24 @@ use super::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 pub(super) use functions::{atan2_turns, sin_cos_eighth, sin_cos_turns};
 pub(super) use vector::Vector;
 
-/// No f32 is larger, and products of two are still finite.
+/// A limit above every f32; products of two such numbers are still finite.
 const LARGEST: f64 = 1e90;
 
-/// A number that a kernel has computed, and not yet fenced.
+/// A number that a kernel has computed and not yet fenced.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Number {
-    /// Of exact arithmetic.
+    /// The interval of exact arithmetic.
     low: f64,
     high: f64,
-    /// The magnitudes of its terms, added up.
+    /// The sum of the magnitudes of its terms.
     size: f64,
-    /// What was lost where a number below the normal ones became zero.
+    /// The error of subnormal numbers that were flushed to zero.
     flushed: f64,
-    /// How many terms its sums have.
+    /// The number of terms of its sums.
     terms: u32,
-    /// How many roundings a term has beside those of sums.
+    /// The number of roundings of a term apart from those of sums.
     products: u32,
-    /// Whether no term is negative: then nothing cancels.
+    /// Whether no term is negative, so that nothing cancels.
     is_positive: bool,
 }
 
@@ -45,13 +46,13 @@ impl Number {
     pub(super) const TWO: Self = Self::known(2.0);
     pub(super) const HALF: Self = Self::known(0.5);
 
-    /// A number that f32 holds exactly.
+    /// A number that f32 represents exactly.
     pub(super) const fn known(value: f64) -> Self {
         Self::between(value, value)
     }
 
-    /// A number that the device had; it may be zero if it is below the normal ones.
-    pub(super) fn had(value: f32) -> Self {
+    /// A number that the device recorded; it may count as zero if it is subnormal.
+    pub(super) fn recorded(value: f32) -> Self {
         let wide = f64::from(value);
         if wide.abs() < FLUSH {
             return Self::between(wide.min(0.0), wide.max(0.0));
@@ -59,19 +60,19 @@ impl Number {
         Self::known(wide)
     }
 
-    /// A constant in a kernel's text.
+    /// A constant from a kernel's text, which is rounded.
     pub(super) fn constant(value: f64) -> Self {
         Self { products: 1, ..Self::known(value) }
     }
 
-    /// All f32 of an interval.
+    /// All numbers of an interval.
     pub(super) const fn between(low: f64, high: f64) -> Self {
         let size = if high > -low { high } else { -low };
         let is_positive = low >= 0.0;
         Self { low, high, size, flushed: 0.0, terms: 1, products: 0, is_positive }
     }
 
-    /// All that is within `error` of `value`.
+    /// All numbers within `error` of `value`.
     pub(super) const fn around(value: f64, error: f64) -> Self {
         Self::between(value - error, value + error)
     }
@@ -87,7 +88,7 @@ impl Number {
         }
     }
 
-    /// Rounded where it stands, as by `fence`.
+    /// The number with all rounding errors added, as after `fence`.
     pub(super) fn fence(self) -> Self {
         let steps = self.products + self.terms - 1;
         if steps == 0 {
@@ -104,18 +105,18 @@ impl Number {
         Self::between(low, self.high + error(self.high)).bounded()
     }
 
-    /// What it may be, as a device has it.
+    /// The interval of values that a device may have.
     pub(super) fn interval(self) -> Interval {
         let Self { low, high, .. } = self.fence();
         Interval { low, high }
     }
 
-    /// Whether it is zero whatever a device does; what only cancels is not.
+    /// Whether it is zero on every device; a sum that only may cancel is not.
     pub(super) fn is_zero(&self) -> bool {
         self.size == 0.0
     }
 
-    /// Whether it is less than another; `None` if that is open.
+    /// Whether it is less than another number; `None` if undecided.
     pub(super) fn is_less(self, other: Self) -> Option<bool> {
         let (a, b) = (self.interval(), other.interval());
         if a.high < b.low {
@@ -127,12 +128,12 @@ impl Number {
         }
     }
 
-    /// Whether it is more than another; `None` if that is open.
+    /// Whether it is more than another number; `None` if undecided.
     pub(super) fn is_more(self, other: Self) -> Option<bool> {
         other.is_less(self)
     }
 
-    /// Whether it is positive; `None` if that is open.
+    /// Whether it is positive; `None` if undecided.
     pub(super) fn is_above_zero(self) -> Option<bool> {
         self.is_more(Self::ZERO)
     }
@@ -166,13 +167,13 @@ impl Number {
         fenced * fenced
     }
 
-    /// What either may be.
+    /// The smallest interval that contains the values of both.
     pub(super) fn union(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().union(other.interval());
         Self::between(low, high)
     }
 
-    /// What both may be; itself, if nothing is.
+    /// The values in both intervals; itself, if there are none.
     pub(super) fn narrowed(self, other: Self) -> Self {
         let Interval { low, high } = self.interval().intersection(other.interval());
         if low <= high { Self::between(low, high) } else { self }
@@ -192,7 +193,7 @@ impl Add for Number {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        // Exact.
+        // Adding zero is exact.
         if self.is_zero() {
             return other;
         }
@@ -263,7 +264,7 @@ impl Mul for Number {
 impl Div for Number {
     type Output = Self;
 
-    /// Whatever there is, if the divisor may be zero.
+    /// The quotient; every number if the divisor may be zero.
     fn div(self, other: Self) -> Self {
         let Interval { low, high } = other.interval();
         if self.is_zero() {
@@ -282,7 +283,7 @@ impl Div for Number {
             least - relative * least.abs() - FLUSH,
             most + relative * most.abs() + FLUSH,
         );
-        // The quotient of positive numbers is positive.
+        // The quotient of positive numbers is not negative.
         let quotient = if least >= 0.0 {
             Self::between(quotient.low.max(0.0), quotient.high)
         } else {

@@ -1,4 +1,4 @@
-//! Numbers hold what exact arithmetic gives, and what a device gives that rounds as it likes.
+//! Tests that numbers contain the exact result, and the results of devices that round arbitrarily.
 
 use dashu_float::round::mode;
 use dashu_float::{Context, FBig};
@@ -10,7 +10,7 @@ use crate::verify::rounding::{DIVIDE_ULP, SQRT_ULP};
 
 type Exact = FBig<mode::HalfEven, 2>;
 
-/// Far more than any bound could tell.
+/// A precision far beyond every bound.
 const BITS: usize = 200;
 
 #[derive(Debug)]
@@ -25,7 +25,7 @@ enum Formula {
     Largest(Box<Self>, Box<Self>),
 }
 
-/// Leaves are few, so that sums cancel.
+/// A random formula. There are few different leaves, so that sums cancel.
 fn formula(random: &mut Rng, leaves: &[f32], depth: u32) -> Formula {
     let part = |random: &mut Rng| formula(random, leaves, depth - 1);
     match if depth == 0 { 0 } else { random.u32(0..9) } {
@@ -57,7 +57,7 @@ impl Formula {
             parts.iter().map(Self::number).reduce(join).unwrap()
         };
         match self {
-            Self::Leaf(value) => Number::had(*value),
+            Self::Leaf(value) => Number::recorded(*value),
             Self::Sum(parts) => all(parts, |a, b| a + b),
             Self::Product(parts) => all(parts, |a, b| a * b),
             Self::Negative(part) => -part.number(),
@@ -68,7 +68,7 @@ impl Formula {
         }
     }
 
-    /// `None` where nothing is divided by.
+    /// The exact value; `None` if there is a division by zero.
     fn exact(&self) -> Option<Exact> {
         let context = Context::<mode::HalfEven>::new(BITS);
         let of = |value: f32| Exact::try_from(value).unwrap().with_precision(BITS).value();
@@ -103,7 +103,7 @@ impl Formula {
         })
     }
 
-    /// What a device makes of it; NaN where it divides by zero, which no kernel does.
+    /// The result of a device; NaN after a division by zero, which no kernel does.
     fn device(&self, random: &mut Rng) -> f32 {
         match self {
             Self::Leaf(value) => *value,
@@ -134,7 +134,7 @@ impl Formula {
         }
     }
 
-    /// Sums within sums are one; in any order; products of two are perhaps fused.
+    /// Nested sums are one sum, with terms in random order; products of two factors are fused at random.
     fn sum(&self, random: &mut Rng) -> f32 {
         let mut terms = Vec::new();
         self.terms(1.0, &mut terms);
@@ -169,7 +169,7 @@ fn wide(value: f32) -> f64 {
     value.into()
 }
 
-/// Either neighbour.
+/// Rounds to one of the two neighbours at random.
 fn round(random: &mut Rng, exact: f64) -> f32 {
     let nearest = exact as f32;
     let other = match wide(nearest).total_cmp(&exact) {
@@ -214,11 +214,11 @@ fn numbers_hold_exact_results_and_those_of_any_device() {
         tried += 1;
         narrow += u32::from(high - low <= 1e-4 * low.abs().max(high.abs()));
     }
-    // A set of everything would be sound as well.
+    // An interval of all numbers would be sound too, so most must be narrow.
     assert!(narrow > tried / 2, "{narrow} of {tried}");
 }
 
-/// c0 + x (c1 + …), by a device.
+/// A device's result for the polynomial c0 + x (c1 + …).
 fn polynomial(random: &mut Rng, x: f32, coefficients: &[f64]) -> f32 {
     let mut sum = 0.0_f32;
     for c in coefficients.iter().rev() {
@@ -238,7 +238,7 @@ fn angles_hold_those_of_any_device() {
     let mut random = Rng::with_seed(13);
     for _ in 0..50_000 {
         let angle = (random.f32() - 0.5) * std::f32::consts::FRAC_PI_2;
-        let [sine, cosine] = sin_cos_eighth(Number::had(angle)).map(Number::interval);
+        let [sine, cosine] = sin_cos_eighth(Number::recorded(angle)).map(Number::interval);
         let z = round(&mut random, wide(angle) * wide(angle));
         let series = polynomial(
             &mut random,
@@ -254,19 +254,21 @@ fn angles_hold_those_of_any_device() {
 
         let turns = (random.f32() - 0.5) * 3.0;
         let mut choices = Choices::default();
-        let [sine, cosine] = sin_cos_turns(Number::had(turns), &mut choices).map(Number::interval);
+        let [sine, cosine] =
+            sin_cos_turns(Number::recorded(turns), &mut choices).map(Number::interval);
         let (s, c) = (wide(turns) * std::f64::consts::TAU).sin_cos();
-        // The polynomials are off by 2^-28 and less.
+        // The error of the polynomials is below 2^-28.
         let near = |interval: Interval, exact: f64| {
             interval.low - 5e-9 <= exact && exact <= interval.high + 5e-9
         };
         assert!(choices.were_open() || (near(sine, s) && near(cosine, c)), "{turns}");
-        // The cosine's terms are 4/3 together at most, and each passes 19 roundings at most: 2 * 19 * 2^-23 * 4/3.
+        // The magnitudes of the cosine's terms add up to at most 4/3, and each passes through at most 19 roundings: 2 *
+        // 19 * 2^-23 * 4/3.
         assert!(sine.high - sine.low < 6.1e-6 && cosine.high - cosine.low < 6.1e-6);
 
         let (y, x) = (random.f32() - 0.5, random.f32() - 0.5);
         let mut choices = Choices::default();
-        let found = atan2_turns(Number::had(y), Number::had(x), &mut choices).interval();
+        let found = atan2_turns(Number::recorded(y), Number::recorded(x), &mut choices).interval();
         let exact = wide(y).atan2(x.into()) / std::f64::consts::TAU;
         assert!(choices.were_open() || near(found, exact), "{y}, {x}: {exact} in {found}");
         assert!(found.high - found.low < 4e-6);

@@ -1,4 +1,4 @@
-//! Three numbers.
+//! Vectors of three numbers.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -15,12 +15,12 @@ impl Vector {
     pub(in crate::verify) const ZERO: Self = Self([Number::ZERO; 3]);
     pub(in crate::verify) const ONE: Self = Self([Number::ONE; 3]);
 
-    /// One that the device had.
-    pub(in crate::verify) fn had(vector: [f32; 3]) -> Self {
-        Self(vector.map(Number::had))
+    /// A vector that the device recorded.
+    pub(in crate::verify) fn recorded(vector: [f32; 3]) -> Self {
+        Self(vector.map(Number::recorded))
     }
 
-    /// All that is within `error` of another, along each axis.
+    /// All vectors within `error` of `exact` along each axis.
     pub(in crate::verify) fn around(exact: DVec3, error: f64) -> Self {
         Self(exact.to_array().map(|x| Number::around(x, error)))
     }
@@ -34,7 +34,7 @@ impl Vector {
         Self([f(a, p), f(b, q), f(c, r)])
     }
 
-    /// Component by component.
+    /// The product of each pair of components.
     pub(in crate::verify) fn times(self, other: Self) -> Self {
         self.zip(other, |a, b| a * b)
     }
@@ -53,13 +53,13 @@ impl Vector {
         x + y + z
     }
 
-    /// Of unit length, or anything of about that if it may be none.
+    /// The vector divided by its length; if the length may be zero, any vector of about unit length.
     pub(in crate::verify) fn normalized(self) -> Self {
         let v = self.fence();
         let length = v.squared().sqrt();
         v.map(|x| {
             let unit = x / length;
-            // A quotient of a component and the length that contains it.
+            // The quotient of a component and the length, which is at least as large.
             unit.clamp(-UNIT, UNIT)
         })
     }
@@ -74,7 +74,7 @@ impl Vector {
     }
 }
 
-/// More than a component of a vector that was divided by its length may be.
+/// An upper limit for a component of a vector that was divided by its length.
 const UNIT: f64 = 1.0 + 1e-5;
 
 impl Add for Vector {

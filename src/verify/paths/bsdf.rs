@@ -1,5 +1,5 @@
-//! Where surfaces scatter light. Twin of `shaders/path/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl` and
-//! `scatter_matt.wgsl`.
+//! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl`
+//! and `scatter_matt.wgsl`.
 
 use super::kernel::{Kernel, Surface};
 use super::material::{
@@ -8,21 +8,21 @@ use super::material::{
 use super::warp::{cosine_direction, pi};
 use crate::verify::number::{Number, Vector};
 
-/// The BSDF times the cosine, and the density of scattering light there.
+/// The BSDF times the cosine, and the density with which the direction is sampled.
 pub(super) struct Reflection {
     pub(super) value: Vector,
     pub(super) density: Number,
 }
 
-/// A direction in the frame of the normal, what light from there counts, and the density.
+/// A scattered direction in the tangent frame, its weight, and its density.
 pub(super) struct Scattered {
     pub(super) direction: Vector,
     pub(super) weight: Vector,
     pub(super) density: Number,
 }
 
-/// Densities below this are taken for it, where something is divided by them.
-fn at_least_little(density: Number) -> Number {
+/// The density as a divisor: at least 10⁻³⁰.
+fn as_divisor(density: Number) -> Number {
     density.max(Number::constant(1e-30))
 }
 
@@ -33,7 +33,7 @@ fn schlick(color: Vector, cosine: Number) -> Vector {
     color.map(|c| c + (Number::ONE - c) * part)
 }
 
-fn given_back(color: Vector, kept: Number) -> Vector {
+fn compensation(color: Vector, kept: Number) -> Vector {
     let lost = (Number::ONE - kept) / kept;
     color.map(|c| Number::ONE + c * lost)
 }
@@ -55,7 +55,7 @@ impl Kernel<'_> {
         {
             return none;
         }
-        // What has been decided.
+        // The values after the decisions: cosines are not negative.
         let along = along.max(Number::ZERO);
         let [out, toward] = [(out, back.max(Number::ZERO)), (toward, along)]
             .map(|(Vector([x, y, _]), z)| Vector([x, y, z]));
@@ -69,7 +69,7 @@ impl Kernel<'_> {
         let kept = self.energy(material.energies, out.0[2]);
         let mirrors = mirrors_brdf(material.alpha, out, toward, half);
         let lobe = if is_metal {
-            schlick(color, half.dot(out)).times(given_back(color, kept))
+            schlick(color, half.dot(out)).times(compensation(color, kept))
         } else {
             Vector::ONE.map(|one| one / kept)
         };
@@ -79,7 +79,7 @@ impl Kernel<'_> {
     }
 
     pub(super) fn scatter_light(&mut self, at: &Surface, lobe: Number, u: [u32; 2]) -> Scattered {
-        let color = Vector::had(at.vertex.color);
+        let color = Vector::recorded(at.vertex.color);
         let Surface { material, out, .. } = at;
         if material.is_dielectric() {
             return self.scatter_dielectric(at, lobe, u);
@@ -96,7 +96,7 @@ impl Kernel<'_> {
             let weight = if material.parameter.is_zero() {
                 color
             } else {
-                let divisor = at_least_little(r.density);
+                let divisor = as_divisor(r.density);
                 r.value.map(|value| value / divisor)
             };
             return self.above(direction, weight, r.density);
@@ -108,14 +108,14 @@ impl Kernel<'_> {
             let kept = self.energy(material.energies, out.0[2]);
             let seen = Number::ONE + ggx_lambda(material.alpha, out.0[2]);
             let ratio = seen / (seen + ggx_lambda(material.alpha, direction.0[2]));
-            let weight = schlick(color, half.dot(*out)).times(given_back(color, kept)) * ratio;
+            let weight = schlick(color, half.dot(*out)).times(compensation(color, kept)) * ratio;
             return self.above(direction, weight, r.density);
         }
-        let divisor = at_least_little(r.density);
+        let divisor = as_divisor(r.density);
         Scattered { direction, weight: r.value.map(|value| value / divisor), density: r.density }
     }
 
-    /// What is scattered below the surface counts nothing.
+    /// Light that is scattered below the surface has no weight.
     fn above(&mut self, direction: Vector, weight: Vector, density: Number) -> Scattered {
         let is_above = self.choices.decide(direction.0[2].is_above_zero());
         let weight = if is_above { weight } else { Vector::ZERO };
@@ -157,7 +157,7 @@ impl Kernel<'_> {
         Scattered { direction: toward, weight: Vector([weight; 3]), density: Number::ZERO }
     }
 
-    /// The share of unpolarised light that is reflected.
+    /// The fraction of unpolarised light that is reflected.
     fn fresnel(&mut self, relative: Number, cosine: Number) -> Number {
         let sine2 = (Number::ONE - cosine.squared()) / relative.squared();
         if !self.choices.decide(sine2.is_less(Number::ONE)) {
@@ -169,12 +169,12 @@ impl Kernel<'_> {
         let ahead = relative * cosine;
         let along = (ahead - beyond) / (ahead + beyond);
         let whole = Number::HALF * (across.squared() + along.squared());
-        // All of it is reflected at most, but for rounding.
+        // The fraction is at most 1, apart from rounding.
         whole.min(Number::known(1.0 + 1e-4))
     }
 }
 
-/// The cosine on the other side.
+/// The cosine of the refracted direction.
 fn beyond(relative: Number, cosine: Number) -> Number {
     let sine2 = (Number::ONE - cosine.squared()) / relative.squared();
     (Number::ONE - sine2).max(Number::ZERO).sqrt()

@@ -1,33 +1,33 @@
-//! What the checker found of paths.
+//! The certificate of paths: the results of the checker.
 
 use std::fmt;
 
 use super::upload::PathUploadError;
 
-/// A stage of a path: the kernel that does it, or a part of what it does.
+/// A stage of a path: a kernel, or a part of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PathStage {
-    /// The camera's ray of a sample.
+    /// The camera ray of a sample.
     Start,
-    /// What a ray meets.
+    /// The nearest hit of a ray.
     Extend,
-    /// Where that is, on which side, and of what.
+    /// The surface at the hit: its point, side and material.
     Vertex,
-    /// What light is found at the end, or by chance.
+    /// The light that the path hits at its end or at an emissive surface.
     Radiance,
-    /// The light that a surface looks for.
+    /// The sampled light at a surface.
     Light,
-    /// Where the path goes on, and what it carries.
+    /// The scattered ray, and the throughput of the path.
     Scatter,
-    /// Whether anything is between a surface and the light that it looks for.
+    /// Whether a surface occludes the sampled light.
     Occlude,
-    /// What the sample adds to the picture.
+    /// The contribution of the sample to the picture.
     Accumulate,
 }
 
 impl PathStage {
-    /// What it is called in reports.
+    /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -43,23 +43,23 @@ impl PathStage {
     }
 }
 
-/// An answer that is not legal.
+/// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PathViolation {
-    /// Column and row in the film, from the upper left.
+    /// Column and row in the film, from the top left.
     pub pixel: [u32; 2],
-    /// Which of the pixel's samples.
+    /// Index of the sample in its pixel.
     pub sample: u32,
-    /// Which of the surfaces that the path meets, from 0.
+    /// Index of the surface on the path, from 0.
     pub surface: u32,
-    /// Where it went wrong.
+    /// The stage with the illegal result.
     pub stage: PathStage,
-    /// What was found, and what is legal.
+    /// The result that was found, and the legal ones.
     pub message: String,
 }
 
 impl fmt::Display for PathViolation {
-    /// On one line.
+    /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], sample, surface, stage, message } = self;
         let stage = stage.name();
@@ -67,44 +67,45 @@ impl fmt::Display for PathViolation {
     }
 }
 
-/// How many stages were judged, and what is known of them. A stage counts once for each path that passes it.
+/// The number of stages that were judged, by verdict. A stage counts once for each path that passes through it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StageCounts {
-    /// All that were judged.
+    /// All stages that were judged.
     pub checked: u64,
-    /// With one legal answer, up to narrow bounds, which the device gave.
+    /// Stages with a single legal answer, up to narrow bounds, which the device gave.
     pub decided: u64,
-    /// Several answers are legal, as at a silhouette or where chances are equal, and the device gave one of them.
+    /// Stages with several legal answers, as at a silhouette or at a random choice on a boundary, of which the device
+    /// gave one.
     pub open: u64,
-    /// Legal, but a bound is so wide that this says little.
+    /// Stages with a legal answer whose bound is so wide that the check says little.
     pub undecided: u64,
 }
 
 /// Whether a device followed paths as a conforming WGSL implementation may.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathCertificate {
-    /// How many paths were followed: samples of pixels.
+    /// The number of paths, which are samples of pixels.
     pub paths: u64,
-    /// Rays of samples.
+    /// Camera rays of samples.
     pub start: StageCounts,
-    /// What rays meet.
+    /// Nearest hits of rays.
     pub extend: StageCounts,
-    /// Surfaces, and what is behind everything.
+    /// Shading at surfaces, and of rays that hit nothing.
     pub scatter: StageCounts,
-    /// Searches for what hides a light.
+    /// Searches for surfaces that occlude a light.
     pub occlude: StageCounts,
-    /// What samples add.
+    /// Contributions of samples to the picture.
     pub accumulate: StageCounts,
-    /// How many stages are not legal.
+    /// The number of stages with an illegal result.
     pub violation_count: u64,
-    /// The first of them, in the order of samples, surfaces and pixels.
+    /// The first violations, in the order of samples, surfaces and pixels.
     pub violations: Vec<PathViolation>,
-    /// What the device was given is not what was asked for: then nothing that it made of it counts.
+    /// A mismatch between the data on the device and the requested data. If there is one, no path is judged.
     pub upload: Option<PathUploadError>,
 }
 
 impl PathCertificate {
-    /// All stages together.
+    /// The sum of the counts of all stages.
     #[must_use]
     pub fn stages(&self) -> StageCounts {
         [self.start, self.extend, self.scatter, self.occlude, self.accumulate]
@@ -112,7 +113,7 @@ impl PathCertificate {
             .fold(StageCounts::default(), StageCounts::plus)
     }
 
-    /// Whether every stage is as it may be.
+    /// Whether the uploaded data are correct and every stage is legal.
     #[must_use]
     pub fn is_legal(&self) -> bool {
         self.upload.is_none() && self.violation_count == 0
@@ -131,7 +132,7 @@ impl StageCounts {
 }
 
 impl fmt::Display for PathCertificate {
-    /// On one line.
+    /// Writes a summary on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let StageCounts { checked, decided, open, undecided } = self.stages();
         let percent = |count: u64| 100.0 * count as f64 / checked.max(1) as f64;

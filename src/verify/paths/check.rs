@@ -1,4 +1,4 @@
-//! All stages of all paths of a recording.
+//! The check of all stages of all paths of a recording.
 
 use super::certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
 use super::expected::{Expected, Mismatch};
@@ -16,17 +16,17 @@ use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
 use crate::verify::number::{Number, Vector};
 
-/// How many pixels a thread takes at a time.
+/// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 256;
 
-/// What is known of a stage.
+/// The verdict about a stage.
 enum StageOutcome {
     Decided,
     Open,
     Undecided,
 }
 
-/// What paths are judged by.
+/// The data with which paths are judged.
 struct PathCheck<'a> {
     checker: &'a Checker<'a>,
     recording: &'a PathRecording,
@@ -35,7 +35,7 @@ struct PathCheck<'a> {
 }
 
 impl Checker<'_> {
-    /// Judges every stage of every path. The recording must be of this checker's scene.
+    /// Judges every stage of every path. The recording must be of the scene of this checker.
     #[must_use]
     pub fn certify_paths(&self, recording: &PathRecording) -> PathCertificate {
         let upload = upload::check(self.scene, &self.candidates, recording).err();
@@ -65,7 +65,7 @@ impl Checker<'_> {
 }
 
 impl PathCertificate {
-    /// Adds what was found of other paths.
+    /// Adds the results for other paths.
     pub fn join(&mut self, part: Self) {
         self.paths += part.paths;
         self.start = self.start.plus(part.start);
@@ -91,7 +91,7 @@ impl StageCounts {
     }
 }
 
-/// Takes note of what became of a stage.
+/// Records the verdict about a stage.
 fn note(
     counts: &mut StageCounts,
     violations: &mut Vec<PathViolation>,
@@ -108,7 +108,7 @@ fn note(
     }
 }
 
-/// Follows a stage along every combination of open decisions, until one leads to what the device did.
+/// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
 fn along_choices(
     mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
 ) -> Result<StageOutcome, Mismatch> {
@@ -161,7 +161,7 @@ impl PathCheck<'_> {
     ) {
         let PathRecording { origin, size, .. } = self.recording;
         let width = size[0].max(1) as usize;
-        // A film's sides are u32.
+        // The sides of a film are u32.
         let pixel = [origin[0] + (index % width) as u32, origin[1] + (index / width) as u32];
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
@@ -177,7 +177,7 @@ impl PathCheck<'_> {
                 note(scatter, violations, address, self.scatter(address, &state, hit, &after));
                 last = Some(hit);
             } else {
-                // An ended path stays as it is.
+                // The state of a path that has ended does not change.
                 let mut expected = Expected::default();
                 let same = (0..PathState::SLOTS).try_for_each(|which| {
                     let name = (PathStage::Scatter, "a path that has ended");
@@ -195,11 +195,15 @@ impl PathCheck<'_> {
                 note(occlude, violations, address, self.occlude(&after, open));
             } else if stage.open[index] != after.bits(slot::PENDING) {
                 let words = format!("{open:?}, without a search");
-                let fail = Expected::default().fail(PathStage::Occlude, "the light's way", words);
+                let fail = Expected::default().fail(
+                    PathStage::Occlude,
+                    "the visibility of the light",
+                    words,
+                );
                 note(occlude, violations, address, Err(fail));
             }
             if stage.open[index] != after.bits(slot::PENDING) {
-                // What is hidden need not be searched again.
+                // A light that is occluded is not searched again.
                 after.slots[slot::PENDING][3] = stage.open[index];
                 after.slots[slot::SHADOW][3] = 0;
             }
@@ -266,25 +270,25 @@ impl PathCheck<'_> {
         let mut expected = Expected::default();
         let PathRecording { tables, lighting, .. } = self.recording;
         let emitter = state.departure().emitter;
-        let sought = (emitter != NO_EMITTER)
+        let sphere_of_light = (emitter != NO_EMITTER)
             .then(|| tables.get(lighting.emitter_first as usize + 3 * emitter as usize))
             .flatten()
             .map(|sphere| sphere.map(f32::from_bits));
-        search::check_open(self.searched(), state, sought, open, &mut expected).map(simple)
+        search::check_open(self.searched(), state, sphere_of_light, open, &mut expected).map(simple)
     }
 
-    /// What a sample adds to the picture.
+    /// Judges the contribution of a sample to the picture.
     fn accumulate(state: &PathState, sums: [[u32; 4]; 2]) -> Result<StageOutcome, Mismatch> {
-        const COLOR: (PathStage, &str) = (PathStage::Accumulate, "the sample's colour");
+        const COLOR: (PathStage, &str) = (PathStage::Accumulate, "the sample's color");
         const ALPHA: (PathStage, &str) = (PathStage::Accumulate, "the sample's opacity");
-        const ALBEDO: (PathStage, &str) = (PathStage::Accumulate, "the first surface's colour");
-        const SQUARE: (PathStage, &str) = (PathStage::Accumulate, "the luminance's square");
+        const ALBEDO: (PathStage, &str) = (PathStage::Accumulate, "the first surface's color");
+        const SQUARE: (PathStage, &str) = (PathStage::Accumulate, "the square of the luminance");
         let [[r, g, b, alpha], [x, y, z, square]] = sums.map(|sum| sum.map(f32::from_bits));
         let mut expected = Expected::default();
         let color = radiance_so_far(state);
         expected.vector(COLOR, [r, g, b], color)?;
-        expected.number(ALPHA, alpha, Number::had(state.number(slot::RADIANCE)))?;
-        expected.vector(ALBEDO, [x, y, z], Vector::had(state.vector(slot::FIRST)))?;
+        expected.number(ALPHA, alpha, Number::recorded(state.number(slot::RADIANCE)))?;
+        expected.vector(ALBEDO, [x, y, z], Vector::recorded(state.vector(slot::FIRST)))?;
         let weights = Vector(LUMINANCE.map(Number::constant));
         expected.number(SQUARE, square, color.dot(weights).squared())?;
         Ok(if expected.is_wide { StageOutcome::Undecided } else { StageOutcome::Decided })

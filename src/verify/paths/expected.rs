@@ -1,4 +1,4 @@
-//! What a kernel may have written, number by number, against what it wrote.
+//! The comparison of what a kernel wrote with what it may have written, number by number.
 
 use std::fmt;
 
@@ -7,16 +7,16 @@ use super::recording::PathState;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-/// A bound that is wider than this, of the number itself, says nothing.
+/// The relative width above which a bound says nothing.
 const WIDE: f64 = 0.1;
 
-/// Something that a device wrote and may not have written.
+/// A result of a device that is not legal.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mismatch {
     pub(super) stage: PathStage,
     pub(super) what: &'static str,
     pub(super) answer: Answer,
-    /// How many comparisons went well before.
+    /// The number of comparisons that succeeded before.
     pub(super) after: u32,
 }
 
@@ -38,11 +38,11 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// Compares, and takes note of bounds that say nothing.
+/// Compares results with legal ones, and records whether a bound is too wide to say anything.
 #[derive(Debug, Default)]
 pub(super) struct Expected {
     passed: u32,
-    /// Whether a bound was too wide to say anything.
+    /// Whether some bound was too wide to say anything.
     pub(super) is_wide: bool,
 }
 
@@ -51,7 +51,7 @@ impl Expected {
         Mismatch { stage, what, answer, after: self.passed }
     }
 
-    /// Integers.
+    /// Compares integers.
     pub(super) fn bits(
         &mut self,
         (stage, what): (PathStage, &'static str),
@@ -65,7 +65,7 @@ impl Expected {
         Ok(())
     }
 
-    /// A number; its bound is narrow if it is so of `scale`.
+    /// Compares a number; its bound is narrow or wide relative to `scale`.
     fn within(
         &mut self,
         (stage, what): (PathStage, &'static str),
@@ -91,7 +91,7 @@ impl Expected {
         self.within(name, found, legal, legal.high.abs().max(legal.low.abs()))
     }
 
-    /// A vector, whose length is what its bounds are compared with.
+    /// Compares a vector; its bounds are narrow or wide relative to its largest component.
     pub(super) fn vector(
         &mut self,
         name: (PathStage, &'static str),
@@ -101,7 +101,7 @@ impl Expected {
         self.vector_of(name, found, legal, 0.0)
     }
 
-    /// A vector of a thing that has a size.
+    /// Compares a vector; its bounds are narrow or wide relative to `size` or its largest component.
     pub(super) fn vector_of(
         &mut self,
         name: (PathStage, &'static str),
@@ -118,7 +118,7 @@ impl Expected {
             .try_for_each(|(found, legal)| self.within(name, found, legal, scale))
     }
 
-    /// A slot that is what it was.
+    /// Checks that a slot has not changed.
     pub(super) fn same(
         &mut self,
         name: (PathStage, &'static str),

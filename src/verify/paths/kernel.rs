@@ -1,4 +1,4 @@
-//! The kernel that shades, followed number by number: what it is given, and what it may write. Twin of
+//! The check of the shading kernel, number by number: from its input to its legal output. The WGSL twins are
 //! `shaders/path/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
 
 use super::certificate::PathStage;
@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector};
 
-/// What a ray met, as the device had it.
+/// The hit of a ray as the device recorded it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
     pub(super) t: f32,
@@ -27,7 +27,7 @@ impl Hit {
     }
 }
 
-/// Which path, and which of its surfaces.
+/// The address of a surface: pixel, sample, and index on the path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Address {
     pub(super) pixel: [u32; 2],
@@ -35,11 +35,11 @@ pub(super) struct Address {
     pub(super) surface: u32,
 }
 
-/// One invocation, along one combination of its open decisions.
+/// One invocation of the kernel, for one combination of its open decisions.
 pub(super) struct Kernel<'a> {
     pub(super) scene: &'a Scene,
     pub(super) recording: &'a PathRecording,
-    /// Whether the kernel is the one for scenes in which all is matt or sends out light.
+    /// Whether this is the kernel for scenes in which every material is matt or emissive.
     pub(super) is_matt: bool,
     pub(super) address: Address,
     pub(super) before: &'a PathState,
@@ -49,38 +49,39 @@ pub(super) struct Kernel<'a> {
     pub(super) choices: &'a mut Choices,
 }
 
-/// A point that scatters light.
+/// A point of a surface that scatters light.
 pub(super) struct Surface {
     pub(super) vertex: Vertex,
     pub(super) material: super::material::Material,
     pub(super) axes: Axes,
-    /// Back to where the ray came from, in the frame of the normal.
+    /// The direction back along the arriving ray, in the tangent frame.
     pub(super) out: Vector,
 }
 
-/// A name of a number for reports.
+/// The stage and the name of a number, for reports.
 type Name = (PathStage, &'static str);
 
-const ORIGIN: Name = (PathStage::Vertex, "where the path goes on");
-const DIRECTION: Name = (PathStage::Scatter, "where the path goes");
-const DENSITY: Name = (PathStage::Scatter, "the density of going there");
+const ORIGIN: Name = (PathStage::Vertex, "the origin of the next ray");
+const DIRECTION: Name = (PathStage::Scatter, "the direction of the next ray");
+const DENSITY: Name = (PathStage::Scatter, "the density of the next direction");
 const FLAGS: Name = (PathStage::Scatter, "the path's flags");
 const DEPARTURE: Name = (PathStage::Vertex, "the sphere that the path leaves");
-const EXIT_DISTANCE: Name = (PathStage::Scatter, "the far side of the sphere that the path leaves");
-const THROUGHPUT: Name = (PathStage::Scatter, "what the path carries");
+const EXIT_DISTANCE: Name =
+    (PathStage::Scatter, "the exit distance of the sphere that the path leaves");
+const THROUGHPUT: Name = (PathStage::Scatter, "the path's throughput");
 const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
 const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
 const PENDING: Name = (PathStage::Light, "the pending light");
-const LIGHT: Name = (PathStage::Light, "the light that is looked for");
-const MEDIUM: Name = (PathStage::Scatter, "what absorbs light on the way");
-const FIRST: Name = (PathStage::Vertex, "the first surface's colour");
+const LIGHT: Name = (PathStage::Light, "the sampled light");
+const MEDIUM: Name = (PathStage::Scatter, "the absorption along the next ray");
+const FIRST: Name = (PathStage::Vertex, "the first surface's color");
 
 impl<'a> Kernel<'a> {
     pub(super) fn lighting(&self) -> &'a UploadedLighting {
         &self.recording.lighting
     }
 
-    /// A vector of the tables; zeros beyond them.
+    /// An entry of the tables; zeros beyond their end.
     pub(super) fn table(&self, at: u32) -> [u32; 4] {
         self.recording.tables.get(at as usize).copied().unwrap_or_default()
     }
@@ -98,17 +99,17 @@ impl<'a> Kernel<'a> {
         self.address.surface >= self.recording.max_depth
     }
 
-    /// Follows the kernel, and compares what it wrote.
+    /// Follows the kernel, and compares its output.
     pub(super) fn follow(&mut self) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
         let radiance_so_far = self.radiance_so_far();
         let alpha = before.number(slot::RADIANCE);
-        let through = Vector::had(before.vector(slot::THROUGHPUT));
+        let through = Vector::recorded(before.vector(slot::THROUGHPUT));
         let Some(vertex) = self.vertex()? else {
-            let light = self.light_from_afar();
+            let light = self.light_of_miss();
             return self.end(radiance_so_far + through.times(light), alpha);
         };
-        let medium = Vector::had(before.vector(slot::MEDIUM));
+        let medium = Vector::recorded(before.vector(slot::MEDIUM));
         let arriving = if self.is_matt {
             through
         } else {
@@ -120,7 +121,7 @@ impl<'a> Kernel<'a> {
         }
         let is_seen = !before.has(flag::SCATTERED);
         if is_seen && before.number(slot::FIRST) >= 0.0 {
-            let first = Vector::had(vertex.color).map(|c| c.min(Number::ONE));
+            let first = Vector::recorded(vertex.color).map(|c| c.min(Number::ONE));
             self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
             self.expected.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
         } else {
@@ -128,25 +129,25 @@ impl<'a> Kernel<'a> {
         }
         let material = self.material_of(&vertex);
         if material.is_emissive() {
-            let density = self.known_density(self.hit.id, before.vector(slot::ORIGIN));
-            let weight = self.chance_weight(density);
-            let light = Vector::had(vertex.color) * material.parameter * weight;
+            let density = self.density_of_hit_emitter(self.hit.id, before.vector(slot::ORIGIN));
+            let weight = self.weight_of_hit_light(density);
+            let light = Vector::recorded(vertex.color) * material.parameter * weight;
             self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
             return self.stop();
         }
         let axes = self.axes_around(vertex.normal);
-        let out = axes.to_local(-Vector::had(before.vector(slot::DIRECTION)));
+        let out = axes.to_local(-Vector::recorded(before.vector(slot::DIRECTION)));
         let at = Surface { vertex, material, axes, out };
         let light = self.head_light(&at, is_seen);
         self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
         if self.is_last() {
             return self.stop();
         }
-        self.look_for_light(&at, arriving)?;
+        self.sample_light(&at, arriving)?;
         self.bounce(&at, arriving)
     }
 
-    /// The sphere that is left, and its far side on the way that the path takes.
+    /// Compares the sphere that the path leaves, and its exit distance along the next ray.
     fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
         let (after, departure) = (self.after, self.after.departure());
         let (id, shape_index) =
@@ -154,20 +155,20 @@ impl<'a> Kernel<'a> {
         self.expected.bits(DEPARTURE, departure.id, id)?;
         self.expected.bits(DEPARTURE, departure.shape_index, shape_index)?;
         let exit_distance = if after.has(flag::INSIDE) {
-            at.exit_distance(Vector::had(after.vector(slot::DIRECTION)))
+            at.exit_distance(Vector::recorded(after.vector(slot::DIRECTION)))
         } else {
             Number::ZERO
         };
         self.expected.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
     }
 
-    /// The radiance so far, and the light that was looked for last if nothing is in between.
+    /// The radiance of the path so far, including the pending light if it is not occluded.
     fn radiance_so_far(&self) -> Vector {
         radiance_so_far(self.before)
     }
 
     pub(super) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
-        const KEPT: Name = (PathStage::Scatter, "what stays as it is");
+        const KEPT: Name = (PathStage::Scatter, "an unchanged part of the path's state");
         let states = [self.before, self.after];
         slots.iter().try_for_each(|slot| self.expected.same(KEPT, states, *slot))
     }
@@ -178,24 +179,24 @@ impl<'a> Kernel<'a> {
         self.expected.number(ALPHA, after.number(slot::RADIANCE), alpha)
     }
 
-    /// The pending light, and whether it is still to be asked what is in between: 1, or 0.
+    /// Compares the pending light, and whether it must be tested for occlusion: 1 or 0.
     pub(super) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
         let after = self.after;
         self.expected.vector(PENDING, after.vector(slot::PENDING), light)?;
         self.expected.number(LIGHT, after.number(slot::PENDING), open)
     }
 
-    /// No light is looked for; in which direction there was none, does not matter.
+    /// Compares the state if no light was sampled; the direction of the light does not matter then.
     fn compare_no_light(&mut self) -> Result<(), Mismatch> {
         let after = self.after;
         self.expected.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
         self.compare_light(Vector::ZERO, Number::ZERO)
     }
 
-    /// The path ends behind everything.
+    /// The path ends because its ray hits nothing.
     fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
         let after = self.after;
-        self.compare_radiance(radiance, Number::had(alpha))?;
+        self.compare_radiance(radiance, Number::recorded(alpha))?;
         self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
         self.expected.bits(FLAGS, after.flags(), 0)?;
         self.compare_no_light()?;
@@ -203,13 +204,13 @@ impl<'a> Kernel<'a> {
         self.same(&[slot::MEDIUM])
     }
 
-    /// The path ends on a surface. Where it would have gone, does not matter.
+    /// The path ends on a surface. The next ray does not matter then.
     fn stop(&mut self) -> Result<(), Mismatch> {
         self.expected.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
         self.compare_no_light()
     }
 
-    /// The path goes through a surface as if there were nothing.
+    /// The path passes through a surface as if it were not there.
     fn pass(
         &mut self,
         at: &Vertex,
@@ -217,16 +218,16 @@ impl<'a> Kernel<'a> {
         arriving: Vector,
     ) -> Result<(), Mismatch> {
         let (before, after) = (self.before, self.after);
-        self.compare_radiance(radiance_so_far, Number::had(before.number(slot::RADIANCE)))?;
+        self.compare_radiance(radiance_so_far, Number::recorded(before.number(slot::RADIANCE)))?;
         self.same(&[slot::FIRST])?;
-        // Glass ends at its back wall, also where that lets light pass.
+        // Glass ends at its far side, even if the path passes through that side.
         if at.is_back && self.material_of(at).is_dielectric() {
             self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), Vector::ZERO)?;
         } else {
             self.same(&[slot::MEDIUM])?;
         }
         self.compare_no_light()?;
-        let direction = Vector::had(before.vector(slot::DIRECTION));
+        let direction = Vector::recorded(before.vector(slot::DIRECTION));
         self.expected.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
         self.expected.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
         self.expected.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
@@ -235,7 +236,7 @@ impl<'a> Kernel<'a> {
         self.compare_flags(at, true, flag::FULL | scattered | alive)
     }
 
-    /// Flags, and on which side of a surface the path goes on.
+    /// Compares the flags, including on which side of a surface the path continues.
     fn compare_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
@@ -243,7 +244,7 @@ impl<'a> Kernel<'a> {
         self.expected.bits(FLAGS, self.after.flags(), side | ground | flags)
     }
 
-    /// Where a surface scatters the path.
+    /// A surface scatters the path.
     fn bounce(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (after, surface) = (self.after, self.address.surface);
         let lobe = unit(self.pair(3)[0]);
@@ -268,7 +269,7 @@ impl<'a> Kernel<'a> {
         let medium = if is_glass && is_behind {
             if at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
         } else {
-            Vector::had(self.before.vector(slot::MEDIUM))
+            Vector::recorded(self.before.vector(slot::MEDIUM))
         };
         self.expected.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
 
@@ -286,8 +287,9 @@ pub(super) fn unit(bits: u32) -> Number {
     Number::known(crate::camera::sampling::unit(bits))
 }
 
-/// The radiance of a path, and the light that it looked for last if nothing is in between.
+/// The radiance of a path, including the pending light if it is not occluded.
 pub(super) fn radiance_so_far(state: &PathState) -> Vector {
-    let open = Number::had(state.number(slot::PENDING));
-    Vector::had(state.vector(slot::RADIANCE)) + Vector::had(state.vector(slot::PENDING)) * open
+    let open = Number::recorded(state.number(slot::PENDING));
+    Vector::recorded(state.vector(slot::RADIANCE))
+        + Vector::recorded(state.vector(slot::PENDING)) * open
 }

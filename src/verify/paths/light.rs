@@ -1,4 +1,4 @@
-//! The light that a surface looks for. Twin of `shaders/path/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
+//! The check of light sampling at a surface. The WGSL twins are `shaders/path/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
 
 use super::certificate::PathStage;
 use super::expected::Mismatch;
@@ -10,19 +10,19 @@ use crate::light::codes::sampling::{CHANCE, MULTIPLE};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
 
-/// A light as a surface sees it.
-struct Found {
+/// A sample of a light source, seen from a surface.
+struct LightSample {
     direction: Vector,
     distance: Number,
-    /// Of a light that may be met by chance as well; else 0.
+    /// Density of the direction, for a light that scattered rays can hit as well; 0 for others.
     density: Number,
-    /// Over the density.
+    /// Radiance divided by the density.
     radiance: Vector,
-    /// Which emitter it is, or [`NO_EMITTER`].
+    /// Index of the emitter, or [`NO_EMITTER`].
     emitter: u32,
 }
 
-/// An emissive sphere as kernels have it.
+/// An emissive sphere in the tables of the device.
 struct Emitter {
     sphere: [f32; 4],
     probability: Number,
@@ -30,11 +30,11 @@ struct Emitter {
 }
 
 const DIRECTION: (PathStage, &str) = (PathStage::Light, "the direction towards the light");
-const DISTANCE: (PathStage, &str) = (PathStage::Light, "how far the light is");
-const EMITTER: (PathStage, &str) = (PathStage::Light, "the sphere that is looked for");
+const DISTANCE: (PathStage, &str) = (PathStage::Light, "the distance to the light");
+const EMITTER: (PathStage, &str) = (PathStage::Light, "the sampled emitter");
 
 impl Kernel<'_> {
-    /// Lights at the eye, on what the camera sees.
+    /// The light of lights at the eye, which reaches only surfaces that the camera sees.
     pub(super) fn head_light(&mut self, at: &Surface, is_seen: bool) -> Vector {
         if !is_seen || at.material.is_dielectric() {
             return Vector::ZERO;
@@ -43,18 +43,18 @@ impl Kernel<'_> {
             .filter(|light| self.table(3 * light)[3] == HEAD)
             .map(|light| {
                 let [r, g, b, _] = self.table_numbers(3 * light + 1);
-                Vector::had([r, g, b])
+                Vector::recorded([r, g, b])
             })
             .fold(Vector::ZERO, |sum, light| sum + light);
         if sum.0.iter().all(Number::is_zero) {
             return Vector::ZERO;
         }
-        let color = Vector::had(at.vertex.color);
+        let color = Vector::recorded(at.vertex.color);
         let r = self.reflect_toward(&at.material, color, at.out, at.out);
         (sum * pi()).times(r.value)
     }
 
-    pub(super) fn look_for_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
+    pub(super) fn sample_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
         let (lighting, after) = (self.lighting(), self.after);
         if lighting.source_count == 0 {
             self.expected.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
@@ -67,16 +67,16 @@ impl Kernel<'_> {
         let position = at.vertex.position;
         let is_emitter = source == lighting.lamp_sources && lighting.emitter_count > 0;
         let found = if source < lighting.lamp_sources {
-            self.find_lamp(source, position, u)
+            self.sample_lamp(source, position, u)
         } else if is_emitter {
-            self.find_sphere(position, u, choice)
+            self.sample_emitter(position, u, choice)
         } else {
-            self.find_sky(u)
+            self.sample_sky_light(u)
         };
         self.expected.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
         self.expected.bits(EMITTER, after.departure().emitter, found.emitter)?;
 
-        let color = Vector::had(at.vertex.color);
+        let color = Vector::recorded(at.vertex.color);
         let toward = at.axes.to_local(found.direction);
         let r = self.reflect_toward(&at.material, color, at.out, toward);
         let mut light = through.times(r.value).times(found.radiance);
@@ -95,15 +95,15 @@ impl Kernel<'_> {
         self.compare_light(light, open)
     }
 
-    /// Whether there is light, and what hides it needs a search.
-    fn is_open(&mut self, at: &Surface, found: &Found, light: Vector) -> bool {
+    /// Whether light may arrive, so that occlusion must be tested.
+    fn is_open(&mut self, at: &Surface, found: &LightSample, light: Vector) -> bool {
         let vertex = &at.vertex;
         if !self.choices.decide(light.largest().is_above_zero()) {
             return false;
         }
         if vertex.is_back {
-            let to_wall = vertex.exit_distance(found.direction);
-            if self.choices.decide(to_wall.is_less(found.distance)) {
+            let exit = vertex.exit_distance(found.direction);
+            if self.choices.decide(exit.is_less(found.distance)) {
                 return false;
             }
         }
@@ -120,17 +120,17 @@ impl Kernel<'_> {
         Number::known(self.lighting().source_count.max(1).into())
     }
 
-    fn find_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> Found {
+    fn sample_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> LightSample {
         let light = self.table(3 * source + 2)[0];
         let at = light.saturating_mul(3);
         let [x, y, z, _] = self.table_numbers(at);
-        let position_of_light = Vector::had([x, y, z]);
+        let position_of_light = Vector::recorded([x, y, z]);
         let [r, g, b, size] = self.table_numbers(at.saturating_add(1));
-        let (power, size) = (Vector::had([r, g, b]), Number::had(size));
+        let (power, size) = (Vector::recorded([r, g, b]), Number::recorded(size));
         let kind = self.table(at)[3];
         let far = Number::known(NO_HIT.into());
         let sources = self.sources();
-        let found = |direction, distance, density, strength: Vector| Found {
+        let found = |direction, distance, density, strength: Vector| LightSample {
             direction,
             distance,
             density,
@@ -140,7 +140,7 @@ impl Kernel<'_> {
         if kind == DIRECTIONAL {
             let direction =
                 axes_around(position_of_light, self.choices).to_world(cone_direction(u, size));
-            let direction = self.looked_for(direction);
+            let direction = self.narrowed_direction(direction);
             let strength = power * (Number::TWO / (Number::TWO - size));
             let density = if size.is_zero() {
                 Number::ZERO
@@ -163,17 +163,17 @@ impl Kernel<'_> {
             (Number::TWO, Vector([Number::ZERO, Number::ZERO, Number::ONE]))
         };
         let direction = axes_around(around, self.choices).to_world(cone_direction(u, k));
-        let direction = self.looked_for(direction);
+        let direction = self.narrowed_direction(direction);
         let middle = toward.dot(direction);
         let foot = toward - direction * middle;
         let chord = (size.squared() - foot.squared()).max(Number::ZERO).sqrt();
-        let wall = if is_outside { middle - chord } else { middle + chord };
-        found(direction, wall.max(Number::ZERO), Number::ZERO, power * (Number::TWO * k))
+        let side = if is_outside { middle - chord } else { middle + chord };
+        found(direction, side.max(Number::ZERO), Number::ZERO, power * (Number::TWO * k))
     }
 
-    /// A fenced direction towards a light is the one that the state tells, if it may be.
-    fn looked_for(&self, direction: Vector) -> Vector {
-        let recorded = Vector::had(self.after.vector(slot::SHADOW));
+    /// The direction towards a light, narrowed to the fenced direction in the recorded state if that is legal.
+    fn narrowed_direction(&self, direction: Vector) -> Vector {
+        let recorded = Vector::recorded(self.after.vector(slot::SHADOW));
         direction.zip(recorded, Number::narrowed)
     }
 
@@ -183,12 +183,12 @@ impl Kernel<'_> {
         let [r, g, b, _] = self.table_numbers(at + 2);
         Emitter {
             sphere: self.table_numbers(at),
-            probability: Number::had(probability),
-            radiance: Vector::had([r, g, b]),
+            probability: Number::recorded(probability),
+            radiance: Vector::recorded([r, g, b]),
         }
     }
 
-    /// The first emitter of which a word is at least so large.
+    /// The index of the first emitter whose word is at least `value`.
     fn find_emitter(&self, word: usize, value: u32) -> u32 {
         let count = self.lighting().emitter_count;
         let first = self.lighting().emitter_first;
@@ -201,11 +201,11 @@ impl Kernel<'_> {
         low.min(count.max(1) - 1)
     }
 
-    /// The density with which a point sees a point of an emitter chosen; 0 from inside.
+    /// The density with which a point samples directions towards a chosen emitter; 0 from inside.
     fn emitter_density(&mut self, emitter: &Emitter, position: Vector) -> Number {
         let [x, y, z, radius] = emitter.sphere;
-        let radius = Number::had(radius);
-        let distance = (Vector::had([x, y, z]) - position).fence().squared().sqrt();
+        let radius = Number::recorded(radius);
+        let distance = (Vector::recorded([x, y, z]) - position).fence().squared().sqrt();
         if !self.choices.decide(radius.is_less(distance)) {
             return Number::ZERO;
         }
@@ -213,27 +213,27 @@ impl Kernel<'_> {
         emitter.probability / (Number::TWO * pi() * k)
     }
 
-    /// The density with which an emitter that was met would have been looked for.
-    pub(super) fn known_density(&mut self, id: u32, position: [f32; 3]) -> Number {
+    /// The density with which light sampling would have chosen the emissive sphere that was hit.
+    pub(super) fn density_of_hit_emitter(&mut self, id: u32, position: [f32; 3]) -> Number {
         if self.lighting().emitter_count == 0 {
             return Number::ZERO;
         }
         let found = self.emitter(self.find_emitter(0, id));
-        self.emitter_density(&found, Vector::had(position)) / self.sources()
+        self.emitter_density(&found, Vector::recorded(position)) / self.sources()
     }
 
-    fn find_sphere(&mut self, position: Vector, u: [u32; 2], choice: u32) -> Found {
+    fn sample_emitter(&mut self, position: Vector, u: [u32; 2], choice: u32) -> LightSample {
         let emitter = self.find_emitter(1, choice);
         let found = self.emitter(emitter);
         let density = self.emitter_density(&found, position) / self.sources();
         let [x, y, z, radius] = found.sphere;
-        let radius = Number::had(radius);
-        let toward = Vector::had([x, y, z]) - position;
+        let radius = Number::recorded(radius);
+        let toward = Vector::recorded([x, y, z]) - position;
         let length = toward.fence().squared().max(Number::constant(1e-30)).sqrt();
         let k = cone_of_sphere(radius, length.max(radius));
         let axis = toward.fence().map(|c| c / length);
         let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
-        let direction = self.looked_for(direction);
+        let direction = self.narrowed_direction(direction);
         let middle = toward.dot(direction);
         let foot = toward - direction * middle;
         let chord = (radius.squared() - foot.squared()).max(Number::ZERO).sqrt();
@@ -244,10 +244,10 @@ impl Kernel<'_> {
             let divisor = density.max(Number::constant(1e-30));
             found.radiance.map(|c| c / divisor)
         };
-        Found { direction, distance, density, radiance, emitter }
+        LightSample { direction, distance, density, radiance, emitter }
     }
 
-    fn find_sky(&mut self, u: [u32; 2]) -> Found {
+    fn sample_sky_light(&mut self, u: [u32; 2]) -> LightSample {
         let (direction, density) = self.sample_sky(u);
         let density = density / self.sources();
         let divisor = density.max(Number::constant(1e-30));
@@ -257,20 +257,21 @@ impl Kernel<'_> {
             self.sky_radiance(direction).map(|c| c / divisor)
         };
         let distance = Number::known(NO_HIT.into());
-        Found { direction, distance, density, radiance, emitter: NO_EMITTER }
+        LightSample { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
 
-    /// What light that is met counts, if it might have been looked for with a density.
-    pub(super) fn chance_weight(&mut self, looked_for: Number) -> Number {
+    /// The weight of light that a scattered ray hit, if light sampling would have chosen it with a density.
+    pub(super) fn weight_of_hit_light(&mut self, light_density: Number) -> Number {
         let sampling = self.lighting().light_sampling;
-        let is_sought = !looked_for.is_zero() && self.choices.decide(looked_for.is_above_zero());
-        if self.before.has(flag::FULL) || sampling == CHANCE || !is_sought {
+        let is_sampled =
+            !light_density.is_zero() && self.choices.decide(light_density.is_above_zero());
+        if self.before.has(flag::FULL) || sampling == CHANCE || !is_sampled {
             return Number::ONE;
         }
         if sampling != MULTIPLE {
             return Number::ZERO;
         }
-        let scattered = Number::had(self.before.number(slot::DIRECTION));
-        scattered / (scattered + looked_for).max(Number::constant(1e-30))
+        let scattered = Number::recorded(self.before.number(slot::DIRECTION));
+        scattered / (scattered + light_density).max(Number::constant(1e-30))
     }
 }

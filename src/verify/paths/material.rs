@@ -1,4 +1,5 @@
-//! What surfaces do with light, and the GGX distribution. Twin of `shaders/scene/material.wgsl` and `microfacet.wgsl`.
+//! The check of materials and of the GGX distribution. The WGSL twins are `shaders/scene/material.wgsl` and
+//! `microfacet.wgsl`.
 
 use super::kernel::Kernel;
 use super::vertex::Vertex;
@@ -7,10 +8,10 @@ use crate::light::codes::material::{CONDUCTOR, DIELECTRIC, EMISSIVE, LAMBERT};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-/// How many numbers a table of an energy has.
+/// The number of entries of an energy table.
 pub(super) const ENERGIES: u32 = crate::light::energy::ENTRIES as u32;
 
-/// A material as kernels have it.
+/// A material in the tables of the device.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Material {
     kind: u32,
@@ -39,7 +40,7 @@ impl Material {
     }
 }
 
-/// The last place of a table of energies.
+/// The last index of an energy table.
 const LAST: f64 = (ENERGIES - 1) as f64;
 
 impl Kernel<'_> {
@@ -50,21 +51,21 @@ impl Kernel<'_> {
         let [x, y, z, _] = self.table_numbers(at.saturating_add(1));
         Material {
             kind,
-            parameter: Number::had(parameter),
-            alpha: Number::had(alpha),
+            parameter: Number::recorded(parameter),
+            alpha: Number::recorded(alpha),
             energies,
-            absorption: Vector::had([x, y, z]),
+            absorption: Vector::recorded([x, y, z]),
         }
     }
 
-    /// What a lobe keeps of the light that it gets at a cosine. From one entry to the next nothing jumps, so that
-    /// all entries that may be meant are taken together.
+    /// The energy that a lobe keeps at a cosine. The interpolation is continuous, so all entries that the interval of
+    /// the cosine may select are joined.
     pub(super) fn energy(&self, first: u32, cosine: Number) -> Number {
         let along = cosine.clamp(0.0, 1.0).sqrt().sqrt() * Number::known(LAST);
         let Interval { low, high } = along.interval();
         let index = |x: f64| x.clamp(0.0, LAST - 1.0) as u32;
         let entry = |at: u32| {
-            Number::had(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize])
+            Number::recorded(self.table_numbers(first.saturating_add(at >> 2))[(at & 3) as usize])
         };
         (index(low)..=index(high))
             .map(|below| {
@@ -80,16 +81,16 @@ impl Kernel<'_> {
     }
 }
 
-/// How many mirrors, by area, hide others from a direction.
+/// Smith's Λ of the GGX distribution at a cosine.
 pub(super) fn ggx_lambda(alpha: Number, cosine: Number) -> Number {
     let c2 = cosine.squared().max(Number::constant(1e-12));
-    // At least 0, as c2 is at most 1 or little more; the quotient of two that both grow and fall with the cosine.
+    // Not negative, because c2 is at most 1 apart from rounding. The quotient is monotonic in the cosine.
     let beyond = (Number::ONE - c2) / c2;
     let Interval { low, high } = beyond.interval();
     let Interval { low: least, high: most } = c2.interval();
     let exact = Number::between(1.0 / most - 1.0, 1.0 / least - 1.0);
     let Interval { low: floor, high: ceiling } = exact.interval();
-    // Both bound it: the second after what rounding adds to the quotient and the difference.
+    // Both are bounds; the second includes the rounding errors of the quotient and the difference.
     let error = 8.0 * crate::verify::rounding::U;
     let beyond = Number::between(
         low.max(floor - error * (1.0 + 1.0 / most)),
@@ -106,7 +107,7 @@ fn ggx_density(alpha: Number, half: Vector) -> Number {
     Number::ONE / (pi() * alpha.squared() * q.squared())
 }
 
-/// A mirror among those that are seen from `out`.
+/// A random microfacet normal, of those that are visible from `out`.
 pub(super) fn visible_mirror(
     alpha: Number,
     out: Vector,
@@ -125,7 +126,7 @@ pub(super) fn visible_mirror(
         Vector([Number::ONE, Number::ZERO, Number::ZERO])
     };
     let Vector([a, b, _]) = first;
-    // The cross product of both, of which the first has no z.
+    // The cross product of both; the first has no z component.
     let second = Vector([-(z * b), z * a, x * b - y * a]);
     let [p, down] = disk(u);
     let s = Number::HALF * (Number::ONE + z);
@@ -135,14 +136,14 @@ pub(super) fn visible_mirror(
     Vector([alpha * x, alpha * y, z.max(Number::constant(1e-6))]).normalized()
 }
 
-/// The density with which light is reflected there by a visible mirror.
+/// The density of directions that are reflected at visible microfacet normals.
 pub(super) fn reflected_density(alpha: Number, out: Vector, half: Vector) -> Number {
     let z = out.0[2];
     let seen = Number::ONE / (Number::ONE + ggx_lambda(alpha, z));
     seen * ggx_density(alpha, half) / (Number::known(4.0) * z)
 }
 
-/// Of white mirrors, the BRDF times the cosine.
+/// The BRDF of a white rough mirror, times the cosine.
 pub(super) fn mirrors_brdf(alpha: Number, out: Vector, toward: Vector, half: Vector) -> Number {
     let (z, along) = (out.0[2], toward.0[2]);
     let both = Number::ONE / (Number::ONE + ggx_lambda(alpha, z) + ggx_lambda(alpha, along));

@@ -1,11 +1,12 @@
-//! Decides whether paths are as a conforming device may have followed them.
+//! The checker of paths decides whether a conforming device may have followed them.
 //!
-//! A recording keeps the state of every path between two dispatches. Each dispatch is judged by itself, given the
-//! very numbers that the device had before it: the camera's ray of a sample, what a ray meets, what is made of that,
-//! whether a light is hidden, and what the sample adds. So errors do not add up along a path. Searches are judged as
-//! those of pictures with one ray (`verify/hit.rs`); a shading kernel is followed number by number, as intervals
-//! (`verify/number`), once for every combination of decisions that the intervals leave open: which wall, which side,
-//! which lobe, reflected or refracted, which texel, whether the path ends.
+//! A recording contains the state of every path between two dispatches. Each dispatch is judged separately, from the
+//! very numbers that the device had before it: the camera ray of a sample, the nearest hit of a ray, the shading of the
+//! hit, the occlusion of a light, and the contribution of the sample. Errors therefore do not accumulate along a path.
+//! Searches are judged like those of pictures with a single ray for each pixel (`verify/hit.rs`). A shading kernel is
+//! evaluated with intervals, number by number (`verify/number`), once for every combination of decisions that the
+//! intervals leave open: which side of a sphere, which lobe, reflection or refraction, which texel, and whether the
+//! path ends.
 
 mod bsdf;
 mod certificate;

@@ -1,74 +1,73 @@
-//! What a device did with paths, dispatch by dispatch, and the numbers that it was given.
+//! Recordings of paths: their states dispatch by dispatch, and the numbers that the device was given.
 
 use crate::camera::film::Film;
 use crate::render::RenderSettings;
 use crate::verify::recording::{RequestedCamera, UploadedView};
 
-/// Paths of a rectangle of a film as a device followed them. Beside the scene, this is all that the checker needs.
+/// A recording of the paths of a rectangle of a film. The checker needs only this and the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathRecording {
-    /// The camera that was asked for.
+    /// The requested camera.
     pub camera: RequestedCamera,
-    /// What was made of it for the device.
+    /// The numbers of the view on the device.
     pub uploaded: UploadedView,
-    /// The picture's size.
+    /// The size of the picture.
     pub film: Film,
-    /// The rectangle's first column and row.
+    /// First column and row of the rectangle.
     pub origin: [u32; 2],
-    /// Its width and height, in pixels.
+    /// Width and height of the rectangle in pixels.
     pub size: [u32; 2],
-    /// How light was to be followed.
+    /// The requested settings.
     pub settings: RenderSettings,
-    /// How many surfaces a path meets at most.
+    /// The largest number of surfaces that a path hits.
     pub max_depth: u32,
-    /// What was made of the settings for the device.
+    /// The parameters of the lighting on the device.
     pub lighting: UploadedLighting,
-    /// The bits of lights, emitters, materials and energies, each at its own place.
+    /// The tables of lights, emitters, materials and energies, as bits.
     pub tables: Vec<[u32; 4]>,
-    /// The sky's image, if it has one.
+    /// The image of the sky, if it has one.
     pub sky: Option<UploadedSky>,
-    /// The samples, one after the other.
+    /// The samples in the order of their indices.
     pub samples: Vec<RecordedSample>,
 }
 
-/// One sample of every pixel of the rectangle; lists are row by row from the top.
+/// One sample of every pixel of the rectangle. Lists are row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedSample {
-    /// Which of a pixel's samples.
+    /// Index of the sample in its pixel.
     pub sample: u32,
-    /// The paths as the camera starts them.
+    /// The state of every path at the camera.
     pub start: Vec<PathState>,
-    /// The surfaces that they met, one after the other.
+    /// The surfaces of the paths, in the order in which they are hit.
     pub surfaces: Vec<RecordedSurface>,
-    /// The bits of what the sample adds to each pixel: colour and opacity; the first surface's colour and the
-    /// luminance's square.
+    /// The contribution of the sample to each pixel, as bits: colour and opacity; the first surface's colour and the
+    /// square of the luminance.
     pub sums: Vec<[[u32; 4]; 2]>,
 }
 
-/// What became of every path at one surface.
+/// The results of all paths at one surface.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedSurface {
-    /// What the rays met: the bits of the distance, the id, the sphere's place, and the bits of how far the ray went
-    /// before it entered the scene's box.
+    /// The hits, as bits: distance, id, index in the structure, and distance from the ray's origin to the scene's box.
     pub hits: Vec<[u32; 4]>,
-    /// The paths after they were scattered.
+    /// The state of every path after shading.
     pub scattered: Vec<PathState>,
-    /// Of each, the bits of whether nothing is between it and the light that it looks for.
+    /// The visibility of each path's sampled light, as the bits of a number: 0 if it is occluded.
     pub open: Vec<u32>,
 }
 
-/// A path between two dispatches, as bits: the slots of `shaders/path/state.wgsl`.
+/// The state of a path between two dispatches, as bits: the slots of `shaders/path/state.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathState {
-    /// Slot by slot.
+    /// The slots, in order.
     pub slots: [[u32; 4]; Self::SLOTS],
 }
 
 impl PathState {
-    /// How many slots there are.
+    /// The number of slots.
     pub const SLOTS: usize = 9;
 
-    /// The slot of the light that is looked for, whose last number says whether nothing is in between.
+    /// The slot of the pending light, whose last number is its visibility.
     pub const PENDING: usize = 7;
 
     pub(super) fn vector(&self, slot: usize) -> [f32; 3] {
@@ -84,7 +83,7 @@ impl PathState {
         self.slots[slot][3]
     }
 
-    /// What the path leaves.
+    /// The surface that the path leaves.
     pub(super) fn departure(&self) -> Departure {
         let [id, shape_index, exit_distance, emitter] = self.slots[slot::DEPARTURE];
         Departure { id, shape_index, exit_distance: f32::from_bits(exit_distance), emitter }
@@ -99,23 +98,23 @@ impl PathState {
     }
 }
 
-/// What a path leaves: `shaders/path/departure.wgsl`.
+/// The surface that a path leaves: `shaders/path/departure.wgsl`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Departure {
-    /// The sphere; [`NO_ID`](crate::image::NO_ID) for none.
+    /// Id of the sphere; [`NO_ID`](crate::image::NO_ID) for none.
     pub(super) id: u32,
-    /// Where the device has it.
+    /// Index of the sphere on the device.
     pub(super) shape_index: u32,
-    /// How far its far side is, where the path goes inside; else 0.
+    /// Exit distance of the sphere if the path goes inside; else 0.
     pub(super) exit_distance: f32,
-    /// Which emitter is looked for, or [`NO_EMITTER`].
+    /// Index of the sampled emitter, or [`NO_EMITTER`].
     pub(super) emitter: u32,
 }
 
-/// For [`Departure::emitter`].
+/// The value of [`Departure::emitter`] without an emitter.
 pub(super) const NO_EMITTER: u32 = u32::MAX;
 
-/// The slots that paths use.
+/// The indices of the slots.
 pub(super) mod slot {
     pub(in crate::verify) const ORIGIN: usize = 0;
     pub(in crate::verify) const DIRECTION: usize = 1;
@@ -128,7 +127,7 @@ pub(super) mod slot {
     pub(in crate::verify) const MEDIUM: usize = 8;
 }
 
-/// Flags of a path, and of a lighting.
+/// Flags of the state of a path, and flags of the lighting.
 pub(super) mod flag {
     pub(in crate::verify) use crate::light::codes::lighting::{GROUND, SKY_SEEN, TRANSPARENT};
     pub(in crate::verify) use crate::light::codes::path::{
@@ -136,58 +135,58 @@ pub(super) mod flag {
     };
 }
 
-/// What of settings the kernels of paths are given: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
+/// The parameters of the lighting on the device: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UploadedLighting {
-    /// What is seen where there is nothing.
+    /// Colour where a ray hits nothing.
     pub background: [f32; 3],
-    /// Sums of the `LIGHTING_` constants.
+    /// Sum of the `LIGHTING_` constants that apply.
     pub flags: u32,
-    /// How many lights the tables have.
+    /// Number of lights in the tables.
     pub light_count: u32,
-    /// Radiance straight up.
+    /// Radiance of the sky straight up.
     pub zenith: [f32; 3],
-    /// Radiance of what is level.
+    /// Radiance of the sky at the horizon.
     pub horizon: [f32; 3],
-    /// Radiance straight down.
+    /// Radiance of the sky straight down.
     pub nadir: [f32; 3],
-    /// From which surface on paths end by chance.
+    /// First surface at which paths may end by Russian roulette.
     pub roulette_from: u32,
-    /// How many sources of direct light there are to choose from.
+    /// Number of light sources that can be sampled.
     pub source_count: u32,
-    /// 0 by chance, 1 directly, 2 both.
+    /// Method of light sampling: 0 for scattered rays only, 1 for direct sampling only, 2 for both.
     pub light_sampling: u32,
-    /// Which way is above the ground.
+    /// Unit normal of the ground.
     pub ground_normal: [f32; 3],
     /// A point of the ground, in the scene's frame.
     pub ground_point: [f32; 3],
-    /// The ground's colour.
+    /// Colour of the ground.
     pub ground_color: [f32; 3],
-    /// Of the noise.
+    /// Seed of the random numbers.
     pub seed: u32,
-    /// Where emitters start in the tables.
+    /// Index of the first emitter in the tables.
     pub emitter_first: u32,
-    /// How many of them there are.
+    /// Number of emitters.
     pub emitter_count: u32,
-    /// Where materials start in the tables.
+    /// Index of the first material in the tables.
     pub material_first: u32,
     /// Columns and rows of the sky's image.
     pub environment_size: [u32; 2],
-    /// Cosine and sine of the angle by which it is turned.
+    /// Cosine and sine of the rotation of the sky's image.
     pub environment_rotation: [f32; 2],
-    /// What it is multiplied by.
+    /// Factor of the radiance of the sky's image.
     pub environment_strength: f32,
-    /// How many of the sources are lights that are no spheres of the scene.
+    /// Number of light sources that are not spheres of the scene and not the sky.
     pub lamp_sources: u32,
-    /// Offsets of samples, for each 256th of the distribution.
+    /// Offsets of samples, for each 256th of the filter's distribution.
     pub filter_table: Vec<f32>,
 }
 
-/// A sky's image as kernels read it.
+/// The image of a sky, as kernels read it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UploadedSky {
     /// Radiance, row by row.
     pub texels: Vec<[f32; 3]>,
-    /// What samples are chosen by: rows, and the columns of each row.
+    /// Cumulative tables for sampling: that of the rows, and those of the columns of each row.
     pub shares: Vec<f32>,
 }

@@ -1,5 +1,6 @@
-//! What a path's ray meets, and whether anything is between a surface and a light. Twin of `shaders/primary/trace.wgsl`,
-//! `entry_path.wgsl`, `first_segment.wgsl`, `occlude.wgsl` and the parts of names with `origin`.
+//! The check of searches: the nearest hit of a path's ray, and the occlusion of a light. The WGSL twins are
+//! `shaders/primary/trace.wgsl`, `entry_path.wgsl`, `first_segment.wgsl`, `occlude.wgsl` and the parts whose names contain
+//! `origin`.
 
 use glam::{DVec3, Vec4};
 
@@ -20,7 +21,7 @@ use crate::verify::sphere::Slack;
 
 const STAGE: PathStage = PathStage::Extend;
 
-/// What rays are searched for in.
+/// The data in which searches are made.
 #[derive(Clone, Copy)]
 pub(super) struct Searched<'a> {
     pub(super) model: &'a CameraModel,
@@ -28,7 +29,7 @@ pub(super) struct Searched<'a> {
     pub(super) candidates: &'a Candidates,
 }
 
-/// A ray of a path, from where it enters the scene's box.
+/// A ray of a path, starting where it enters the scene's box.
 struct Entry {
     entered: EnteredRay,
     line: Line,
@@ -36,7 +37,7 @@ struct Entry {
 }
 
 impl Entry {
-    /// `distance` is how far it goes before it enters the box, if that is known.
+    /// `distance` is the distance from the origin to the scene's box, if it was recorded.
     fn new(
         model: &CameraModel,
         origin: [f32; 3],
@@ -71,7 +72,8 @@ impl Entry {
     }
 }
 
-/// Whether a sphere is one of those that a ray leaves or ends on. By value: a zero has no sign.
+/// Whether a sphere equals one that a ray leaves or ends on. Compared by value, because the sign of a zero does not
+/// matter.
 fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
     Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
@@ -80,7 +82,7 @@ fn four(state: &PathState, which: usize) -> [f32; 4] {
     state.slots[which].map(f32::from_bits)
 }
 
-/// Judges what a ray has met; says whether there was a choice. `last` is what the path met before.
+/// Judges the nearest hit of a ray; returns whether several answers are legal. `last` is the previous hit of the path.
 pub(super) fn check_hit(
     Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
@@ -95,14 +97,14 @@ pub(super) fn check_hit(
     legal.clear();
     let departure = state.departure();
     let departed = scene.spheres().get(departure.id as usize).copied();
-    // The far side has been compared when the path was scattered, and is known exactly.
+    // The exit distance was compared when the path was scattered, and is known exactly.
     let far_side = f64::from(departure.exit_distance);
     let own = last.zip(departed).filter(|_| state.has(flag::INSIDE));
     if own.is_some() {
         legal.miss = false;
         legal.limit = far_side;
     }
-    if entry.entered.may_meet_box {
+    if entry.entered.may_hit_box {
         let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
         legal.find_nearer(candidates, &entry.line, entry.slack, is_departed);
         legal.miss |= entry.entered.may_miss_box && own.is_none();
@@ -140,29 +142,29 @@ pub(super) fn check_hit(
     Ok(is_open)
 }
 
-/// Judges whether a light that is looked for was found; says whether there was a choice. `sought` is the emitter, if it
-/// is one.
+/// Judges the occlusion of a light; returns whether both answers are legal. `sphere_of_light` is the emitter, if the
+/// light is one.
 pub(super) fn check_open(
     Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
-    sought: Option<[f32; 4]>,
+    sphere_of_light: Option<[f32; 4]>,
     open: f32,
     expected: &mut Expected,
 ) -> Result<bool, Mismatch> {
-    const OPEN: (PathStage, &str) = (PathStage::Occlude, "the light's way");
+    const OPEN: (PathStage, &str) = (PathStage::Occlude, "the visibility of the light");
     let before = state.number(slot::PENDING);
     let [x, y, z, distance] = four(state, slot::SHADOW);
     let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
     let Interval { low, high } = entry.entered.enter;
-    let rest = (Number::had(distance) - Number::between(low, high)).interval();
+    let rest = (Number::recorded(distance) - Number::between(low, high)).interval();
     let (mut may_be_hidden, mut must_be_hidden) = (false, false);
     let departure = state.departure();
     let is_exempt = |sphere: [f32; 4]| {
         let departed = scene.spheres().get(departure.id as usize);
         let own = departed.is_some_and(|own| is_same(sphere, *own));
-        own || sought.is_some_and(|sought| is_same(sphere, sought))
+        own || sphere_of_light.is_some_and(|own| is_same(sphere, own))
     };
-    if entry.entered.may_meet_box && rest.high > 0.0 {
+    if entry.entered.may_hit_box && rest.high > 0.0 {
         let moved = entry.slack.across + entry.slack.along;
         candidates.visit(&entry.line, moved, rest.high, |candidate| {
             if is_exempt(candidate.sphere) {
@@ -179,8 +181,11 @@ pub(super) fn check_open(
     must_be_hidden &= !entry.entered.may_miss_box && rest.low > 0.0;
     let is_hidden = open == 0.0;
     if (is_hidden && !may_be_hidden) || (!is_hidden && must_be_hidden) {
-        let words =
-            if is_hidden { "hidden, but nothing is there" } else { "open, but it is hidden" };
+        let words = if is_hidden {
+            "occluded, but no surface is in between"
+        } else {
+            "visible, but a surface is in between"
+        };
         return Err(expected.fail(PathStage::Occlude, OPEN.1, words.to_owned()));
     }
     if !is_hidden {

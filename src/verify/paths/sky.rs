@@ -1,5 +1,5 @@
-//! Light from infinitely far away. Twin of `shaders/path/by_chance.wgsl`, `sky_plain.wgsl`, `sky_image.wgsl` and
-//! `environment.wgsl`.
+//! The check of light from infinitely far away. The WGSL twins are `shaders/path/by_chance.wgsl`, `sky_plain.wgsl`,
+//! `sky_image.wgsl` and `environment.wgsl`.
 
 use super::kernel::Kernel;
 use super::recording::{UploadedSky, flag, slot};
@@ -9,8 +9,8 @@ use crate::light::codes::lamp::DIRECTIONAL;
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 
 impl Kernel<'_> {
-    /// The radiance that a ray meets behind everything, by what it counts.
-    pub(super) fn light_from_afar(&mut self) -> Vector {
+    /// The radiance along a ray that hits no surface, times its weight.
+    pub(super) fn light_of_miss(&mut self) -> Vector {
         let lighting = self.lighting();
         let is_seen = !self.before.has(flag::SCATTERED);
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
@@ -18,12 +18,12 @@ impl Kernel<'_> {
             return Vector::ZERO;
         }
         if is_seen && lighting.flags & flag::SKY_SEEN == 0 {
-            return Vector::had(lighting.background);
+            return Vector::recorded(lighting.background);
         }
         let sources = Number::known(lighting.source_count.max(1).into());
-        let direction = Vector::had(self.before.vector(slot::DIRECTION));
+        let direction = Vector::recorded(self.before.vector(slot::DIRECTION));
         let density = self.sky_density(direction) / sources;
-        let weight = self.chance_weight(density);
+        let weight = self.weight_of_hit_light(density);
         let mut sum = self.sky_radiance(direction) * weight;
         for light in 0..lighting.light_count {
             let [x, y, z, _] = self.table_numbers(3 * light);
@@ -31,19 +31,19 @@ impl Kernel<'_> {
             if self.table(3 * light)[3] != DIRECTIONAL || k <= 0.0 {
                 continue;
             }
-            let k = Number::had(k);
-            let aside = (direction - Vector::had([x, y, z])).squared();
+            let k = Number::recorded(k);
+            let aside = (direction - Vector::recorded([x, y, z])).squared();
             if !self.choices.decide(aside.is_less(Number::TWO * k)) {
                 continue;
             }
-            let weight = self.chance_weight(Number::ONE / (Number::TWO * pi() * k * sources));
+            let weight = self.weight_of_hit_light(Number::ONE / (Number::TWO * pi() * k * sources));
             let size = k * (Number::TWO - k);
-            sum = sum + Vector::had([r, g, b]).map(|c| c / size) * weight;
+            sum = sum + Vector::recorded([r, g, b]).map(|c| c / size) * weight;
         }
         sum
     }
 
-    /// The image, if the sky is one.
+    /// The image of the sky, if there is one.
     fn image(&self) -> Option<&UploadedSky> {
         self.recording.sky.as_ref()
     }
@@ -53,14 +53,15 @@ impl Kernel<'_> {
         if self.image().is_none() {
             let height = direction.0[1];
             let is_down = self.choices.decide(height.is_less(Number::ZERO));
-            let end = Vector::had(if is_down { lighting.nadir } else { lighting.zenith });
+            let end = Vector::recorded(if is_down { lighting.nadir } else { lighting.zenith });
             let along = height.abs();
-            return Vector::had(lighting.horizon) * (Number::ONE - along) + end * along;
+            return Vector::recorded(lighting.horizon) * (Number::ONE - along) + end * along;
         }
         let [column, row] = self.texel(direction);
         let at = row as usize * lighting.environment_size[0] as usize + column as usize;
         let texel = self.image().and_then(|image| image.texels.get(at)).copied();
-        Vector::had(texel.unwrap_or_default()) * Number::had(lighting.environment_strength)
+        Vector::recorded(texel.unwrap_or_default())
+            * Number::recorded(lighting.environment_strength)
     }
 
     fn sky_density(&mut self, direction: Vector) -> Number {
@@ -71,9 +72,9 @@ impl Kernel<'_> {
         self.density_of(texel)
     }
 
-    /// x and z, turned about +y.
+    /// x and z after a rotation about +y.
     fn turned(&self, [x, z]: [Number; 2], sign: f64) -> [Number; 2] {
-        let [cosine, sine] = self.lighting().environment_rotation.map(Number::had);
+        let [cosine, sine] = self.lighting().environment_rotation.map(Number::recorded);
         let sine = Number::known(sign) * sine;
         [cosine * x + sine * z, cosine * z - sine * x]
     }
@@ -87,7 +88,7 @@ impl Kernel<'_> {
         let down = Number::TWO * atan2_turns(level, y, self.choices);
         let [width, height] = self.lighting().environment_size;
         [(across, width), (down, height)].map(|(part, count)| {
-            // Numbers below zero become zero.
+            // Negative numbers become zero.
             let all = (part * Number::known(count.into())).max(Number::ZERO);
             let texel = self.choices.pick(all.floor());
             (texel as u32).min(count.max(1) - 1)
@@ -99,7 +100,7 @@ impl Kernel<'_> {
         share.copied().unwrap_or_default().into()
     }
 
-    /// Where the shares of a row's columns start.
+    /// Index of the first entry of the cumulative table of a row's columns.
     fn columns(&self, row: u32) -> usize {
         let [width, height] = self.lighting().environment_size.map(|side| side as usize);
         height + 1 + row as usize * (width + 1)
@@ -108,7 +109,7 @@ impl Kernel<'_> {
     fn density_of(&mut self, [column, row]: [u32; 2]) -> Number {
         let [width, height] = self.lighting().environment_size.map(f64::from);
         let entry = self.columns(row) + column as usize;
-        // Multiples of 2^-24 below 1: exact.
+        // The shares are multiples of 2^-24 below 1, so the difference is exact.
         let share = |at: usize| Number::known(self.share(at + 1) - self.share(at));
         let (x, y) = (share(entry), share(row as usize));
         let height = Number::known(height);
@@ -119,7 +120,7 @@ impl Kernel<'_> {
         x * (y / all)
     }
 
-    /// The entry of a table, but its last, that is the last that is at most the chance.
+    /// The last entry of a cumulative table, except its end, that is at most `chance`.
     fn chosen(&self, first: usize, count: u32, chance: f64) -> u32 {
         let (mut low, mut high) = (0, count);
         for _ in 0..12 {
@@ -129,7 +130,7 @@ impl Kernel<'_> {
         low
     }
 
-    /// A direction, and the density with which it is chosen.
+    /// A sampled direction, and its density.
     pub(super) fn sample_sky(&mut self, u: [u32; 2]) -> (Vector, Number) {
         if self.image().is_none() {
             return (Vector::ZERO, Number::ZERO);
@@ -148,7 +149,7 @@ impl Kernel<'_> {
         let along = along.min(Number::ONE);
         let across = (Number::known(column.into()) + along) / Number::known(width.into());
         let [sine, cosine] = sin_cos_turns(across - Number::HALF, self.choices);
-        // From the nearer pole, by sin² of half the colatitude.
+        // Measured from the nearer pole by sin² of half the colatitude.
         let is_upper = 2 * row < height;
         let from_pole = if is_upper { row } else { height - 1 - row };
         let into = if is_upper {

@@ -1,4 +1,4 @@
-//! The camera's ray of a sample. Twin of `shaders/path/start.wgsl`, `filter.wgsl` and `film_sample.wgsl`.
+//! The check of a sample's camera ray. The WGSL twins are `shaders/path/start.wgsl`, `filter.wgsl` and `film_sample.wgsl`.
 
 use glam::{DVec2, DVec3};
 
@@ -18,7 +18,7 @@ const ORIGIN: (PathStage, &str) = (PathStage::Start, "the ray's origin");
 const DIRECTION: (PathStage, &str) = (PathStage::Start, "the ray's direction");
 const DISTANCE: (PathStage, &str) = (PathStage::Start, "the ray's distance from the camera");
 const FLAGS: (PathStage, &str) = (PathStage::Start, "the path's flags");
-const NOTHING: (PathStage, &str) = (PathStage::Start, "what is nothing yet");
+const NOTHING: (PathStage, &str) = (PathStage::Start, "the initial state");
 
 /// Compares the state of a path before anything is traced.
 pub(super) fn check(
@@ -68,7 +68,7 @@ pub(super) fn check(
     (0..PathState::SLOTS).try_for_each(|which| expected.same(NOTHING, [&legal, found], which))
 }
 
-/// The relative location of a sample: of a point beside the pixel's centre.
+/// The relative location of a sample, which is near the pixel's centre.
 fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Location {
     let sign = match film.y_axis() {
         YAxis::Up => -1.0,
@@ -86,9 +86,9 @@ fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Locatio
     Location { exact: DVec2::new(x, y), error: DVec2::new(x_error, y_error) }
 }
 
-/// How far from the pixel's centre, in pixels.
+/// The distance from the pixel's centre in pixels.
 fn offset(table: &[f32], u: u32) -> Number {
-    let entry = |at: u32| Number::had(table.get(at as usize).copied().unwrap_or_default());
+    let entry = |at: u32| Number::recorded(table.get(at as usize).copied().unwrap_or_default());
     let (low, high) = (entry(u >> 24), entry((u >> 24) + 1));
     let fraction = Number::known(f64::from((u >> 8) & 0xffff) / f64::from(1 << 16));
     (low + (fraction * (high - low).fence()).fence()).fence()

@@ -1,4 +1,5 @@
-//! Whether lights, emitters, materials and energies on a device are those that were asked for.
+//! The check of uploaded tables: whether lights, emitters, materials and energies on the device are those that were
+//! requested.
 
 use std::cmp::Ordering;
 
@@ -15,7 +16,7 @@ use crate::render::{Integrator, LightSampling};
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// Tables, and how they are read.
+/// The tables on the device.
 struct Tables<'a> {
     words: &'a [[u32; 4]],
     lighting: &'a UploadedLighting,
@@ -43,7 +44,7 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
     check_materials(&tables, scene)?;
     let is_image = match &recording.settings.sky.light {
         SkyLight::Image { environment, strength, .. } => {
-            environment.has_light() && *strength > 0.0 && is_looked_for(recording)
+            environment.has_light() && *strength > 0.0 && uses_light_sampling(recording)
         }
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
     };
@@ -52,18 +53,18 @@ pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), Path
     if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
         Ok(())
     } else {
-        Err(PathUploadError::Lighting { what: "the number of sources of light" })
+        Err(PathUploadError::Lighting { what: "the number of light sources" })
     }
 }
 
-fn is_looked_for(recording: &PathRecording) -> bool {
+fn uses_light_sampling(recording: &PathRecording) -> bool {
     match &recording.settings.integrator {
         Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
         Integrator::Primary(_) | Integrator::Studio(_) => false,
     }
 }
 
-/// How many of the lights are looked for.
+/// Checks the table of lights, and returns how many of them light sampling chooses from.
 fn check_lights(
     tables: &Tables<'_>,
     scene: &Scene,
@@ -81,7 +82,7 @@ fn check_lights(
         let near = |color: crate::image::color::LinearRgb| {
             are_near(power, color.to_array().map(f64::from))
         };
-        // What f64 itself may round where large numbers cancel.
+        // The rounding error of f64 if large numbers cancel.
         let is_at = |point: glam::DVec3| {
             let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
             (0..3).all(|axis| {
@@ -93,11 +94,11 @@ fn check_lights(
             LightKind::Head { strength } => (is_kind && near(strength), false),
             LightKind::Directional { toward, strength, angular_radius } => {
                 let k = 1.0 - angular_radius.cos();
-                // The difference cancels; the device's number does not.
+                // The difference cancels here, but not on the device.
                 let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
                 let is_right =
                     is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
-                (is_right, angular_radius == 0.0 || is_looked_for(recording))
+                (is_right, angular_radius == 0.0 || uses_light_sampling(recording))
             }
             LightKind::Point { position, intensity } => {
                 (is_kind && near(intensity) && is_at(position), true)
@@ -107,7 +108,7 @@ fn check_lights(
                 (is_right, true)
             }
         };
-        // The lights that are looked for stand, one after the other, behind the first of all lights.
+        // The indices of the sampled lights are stored one after the other in the third words of the first entries.
         let is_found = !is_lamp || tables.words(3 * lamps + 2)[0] == index;
         lamps += u32::from(is_lamp);
         if !(is_right && is_found) {
@@ -120,13 +121,13 @@ fn check_lights(
     Ok(lamps)
 }
 
-/// How many emissive spheres are looked for.
+/// Checks the table of emissive spheres, and returns how many of them light sampling chooses from.
 fn check_emitters(
     tables: &Tables<'_>,
     scene: &Scene,
     recording: &PathRecording,
 ) -> Result<u32, PathUploadError> {
-    if !is_looked_for(recording) {
+    if !uses_light_sampling(recording) {
         return Ok(0);
     }
     let radiance = |id: u32| {
@@ -146,7 +147,7 @@ fn check_emitters(
     keep_first_of_equals(&mut ids, scene.spheres());
     let total: f64 = ids.iter().map(|id| weight(*id)).sum();
     let all = 2_f64.powi(32);
-    // Each has one pick by right, and picks are whole numbers.
+    // Each emitter has one pick for certain, and picks are whole numbers.
     let slack = (ids.len() as f64 + 2.0) / all;
     let mut before = 0.0;
     for (index, id) in ids.iter().enumerate() {
@@ -169,10 +170,10 @@ fn check_emitters(
     Ok(ids.len() as u32)
 }
 
-/// Of spheres with equal numbers the first is met, and none of the others; only what is met is looked for. Keeps of
-/// some ascending ids those of spheres that no earlier one of the scene equals.
+/// Keeps the ids of spheres that no earlier sphere of the scene equals. Of equal spheres, rays hit only the first, so
+/// only that one is sampled.
 fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
-    // Compared by value: a zero has no sign, and none is no number.
+    // Compared by value, because the sign of a zero does not matter; no component is NaN.
     let order = |a: &[f32; 4], b: &[f32; 4]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
     let sphere = |id: u32| &spheres[id as usize];
     ids.sort_by(|a, b| order(sphere(*a), sphere(*b)));
@@ -188,7 +189,7 @@ fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
     ids.sort_unstable();
 }
 
-/// The ground's material, which is the first, and those of the spheres.
+/// Checks the material of the ground, which is the first, and those of the spheres.
 fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadError> {
     let rows = scene.checked_appearance().material_rows();
     let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
@@ -230,7 +231,7 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadE
     Ok(())
 }
 
-/// Whether a material's tables of energies are where it says.
+/// Whether the energy tables of a material are at its index.
 fn has_energies(
     tables: &Tables<'_>,
     first: u32,

@@ -1,4 +1,5 @@
-//! Whether the numbers that a device was given are those of the scene and the settings that were asked for.
+//! The check of uploaded data for paths: whether the numbers on the device are those of the requested scene and
+//! settings.
 
 use super::recording::{PathRecording, UploadedLighting, flag};
 use super::tables;
@@ -11,36 +12,38 @@ use crate::verify::candidates::Candidates;
 use crate::verify::rounding::{FLUSH, U};
 use crate::verify::upload::{UploadError, check_view};
 
-/// A number that the device was given is not what was asked for.
+/// Why the data on the device are not those that were requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathUploadError {
-    /// Of the camera or the scene's box.
+    /// The camera or the scene's box is wrong.
     #[error(transparent)]
     View(#[from] UploadError),
-    /// Lists of pixels are not as long as the rectangle is large.
-    #[error("the recording does not have {pixels} pixels everywhere")]
+    /// A list of pixels does not have the size of the rectangle.
+    #[error(
+        "the recording has a list that does not have {pixels} pixels, the size of its rectangle"
+    )]
     Size {
-        /// How many there are in the rectangle.
+        /// The number of pixels in the rectangle.
         pixels: u64,
     },
-    /// Of the settings.
-    #[error("{what} on the device is not what was asked for")]
+    /// A parameter of the lighting is wrong.
+    #[error("{what} on the device differs from the settings")]
     Lighting {
-        /// What it is.
+        /// The name of the parameter.
         what: &'static str,
     },
-    /// Of the tables.
-    #[error("{what} {index} on the device is not what was asked for")]
+    /// An entry of the tables is wrong.
+    #[error("{what} {index} on the device differs from the scene and the settings")]
     Table {
-        /// What it is.
+        /// The kind of entry.
         what: &'static str,
-        /// Which of them, from 0.
+        /// Index of the entry, from 0.
         index: usize,
     },
 }
 
-/// Whether a number is the nearest f32 of another, or beside it.
+/// Whether a number is within two roundings of another.
 pub(super) fn is_near(found: f32, asked: f64) -> bool {
     (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH
 }
@@ -49,7 +52,7 @@ pub(super) fn are_near<const N: usize>(found: [f32; N], asked: [f64; N]) -> bool
     found.into_iter().zip(asked).all(|(found, asked)| is_near(found, asked))
 }
 
-/// Compares them.
+/// Compares the recording with the scene and the settings.
 pub(super) fn check(
     scene: &Scene,
     candidates: &Candidates,

@@ -1,4 +1,5 @@
-//! Where a ray meets a sphere or the ground, and what is there. Twin of `shaders/path/vertex.wgsl`.
+//! The check of hits: where a ray hits a sphere or the ground, and the properties of that surface. The WGSL twin is
+//! `shaders/path/vertex.wgsl`.
 
 use glam::DVec3;
 
@@ -15,22 +16,22 @@ use crate::verify::rounding::{FLUSH, Interval, PAD, U, gamma, unit_error};
 use crate::verify::shading::{Chord, normal_at};
 use crate::verify::sphere::{Slack, SphereTest};
 
-/// A surface that was met.
+/// A surface that was hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex {
     pub(super) position: Vector,
-    /// Unit, on the side that is seen.
+    /// Unit normal on the visible side.
     pub(super) normal: Vector,
-    /// Whether that is the inside of a sphere.
+    /// Whether the visible side is the inside of a sphere.
     pub(super) is_back: bool,
-    /// Along the ray.
+    /// Distance along the ray.
     pub(super) distance: Number,
-    /// The sphere; radius 0 for the ground.
+    /// Centre and radius of the sphere; the radius is 0 for the ground.
     pub(super) sphere: [f32; 4],
     pub(super) color: [f32; 3],
-    /// Its index among the materials; the ground is the first.
+    /// Index of the material; the ground has the first.
     pub(super) material_index: u32,
-    /// Whether the path goes through it as if there were nothing.
+    /// Whether the path passes through the surface as if it were not there.
     pub(super) is_passed: bool,
 }
 
@@ -39,32 +40,32 @@ impl Vertex {
         self.sphere[3] > 0.0
     }
 
-    /// How far it is from the surface of a sphere to its other side; 0 if that is not inside.
+    /// The distance from a point of a sphere through its inside to the far side; 0 if the direction points outwards.
     pub(super) fn exit_distance(&self, direction: Vector) -> Number {
         let [x, y, z, _] = self.sphere;
-        let to_center = Vector::had([x, y, z]) - self.position;
+        let to_center = Vector::recorded([x, y, z]) - self.position;
         (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
     }
 }
 
-/// What is known of a surface before where it is.
+/// The properties of a surface that do not depend on the point.
 struct SurfaceColor {
     color: [f32; 3],
     material_index: u32,
     is_passed: bool,
 }
 
-const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was met");
+const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was hit");
 
 impl Kernel<'_> {
-    /// What the ray meets; `None` if nothing.
+    /// The surface that the ray hits; `None` for a miss.
     pub(super) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
         let (before, hit) = (self.before, self.hit);
-        let origin = Vector::had(before.vector(slot::ORIGIN));
-        let direction = Vector::had(before.vector(slot::DIRECTION));
-        // A camera's ray starts where spheres begin, and may have met the ground before.
+        let origin = Vector::recorded(before.vector(slot::ORIGIN));
+        let direction = Vector::recorded(before.vector(slot::DIRECTION));
+        // A camera ray starts at the box of the spheres, and may have crossed the ground before.
         let behind = if self.address.surface == 0 {
-            Number::had(before.number(slot::FIRST))
+            Number::recorded(before.number(slot::FIRST))
         } else {
             Number::ZERO
         };
@@ -75,7 +76,7 @@ impl Kernel<'_> {
         };
         let has_sphere = hit.id != NO_ID;
         let to_sphere = if has_sphere {
-            Number::had(hit.distance) + Number::had(hit.t)
+            Number::recorded(hit.distance) + Number::recorded(hit.t)
         } else {
             Number::known(NO_HIT.into())
         };
@@ -87,7 +88,7 @@ impl Kernel<'_> {
         if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
     }
 
-    /// Where a ray meets the ground from above, perhaps behind its origin.
+    /// The distance at which a ray hits the ground from above. It may be negative, down to −`behind`.
     pub(super) fn ground_distance(
         &mut self,
         origin: Vector,
@@ -98,12 +99,12 @@ impl Kernel<'_> {
         if lighting.flags & flag::GROUND == 0 {
             return None;
         }
-        let normal = Vector::had(lighting.ground_normal);
+        let normal = Vector::recorded(lighting.ground_normal);
         let toward = direction.dot(normal);
         if !self.choices.decide(toward.is_less(Number::ZERO)) {
             return None;
         }
-        let height = (origin - Vector::had(lighting.ground_point)).dot(normal);
+        let height = (origin - Vector::recorded(lighting.ground_point)).dot(normal);
         let toward = toward.min(Number::known(-f64::MIN_POSITIVE));
         let t = height / -toward;
         self.choices.decide((-behind).is_less(t)).then_some(t)
@@ -118,7 +119,7 @@ impl Kernel<'_> {
     ) -> SurfaceColor {
         let [_, pass] = self.pair(3).map(crate::camera::sampling::unit);
         let [material, alpha] = opacities.map(f64::from);
-        // Without an error of its own: both have 24 bits.
+        // The product in f64 is exact, because both numbers have 24 bits.
         let opacity = material * alpha;
         let is_exact = f64::from(opacity as f32).to_bits() == opacity.to_bits();
         let error = if is_exact { 0.0 } else { U * opacity + FLUSH };
@@ -127,11 +128,11 @@ impl Kernel<'_> {
         SurfaceColor { color, material_index, is_passed }
     }
 
-    /// The point, which is compared, and then known exactly.
+    /// Compares the recorded point, and returns it as an exact value.
     fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         let found = self.after.vector(slot::ORIGIN);
         self.expected.vector_of(POSITION, found, position, size)?;
-        Ok(Vector::had(found))
+        Ok(Vector::recorded(found))
     }
 
     fn ground_vertex(
@@ -142,9 +143,9 @@ impl Kernel<'_> {
     ) -> Result<Vertex, Mismatch> {
         let lighting = self.lighting();
         let surface_color = self.surface_color(lighting.ground_color, 0, [1.0; 2]);
-        let normal = Vector::had(lighting.ground_normal);
+        let normal = Vector::recorded(lighting.ground_normal);
         let on_ray = origin + direction * distance;
-        let above = (on_ray - Vector::had(lighting.ground_point)).dot(normal);
+        let above = (on_ray - Vector::recorded(lighting.ground_point)).dot(normal);
         let position = (on_ray - normal * above).fence();
         let size = distance.interval().high;
         let position = self.compared(position, size)?;
@@ -182,11 +183,11 @@ impl Kernel<'_> {
             Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Entered { line, origin, slack } = &entered;
         let Some(test) = SphereTest::new(line, sphere, *slack) else {
-            let words = format!("sphere {} is not met", hit.id);
+            let words = format!("sphere {} cannot be hit", hit.id);
             return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
         };
-        let center = Vector::had([x, y, z]);
-        let direction = Vector::had(before.vector(slot::DIRECTION));
+        let center = Vector::recorded([x, y, z]);
+        let direction = Vector::recorded(before.vector(slot::DIRECTION));
         let middle = (center - *origin).dot(direction);
         let is_far_side = before.has(flag::INSIDE) && hit.id == before.departure().id;
         let (half, exact) = if is_far_side {
@@ -195,16 +196,19 @@ impl Kernel<'_> {
         } else {
             (test.half, test.exact_half())
         };
-        let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::had(hit.t)));
+        let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::recorded(hit.t)));
         let chord = Chord { half, exact, is_behind };
         let (normal, error) = normal_at(&test, line, chord, radius, *slack);
         let mut outward = Vector::around(normal, error);
 
-        let r = Number::had(radius);
-        let far = Number::known(64.0) * (Number::had(hit.t) + Number::had(hit.distance));
+        let r = Number::recorded(radius);
+        let far = Number::known(64.0) * (Number::recorded(hit.t) + Number::recorded(hit.distance));
         let is_on_ray = self.choices.decide(r.is_more(far));
-        let position =
-            if is_on_ray { *origin + direction * Number::had(hit.t) } else { center + outward * r };
+        let position = if is_on_ray {
+            *origin + direction * Number::recorded(hit.t)
+        } else {
+            center + outward * r
+        };
         let position = self.compared(position.fence(), radius.into())?;
         if !is_on_ray {
             outward = self.normal_by_point(outward, position, sphere)?;
@@ -218,7 +222,7 @@ impl Kernel<'_> {
 }
 
 impl Kernel<'_> {
-    /// The normal, as far as the point on the sphere that was made of it tells.
+    /// The normal, narrowed by the point on the sphere that was computed from it.
     fn normal_by_point(
         &mut self,
         outward: Vector,
@@ -227,7 +231,7 @@ impl Kernel<'_> {
     ) -> Result<Vector, Mismatch> {
         let (center, r) = (wide([x, y, z]), f64::from(radius));
         let away = DVec3::from(position.intervals().map(|axis| axis.low)) - center;
-        // A product and a sum.
+        // The errors of a product and a sum.
         let size = center.abs() + r * (1.0 + unit_error(r));
         let error = PAD * gamma(2) * size + DVec3::splat(2.0 * FLUSH);
         let legal = Interval::around(r, PAD * (r * unit_error(r) + error.length()));
@@ -243,7 +247,7 @@ impl Kernel<'_> {
     }
 }
 
-/// A ray from where it enters the scene's box, at a known distance.
+/// A ray that starts where it enters the scene's box, at a known distance.
 struct Entered {
     line: Line,
     origin: Vector,
@@ -257,7 +261,7 @@ impl Entered {
         let moved = start + distance * along;
         if distance == 0.0 {
             let line = Line::new(origin, direction);
-            return Self { line, origin: Vector::had(origin), slack: Slack::default() };
+            return Self { line, origin: Vector::recorded(origin), slack: Slack::default() };
         }
         let error =
             PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);

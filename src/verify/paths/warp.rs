@@ -1,4 +1,4 @@
-//! From the unit square to directions. Twin of `shaders/math/warp.wgsl` and `disk.wgsl`.
+//! The check of maps from the unit square to directions. The WGSL twins are `shaders/math/warp.wgsl` and `disk.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use crate::camera::sampling::unit;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector, sin_cos_eighth};
 
-/// Two unit vectors at right angles to a third and to each other.
+/// A tangent frame: two unit vectors perpendicular to a third and to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     x: Vector,
@@ -26,7 +26,7 @@ impl Axes {
     }
 }
 
-/// π, as the kernels have it.
+/// π as a constant of the kernels.
 pub(super) fn pi() -> Number {
     Number::constant(PI)
 }
@@ -54,9 +54,9 @@ pub(super) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
     }
 }
 
-/// The point of the unit disk for a point of the unit square.
+/// Maps a point of the unit square to the unit disk.
 pub(super) fn disk(u: [u32; 2]) -> [Number; 2] {
-    // Multiples of 2⁻²³ below 1: exact.
+    // The numbers are multiples of 2⁻²³ below 1, so they are exact.
     let [x, y] = u.map(|bits| 2.0 * unit(bits) - 1.0);
     let is_wide = x.abs() > y.abs();
     let (radius, along) = if is_wide { (x, y) } else { (y, x) };
@@ -71,7 +71,7 @@ pub(super) fn disk(u: [u32; 2]) -> [Number; 2] {
     [radius * x, radius * y]
 }
 
-/// With a density of the cosine over π.
+/// A random direction around z, with the density cosine over π.
 pub(super) fn cosine_direction(u: [u32; 2]) -> Vector {
     let [x, y] = disk(u);
     let square = x.squared() + y.squared();
@@ -79,7 +79,7 @@ pub(super) fn cosine_direction(u: [u32; 2]) -> Vector {
     Vector([x, y, z])
 }
 
-/// Evenly within an angle of z; `k` is 1 minus its cosine.
+/// A random direction within an angle of z, uniformly distributed; `k` is 1 minus the cosine of the angle.
 pub(super) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
     let [x, y] = disk(u);
     let q = (x.squared() + y.squared()) * k;
@@ -87,7 +87,8 @@ pub(super) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
     Vector([x * aside, y * aside, Number::ONE - q])
 }
 
-/// Of a sphere as seen from a distance beyond its radius: 1 minus the cosine of the angle that it takes.
+/// The parameter `k` of [`cone_direction`] for a sphere seen from a distance beyond its radius: 1 minus the cosine of
+/// its angular radius.
 pub(super) fn cone_of_sphere(radius: Number, distance: Number) -> Number {
     let square = (radius / distance).squared();
     square / (Number::ONE + (Number::ONE - square).max(Number::ZERO).sqrt())

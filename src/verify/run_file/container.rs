@@ -1,8 +1,9 @@
-//! The file around the arrays: `safetensors`, with a digest of every byte.
+//! The container of a run file: the format `safetensors` with a digest of every byte.
 //!
-//! A header's length in eight bytes; the header, in JSON; the arrays, one behind the other. The crate's own writer
-//! puts metadata into a random order, and its reader adds up lengths unchecked, so that hostile ones would panic;
-//! so of it only the header's types and their checks are used.
+//! A file consists of the header's length in eight bytes, the header in JSON, and the arrays one after another. The
+//! writer of the crate `safetensors` writes metadata in random order, and its reader adds lengths without overflow
+//! checks, so that malicious files could make it panic. Therefore only its types for the header and their validation
+//! are used.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -16,19 +17,19 @@ use super::{RunFileError, VERSION, hex};
 use crate::parallel::try_map;
 use crate::text::shortened;
 
-/// How every header begins.
+/// The first bytes of every header.
 const START: &[u8] = br#"{"__metadata__":{"#;
 
-/// Bytes before the header.
+/// The number of bytes before the header.
 const LENGTH: usize = size_of::<u64>();
 
-/// What stands in the place of the digest while it is computed.
+/// The placeholder for the digest while it is computed.
 const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
-/// The file's digest, among the metadata.
+/// The metadata key of the file's digest.
 const DIGEST: &str = "sha256";
 
-/// The format's version, among the metadata.
+/// The metadata key of the format's version.
 const FORMAT: &str = "pinhole_run";
 
 #[derive(Serialize)]
@@ -39,7 +40,7 @@ struct Header<'a> {
     arrays: BTreeMap<&'a str, TensorInfo>,
 }
 
-/// Feeds a digest.
+/// A sink that adds bytes to a digest.
 pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<()> {
     |bytes| {
         digest.update(bytes);
@@ -47,7 +48,7 @@ pub(super) fn sink_into(digest: &mut Sha256) -> impl FnMut(&[u8]) -> io::Result<
     }
 }
 
-/// Writes a file of texts and arrays.
+/// Writes a file with metadata texts and arrays.
 pub(super) fn write(
     mut metadata: BTreeMap<String, String>,
     arrays: &[Array<'_>],
@@ -81,7 +82,7 @@ fn emit(length: &[u8], header: &[u8], arrays: &[Array<'_>], sink: &mut Sink<'_>)
     arrays.iter().try_for_each(|array| array.emit(sink))
 }
 
-/// Where a header has its digest. No other text of it reads so, because a quote within a text is escaped.
+/// The position of the digest in a header. No other text can match, because quotes inside texts are escaped.
 fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
     let before = format!("\"{DIGEST}\":\"");
     let wanted = format!("{before}{digest}\"");
@@ -89,7 +90,7 @@ fn digest_in(header: &[u8], digest: &str) -> Option<usize> {
     Some(offset + before.len())
 }
 
-/// A file that is whole and unaltered. What is in it may still be anything.
+/// A file that is complete and unaltered. Its contents may still be invalid.
 pub(super) struct Container<'a> {
     header: Metadata,
     arrays: &'a [u8],
@@ -139,12 +140,12 @@ impl<'a> Container<'a> {
             return Err(RunFileError::Altered);
         }
         if parsed.data_len() < arrays.len() {
-            return Err(contradiction("there are bytes behind the last array"));
+            return Err(contradiction("there are bytes after the last array"));
         }
         Ok(Self { header: parsed, arrays })
     }
 
-    /// All texts, with their keys, in no order.
+    /// All metadata texts with their keys, in no particular order.
     pub(super) fn texts(&self) -> impl Iterator<Item = (&String, &String)> {
         self.header.metadata().iter().flatten()
     }
@@ -171,7 +172,7 @@ impl<'a> Container<'a> {
         info.ok_or_else(|| contradiction(format!("the array `{name}` is missing")))
     }
 
-    /// The items of an array whose shape is that of the items, with one axis more if they have several numbers.
+    /// The items of an array whose shape is `shape`, with one more axis if items have several numbers.
     pub(super) fn items<E: Number, const N: usize>(
         &self,
         name: &str,
@@ -193,12 +194,12 @@ impl<'a> Container<'a> {
             let item = &bytes[i * N * E::WIDTH..];
             std::array::from_fn(|column| E::read(&item[column * E::WIDTH..]))
         };
-        // The header's reader has made sure that shape and length agree.
+        // The header's validation has ensured that shape and length agree.
         try_map(bytes.len() / (N * E::WIDTH), item)
             .map_err(|_| RunFileError::Memory { name: name.to_owned(), bytes: bytes.len() as u64 })
     }
 
-    /// As [`Container::items`], one number each.
+    /// The items of an array with one number each; see [`Container::items`].
     pub(super) fn numbers<E: Number>(
         &self,
         name: &str,
@@ -207,7 +208,7 @@ impl<'a> Container<'a> {
         Ok(self.items::<E, 1>(name, shape)?.into_iter().map(|[number]| number).collect())
     }
 
-    /// As [`Container::items`], of which there are so many, known beforehand.
+    /// The items of an array whose number is known in advance; see [`Container::items`].
     pub(super) fn fixed<E: Number, const N: usize, const M: usize>(
         &self,
         name: &str,

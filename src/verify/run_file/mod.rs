@@ -1,36 +1,36 @@
-//! Run files: a recording with its scene, to be judged again on any machine, with or without a GPU.
+//! Run files: a recording with its scene, which can be judged again on any machine, with or without a GPU.
 //!
-//! A run file is in the format `safetensors`, which Python reads with `safetensors.numpy.load_file`. Its arrays,
-//! with H rows of W pixels, n spheres and m colours:
+//! A run file has the format `safetensors`, which Python reads with `safetensors.numpy.load_file`. With H rows of W
+//! pixels, n spheres and m colours, its arrays are:
 //!
 //! | array | type, shape | |
 //! |---|---|---|
 //! | `camera` | f64 (5, 3) | origin, right, up, forward and numbers of [`CameraVectors`](crate::camera::CameraVectors) |
-//! | `scene_origin` | f64 (3,) | of the scene's frame in the world |
+//! | `scene_origin` | f64 (3,) | origin of the scene's frame in world space |
 //! | `spheres` | f32 (n, 4) | centre in the frame, and radius |
-//! | `palette` | f32 (m, 3) | linear colours, also those of a colour map |
-//! | `color_index` | u32 (n,) | places in the palette; absent if all spheres have the first colour |
-//! | `color_rgba8` | u8 (n, 4) | in their place, if spheres have colours of their own: sRGB, and alpha |
+//! | `palette` | f32 (m, 3) | linear colours of the palette or of the colour map |
+//! | `color_index` | u32 (n,) | indices into the palette; absent if all spheres have the first colour |
+//! | `color_rgba8` | u8 (n, 4) | instead of both, if every sphere has its own colour: sRGB, and alpha |
 //! | `background` | f32 (3,) | linear colour |
 //! | `view` | f32 (7, 3) | origin, right, up, forward, numbers, `scene_min`, `scene_max` of [`UploadedView`](super::UploadedView) |
-//! | `advance` | f32 (1,) | of the same |
-//! | `traced` | bool (H, W) | whether there is a ray; if not, its numbers are zero |
-//! | `ray_origin`, `ray_direction` | f32 (H, W, 3) | of [`TracedRay`](super::TracedRay) |
-//! | `ray_distance` | f32 (H, W) | of the same |
-//! | `hit_t` | f32 (H, W) | of [`TracedPixel`](super::TracedPixel) |
-//! | `hit_id` | u32 (H, W) | of the same |
+//! | `advance` | f32 (1,) | `advance` of the same |
+//! | `traced` | bool (H, W) | whether a ray was traced; if not, its numbers are zero |
+//! | `ray_origin`, `ray_direction` | f32 (H, W, 3) | `origin` and `direction` of [`TracedRay`](super::TracedRay) |
+//! | `ray_distance` | f32 (H, W) | `distance` of the same |
+//! | `hit_t` | f32 (H, W) | `t` of [`TracedPixel`](super::TracedPixel) |
+//! | `hit_id` | u32 (H, W) | `id` of the same |
 //! | `color`, `normal` | f32 (H, W, 3) | layers of the picture |
 //! | `depth`, `id` | f32, u32 (H, W) | layers of the picture |
-//! | `rendered_color`, `rendered_normal`, `rendered_depth`, `rendered_id` | as those | layers of the picture without a recording, if that is another |
+//! | `rendered_color`, `rendered_normal`, `rendered_depth`, `rendered_id` | like those | layers of the picture rendered without recording, if it differs |
 //!
-//! Its metadata are texts: `pinhole_run`, the format's version, [`VERSION`]; `sha256`, of the whole file, with the
-//! digest's own 64 digits taken as zeros; `scene_sha256`, of the array `spheres`; `camera`, `y_axis`, `shading`;
-//! `rendered`, which is `same` or `other` if the view was also rendered without a recording;
-//! and the fields of [`Provenance`], with `limit_` before names of limits. The same run is the same file, to the
-//! byte.
+//! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the whole
+//! file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array `spheres`;
+//! `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also rendered without
+//! recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. The same run gives the same file,
+//! to the byte.
 //!
-//! What the host decides is checked as scenes, films and cameras check it. What the device answered is kept as it
-//! is, whatever it is, because that is what the checker judges.
+//! Input from the host is validated like scenes, films and cameras. The results of the device are kept as they are,
+//! even if they are wrong, because the checker judges them.
 
 mod container;
 mod numbers;
@@ -52,42 +52,42 @@ pub use write::write;
 /// The version of the format that this crate writes, and the only one that it reads.
 pub const VERSION: &str = "2";
 
-/// What a run file holds.
+/// The contents of a run file.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Bounds apart, the very scene that was rendered.
+    /// The scene that was rendered; only its bounds may differ.
     pub scene: Scene,
-    /// What the device was given, and what it made of it.
+    /// The recording: the data that the device was given, and its results.
     pub recording: Recording,
-    /// Where it comes from.
+    /// The origin of the recording.
     pub provenance: Provenance,
 }
 
-/// Where a recording comes from, for people. Nothing of it is judged.
+/// The origin of a recording, for human readers; it does not affect the verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
-    /// Of this crate.
+    /// Version of this crate.
     pub version: String,
-    /// The command line.
+    /// The command line that made the recording.
     pub command: String,
-    /// The adapter's name.
+    /// Name of the adapter.
     pub adapter: String,
-    /// Such as `Vulkan`.
+    /// Backend, such as `Vulkan`.
     pub backend: String,
-    /// Such as `DiscreteGpu`.
+    /// Type of the device, such as `DiscreteGpu`.
     pub device_type: String,
-    /// The driver's name.
+    /// Name of the driver.
     pub driver: String,
-    /// The driver's version, in its own words.
+    /// Version of the driver, as it describes itself.
     pub driver_info: String,
-    /// What found the spheres of a ray.
+    /// The acceleration structure.
     pub structure: String,
-    /// Limits of the device that bear on the picture, in bytes or pixels.
+    /// Limits of the device that affect the picture, in bytes or pixels.
     pub limits: BTreeMap<String, u64>,
 }
 
 impl Provenance {
-    /// Every text with its key.
+    /// Every text field with its key.
     fn texts(&self) -> [(&'static str, &String); 8] {
         [
             ("version", &self.version),
@@ -102,56 +102,58 @@ impl Provenance {
     }
 }
 
-/// Stands before the name of a limit.
+/// The prefix of the metadata keys of limits.
 const LIMIT: &str = "limit_";
 
-/// Why bytes are no run.
+/// Why bytes are not a valid run file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunFileError {
-    /// Something else.
-    #[error("this is no run file; `pinhole verify --save` writes one")]
+    /// The file has another format.
+    #[error("this is not a run file; `pinhole verify --save` writes one")]
     NotRun,
-    /// The end is missing.
+    /// The end of the file is missing.
     #[error("the run file is cut off: it has {found} bytes of {expected}; copy it again")]
     Truncated {
-        /// Bytes that there are.
+        /// Number of bytes in the file.
         found: u64,
-        /// Bytes that there should be.
+        /// Number of bytes that the header promises.
         expected: u64,
     },
-    /// A format of another time.
+    /// The file has another version of the format.
     #[error(
         "this is a run file of version {found}, and this program reads version {VERSION}; use the program that wrote it"
     )]
     Version {
-        /// What the file says.
+        /// The version of the file.
         found: String,
     },
-    /// Not what was written.
-    #[error("the run file was altered after it was written: its SHA-256 is another; copy it again")]
+    /// The file is not what was written.
+    #[error(
+        "the run file was altered after it was written: its SHA-256 digest does not match; copy it again"
+    )]
     Altered,
-    /// Unaltered, and yet no run.
+    /// The file is unaltered, but its contents are not valid.
     #[error("the run file contradicts itself: {message}")]
     Contents {
-        /// What, and where.
+        /// What is wrong, and where.
         message: String,
     },
-    /// It does not fit into memory.
-    #[error("there is no memory for the run's {name}, which need {bytes} bytes")]
+    /// There is not enough memory.
+    #[error("there is not enough memory for the run's {name}, which need {bytes} bytes")]
     Memory {
-        /// Which array.
+        /// Name of the array.
         name: String,
-        /// Its bytes.
+        /// Size of the array in bytes.
         bytes: u64,
     },
 }
 
-/// SHA-256 of the spheres of a scene, as four little-endian f32 each, in hexadecimal.
+/// The SHA-256 digest of the spheres of a scene, each as four little-endian f32, in hexadecimal.
 #[must_use]
 pub fn scene_sha256(scene: &Scene) -> String {
     let mut digest = Sha256::new();
-    // Nothing that a digest is fed with fails.
+    // Writing to a digest cannot fail.
     let _ = Array::spheres(scene).emit(&mut sink_into(&mut digest));
     hex(digest)
 }

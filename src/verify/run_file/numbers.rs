@@ -6,17 +6,17 @@ use safetensors::Dtype;
 
 use crate::scene::Scene;
 
-/// How many items are turned into bytes at a time.
+/// The number of items that are converted to bytes at a time.
 const CHUNK: usize = 1 << 12;
 
-/// A number of an array.
+/// A type of numbers in arrays.
 pub(super) trait Number: Copy + Send + Sync {
-    /// What the format calls it.
+    /// The name of the type in the format.
     const DTYPE: Dtype;
-    /// Its size in bytes.
+    /// The size of a number in bytes.
     const WIDTH: usize;
     fn push(self, bytes: &mut Vec<u8>);
-    /// Of the first bytes; zero if there are too few.
+    /// Reads a number from the first bytes; zero if there are too few.
     fn read(bytes: &[u8]) -> Self;
 }
 
@@ -41,7 +41,7 @@ number!(f64, F64);
 number!(u32, U32);
 number!(u8, U8);
 
-/// A truth value, or another byte in its place.
+/// A byte that should be a truth value, 0 or 1.
 #[derive(Clone, Copy)]
 pub(super) struct Flag(pub(super) u8);
 
@@ -58,13 +58,13 @@ impl Number for Flag {
     }
 }
 
-/// Takes bytes, piece by piece.
+/// A function that takes bytes piece by piece.
 pub(super) type Sink<'a> = dyn FnMut(&[u8]) -> io::Result<()> + 'a;
 
-/// Gives all bytes.
+/// A function that writes all bytes of an array to a sink.
 type Emit<'a> = dyn Fn(&mut Sink<'_>) -> io::Result<()> + 'a;
 
-/// An array that is yet to be written; its bytes are made as they are needed.
+/// An array to be written; its bytes are generated as they are needed.
 pub(super) struct Array<'a> {
     pub(super) name: &'static str,
     pub(super) dtype: Dtype,
@@ -73,7 +73,7 @@ pub(super) struct Array<'a> {
 }
 
 impl<'a> Array<'a> {
-    /// Of so many numbers of every item; `shape` has the shape of the items.
+    /// An array with `N` numbers for each item; `shape` is the shape of the items.
     pub(super) fn new<T, E: Number, const N: usize>(
         name: &'static str,
         shape: &[usize],
@@ -94,12 +94,12 @@ impl<'a> Array<'a> {
         Self { name, dtype: E::DTYPE, shape, emit: Box::new(emit) }
     }
 
-    /// What the scene's digest is of.
+    /// The array of spheres, which is also the input of the scene's digest.
     pub(super) fn spheres(scene: &'a Scene) -> Self {
         Self::new("spheres", &[scene.len()], scene.spheres(), |sphere| *sphere)
     }
 
-    /// How many bytes it takes.
+    /// The number of bytes of the array.
     pub(super) fn bytes(&self) -> usize {
         self.shape.iter().product::<usize>() * self.dtype.bitsize() / 8
     }

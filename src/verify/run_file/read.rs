@@ -1,4 +1,4 @@
-//! From bytes to a run.
+//! Reading of run files.
 
 use glam::DVec3;
 
@@ -18,8 +18,8 @@ use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay
 /// Reads a run file.
 ///
 /// # Errors
-/// If it is none, is of another version, or is not what was written; or if what it says of scene, film, camera or
-/// settings is what they refuse.
+/// If the bytes are not a run file, have another version, or were altered; or if scene, film, camera or settings are
+/// not valid.
 pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
     let file = Container::open(bytes)?;
     Ok(Run { scene: scene(&file)?, recording: recording(&file)?, provenance: provenance(&file)? })
@@ -33,7 +33,7 @@ fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
     let scene = Scene::from_frame(DVec3::from(origin), spheres, colors.into())
         .map_err(|error| contradiction(format!("the scene: {error}")))?;
     if file.text("scene_sha256")? != scene_sha256(&scene) {
-        return Err(contradiction("`scene_sha256` is of other spheres"));
+        return Err(contradiction("`scene_sha256` is not the digest of the spheres"));
     }
     Ok(scene)
 }
@@ -86,7 +86,7 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     })
 }
 
-/// The layers of these names.
+/// Reads a picture from the arrays with these names.
 fn image(
     file: &Container<'_>,
     film: &Film,
@@ -100,10 +100,10 @@ fn image(
         file.items(normal, &shape)?,
         file.numbers(id, &shape)?,
     )
-    .ok_or_else(|| contradiction("the layers are of different sizes"))
+    .ok_or_else(|| contradiction("the layers have different sizes"))
 }
 
-/// Files of earlier programs have none.
+/// The picture rendered without recording; files of earlier versions have none.
 fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError> {
     const LAYERS: [&str; 4] =
         ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
@@ -113,13 +113,16 @@ fn rendered(file: &Container<'_>, film: &Film) -> Result<Rendered, RunFileError>
     match file.text("rendered")? {
         "same" => Ok(Rendered::Same),
         "other" => image(file, film, LAYERS).map(Box::new).map(Rendered::Other),
-        other => Err(contradiction(format!("`rendered` is `{}`", shortened(other)))),
+        other => Err(contradiction(format!(
+            "`rendered` is `{}`; it must be `same` or `other`",
+            shortened(other)
+        ))),
     }
 }
 
 fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
     let [height, width, _] = *file.shape("color")? else {
-        return Err(contradiction("the array `color` has not the shape (H, W, 3)"));
+        return Err(contradiction("the array `color` does not have the shape (H, W, 3)"));
     };
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let film = Film::new(side(width), side(height))
@@ -136,7 +139,9 @@ fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
 fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, RunFileError> {
     let traced = file.numbers::<Flag>("traced", shape)?;
     if let Some(index) = traced.iter().position(|traced| traced.0 > 1) {
-        return Err(contradiction(format!("the array `traced` has no truth value at {index}")));
+        return Err(contradiction(format!(
+            "the array `traced` has a value other than 0 and 1 at index {index}"
+        )));
     }
     let origins = file.items("ray_origin", shape)?;
     let directions = file.items("ray_direction", shape)?;
@@ -161,7 +166,9 @@ fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {
     let limits = file.texts().filter_map(|(key, value)| {
         Some(match (key.strip_prefix(LIMIT)?, value.parse()) {
             (name, Ok(limit)) => Ok((name.to_owned(), limit)),
-            (name, Err(_)) => Err(contradiction(format!("the limit `{name}` is no number"))),
+            (name, Err(_)) => {
+                Err(contradiction(format!("the limit `{name}` is not a valid number")))
+            }
         })
     });
     Ok(Provenance {
@@ -181,7 +188,7 @@ fn color(name: &str, rgb: [f32; 3]) -> Result<LinearRgb, RunFileError> {
     LinearRgb::new(rgb).map_err(|error| contradiction(format!("the array `{name}`: {error}")))
 }
 
-/// The one that a text names.
+/// The element of `all` whose name is the text with this key.
 fn named<T: Copy>(
     file: &Container<'_>,
     key: &str,

@@ -1,4 +1,4 @@
-//! From a run to bytes.
+//! Writing of run files.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -9,10 +9,11 @@ use super::{LIMIT, Provenance, scene_sha256};
 use crate::scene::{Colors, Scene};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
-/// Writes a run file: 69 bytes a pixel, 101 if another picture was rendered, and 16 or 20 a sphere, in small pieces.
+/// Writes a run file in small pieces: 69 bytes for each pixel, 101 if a different picture was rendered, and 16 or 20
+/// for each sphere.
 ///
 /// # Errors
-/// If they cannot be written, or if the recording is of another size than its film or lacks a layer.
+/// If writing fails, or if the recording has another size than its film or lacks a layer.
 pub fn write(
     scene: &Scene,
     recording: &Recording,
@@ -27,7 +28,7 @@ pub fn write(
     let count = film.pixel_count();
     if pixels.len() as u64 != count || [image.height(), image.width()].map(|n| n as usize) != shape
     {
-        return Err(io::Error::other("the recording is of another size than its film"));
+        return Err(io::Error::other("the recording has another size than its film"));
     }
 
     let mut texts: BTreeMap<String, String> =
@@ -80,7 +81,7 @@ pub fn write(
         Colors::Rgba8(_) => (None, None),
     };
     let indices = indices.filter(|indices| !indices.is_empty());
-    // The widest numbers first, so that all are aligned.
+    // The widest numbers come first, so that all are aligned.
     let mut arrays = vec![
         Array::new("camera", &[5], &camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], &origin, |origin| origin.to_array()),
@@ -104,7 +105,7 @@ pub fn write(
             return Err(io::Error::other("the rendered picture lacks a layer"));
         };
         if [image.height(), image.width()].map(|n| n as usize) != shape {
-            return Err(io::Error::other("the rendered picture is of another size than its film"));
+            return Err(io::Error::other("the rendered picture has another size than its film"));
         }
         arrays.extend([
             Array::new("rendered_color", &shape, image.color(), |color| *color),
