@@ -21,7 +21,7 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -
 /// The results of `f` for `0..count`, in order, like [`map`], but for cheap results.
 ///
 /// # Errors
-/// If there is not enough memory for `count` results.
+/// Returns an error if there is not enough memory for `count` results.
 pub(crate) fn try_map<R: Send>(
     count: usize,
     f: impl Fn(usize) -> R + Sync + Send,

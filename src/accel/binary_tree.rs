@@ -108,7 +108,7 @@ impl BinaryTree {
     /// Checks the tree against the spheres it was built from, which are in input order.
     ///
     /// # Errors
-    /// If the tree is not valid; the error describes the first problem.
+    /// Returns an error if the tree is not valid; the error describes the first problem.
     pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
         tree_check::validate(self, spheres, self.margin)
     }

@@ -104,7 +104,7 @@ impl Grid {
     /// equal, a list may lack all but the one with the smallest id.
     ///
     /// # Errors
-    /// If the grid is not valid; the error describes the first problem.
+    /// Returns an error if the grid is not valid; the error describes the first problem.
     pub fn validate(
         &self,
         spheres: &[[f32; 4]],

@@ -12,7 +12,7 @@ impl WideTree {
     /// `ids` are their ids in the result.
     ///
     /// # Panics
-    /// If there are fewer spheres or ids than in the tree.
+    /// Panics if there are fewer spheres or ids than in the tree.
     pub fn find_nearest(
         &self,
         spheres: &[[f32; 4]],
@@ -50,7 +50,7 @@ impl WideTree {
     /// Whether the ray hits a sphere before `t_max`. `spheres` are in the order of [`WideTree::ids`].
     ///
     /// # Panics
-    /// If there are fewer spheres than ids.
+    /// Panics if there are fewer spheres than ids.
     #[must_use]
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
         let slab = SlabRay::new(ray);

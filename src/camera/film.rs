@@ -68,7 +68,7 @@ impl Film {
     /// A film with y up.
     ///
     /// # Errors
-    /// If a side is zero or more than [`Film::MAX_SIDE`].
+    /// Returns an error if a side is zero or more than [`Film::MAX_SIDE`].
     pub fn new(width: u32, height: u32) -> Result<Self, FilmError> {
         if width == 0 || height == 0 {
             return Err(FilmError::Empty { width, height });

@@ -36,7 +36,8 @@ impl FisheyeCamera {
     /// A camera whose disk spans `angle_radians`, on a film of the given aspect ratio (width over height).
     ///
     /// # Errors
-    /// If the angle is not greater than 0 and at most 2π, or the aspect ratio is not greater than zero.
+    /// Returns an error if the angle is not greater than 0 and at most 2π, or the aspect ratio is not greater than
+    /// zero.
     pub fn new(pose: Pose, angle_radians: f64, aspect: f64) -> Result<Self, CameraError> {
         if !(angle_radians > 0.0 && angle_radians <= TAU) {
             let (parameter, value) = ("`angle` in degrees", angle_radians.to_degrees());
@@ -127,7 +128,7 @@ impl FisheyeParameters {
     /// `bounds`.
     ///
     /// # Errors
-    /// If a value is out of range, or values exclude each other.
+    /// Returns an error if a value is out of range, or values exclude each other.
     pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<FisheyeCamera, CameraError> {
         use super::pose::{Placement, PoseParameters};
 

@@ -25,7 +25,7 @@ impl OrthographicCamera {
     /// A camera with every parameter given, in scene units.
     ///
     /// # Errors
-    /// If a half extent is not a length greater than zero.
+    /// Returns an error if a half extent is not a length greater than zero.
     pub fn new(pose: Pose, half_extent: impl Into<DVec2>) -> Result<Self, CameraError> {
         Ok(Self { pose, half_extent: checked_half_extent(half_extent)? })
     }
@@ -34,7 +34,7 @@ impl OrthographicCamera {
     /// aspect ratio (width over height).
     ///
     /// # Errors
-    /// If the aspect ratio is not greater than zero, or the camera would be too far away or too wide.
+    /// Returns an error if the aspect ratio is not greater than zero, or the camera would be too far away or too wide.
     pub fn framing(bounds: &Bounds, pose: Pose, aspect: f64) -> Result<Self, CameraError> {
         let basis = pose.basis();
         let (half_extent, distance) =
@@ -113,7 +113,7 @@ impl OrthographicParameters {
     /// `bounds`.
     ///
     /// # Errors
-    /// If a value is out of range, or values exclude each other.
+    /// Returns an error if a value is out of range, or values exclude each other.
     pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<OrthographicCamera, CameraError> {
         use super::pose::{Placement, PoseParameters};
 

@@ -45,7 +45,7 @@ impl PanoramaCamera {
     /// rays of the same location intersect at the distance `convergence`, which may be infinite.
     ///
     /// # Errors
-    /// If a length is out of range.
+    /// Returns an error if a length is out of range.
     pub fn stereo_pair(&self, separation: f64, convergence: f64) -> Result<[Self; 2], CameraError> {
         let (separation, convergence) = stereo_lengths(separation, convergence)?;
         let eye = |aside: f64| {
@@ -130,7 +130,7 @@ impl PanoramaParameters {
     /// between them.
     ///
     /// # Errors
-    /// If a value is out of range, or values exclude each other.
+    /// Returns an error if a value is out of range, or values exclude each other.
     pub fn camera(&self, _aspect: f64, bounds: &Bounds) -> Result<PanoramaCamera, CameraError> {
         use super::pose::{Placement, PoseParameters};
 
@@ -144,7 +144,7 @@ impl PanoramaParameters {
     /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
-    /// As [`PanoramaParameters::camera`].
+    /// The same errors as [`PanoramaParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

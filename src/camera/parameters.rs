@@ -24,7 +24,7 @@ macro_rules! define_camera_parameters {
             /// `bounds` if the parameters give no position.
             ///
             /// # Errors
-            /// If a parameter is out of range, or parameters exclude each other.
+            /// Returns an error if a parameter is out of range, or parameters exclude each other.
             pub fn camera(
                 &self,
                 aspect: f64,
@@ -45,7 +45,7 @@ impl CameraParameters {
     /// The cameras of the left and of the right eye; `None` unless the parameters ask for two eyes.
     ///
     /// # Errors
-    /// As [`CameraParameters::camera`].
+    /// The same errors as [`CameraParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

@@ -34,7 +34,7 @@ impl PinholeCamera {
     /// A camera with every parameter given, in scene units.
     ///
     /// # Errors
-    /// If the distance or a half extent is not a length greater than zero.
+    /// Returns an error if the distance or a half extent is not a length greater than zero.
     pub fn new(
         pose: Pose,
         distance: f64,
@@ -52,7 +52,7 @@ impl PinholeCamera {
     /// height).
     ///
     /// # Errors
-    /// If the angle is not between 0 and π, or the aspect ratio is not greater than zero.
+    /// Returns an error if the angle is not between 0 and π, or the aspect ratio is not greater than zero.
     pub fn with_vertical_fov(
         pose: Pose,
         fov_radians: f64,
@@ -64,7 +64,7 @@ impl PinholeCamera {
     /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole box.
     ///
     /// # Errors
-    /// If the aspect ratio is not greater than zero, or the eye would have to stand too far away.
+    /// Returns an error if the aspect ratio is not greater than zero, or the eye would have to stand too far away.
     pub fn framing_from_the_front(bounds: &Bounds, aspect: f64) -> Result<Self, CameraError> {
         let pose = Pose::looking_along(DVec3::ZERO, Pose::DEFAULT_DIRECTION, DVec3::Y)?;
         Self::framing(bounds, pose, Self::DEFAULT_FOV_RADIANS, aspect)
@@ -73,7 +73,8 @@ impl PinholeCamera {
     /// A camera that keeps the orientation of `pose` and moves so that it sees the whole box.
     ///
     /// # Errors
-    /// As [`PinholeCamera::with_vertical_fov`], and if the eye would have to stand too far away.
+    /// The same errors as [`PinholeCamera::with_vertical_fov`], and an error if the eye would have to stand too far
+    /// away.
     pub fn framing(
         bounds: &Bounds,
         pose: Pose,
@@ -95,7 +96,7 @@ impl PinholeCamera {
     /// would also move objects up and down in the picture.
     ///
     /// # Errors
-    /// If a length is out of range.
+    /// Returns an error if a length is out of range.
     pub fn stereo_pair(&self, separation: f64, convergence: f64) -> Result<[Self; 2], CameraError> {
         let (separation, convergence) = stereo_lengths(separation, convergence)?;
         let eye = |aside: f64| {
@@ -223,7 +224,7 @@ impl PinholeParameters {
     /// `bounds`. For two eyes, this is the camera halfway between them.
     ///
     /// # Errors
-    /// If a value is out of range, or values exclude each other.
+    /// Returns an error if a value is out of range, or values exclude each other.
     pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<PinholeCamera, CameraError> {
         use super::pose::{Placement, PoseParameters};
 
@@ -255,7 +256,7 @@ impl PinholeParameters {
     /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
-    /// As [`PinholeParameters::camera`].
+    /// The same errors as [`PinholeParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

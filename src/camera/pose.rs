@@ -32,7 +32,7 @@ pub enum CameraError {
     /// A vector that must have a direction is zero.
     #[error("{parameter} is the zero vector, which has no direction")]
     Zero {
-        /// Which parameter.
+        /// Name of the parameter.
         parameter: &'static str,
     },
     /// A component of a point or vector is NaN or infinite, or a point lies too far away.
@@ -41,7 +41,7 @@ pub enum CameraError {
         value.to_array()
     )]
     Vector {
-        /// Which parameter.
+        /// Name of the parameter.
         parameter: &'static str,
         /// The vector as given.
         value: DVec3,
@@ -51,7 +51,7 @@ pub enum CameraError {
         "the {parameter} is {value:?}; it must be finite, greater than 0, and between {MIN_LENGTH:e} and {MAX_LENGTH:e}"
     )]
     Length {
-        /// Which parameter.
+        /// Name of the parameter.
         parameter: &'static str,
         /// The value as given.
         value: f64,
@@ -59,7 +59,7 @@ pub enum CameraError {
     /// A number is NaN or out of its range.
     #[error("the {parameter} is {value:?}; it must lie between {low:?} and {high:?}")]
     Range {
-        /// Which parameter.
+        /// Name of the parameter.
         parameter: &'static str,
         /// The value as given.
         value: f64,
@@ -99,7 +99,7 @@ impl Pose {
     /// perpendicular.
     ///
     /// # Errors
-    /// If the two points coincide, `up` is zero or parallel to the view, or a component is NaN,
+    /// Returns an error if the two points coincide, `up` is zero or parallel to the view, or a component is NaN,
     /// infinite or more than [`MAX_LENGTH`].
     pub fn looking_at(
         eye: impl Into<DVec3>,
@@ -122,7 +122,7 @@ impl Pose {
     /// A camera at `eye` that looks along `direction`.
     ///
     /// # Errors
-    /// As [`Pose::looking_at`], and if `direction` is zero.
+    /// The same errors as [`Pose::looking_at`], and an error if `direction` is zero.
     pub fn looking_along(
         eye: impl Into<DVec3>,
         direction: impl Into<DVec3>,

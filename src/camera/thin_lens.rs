@@ -35,7 +35,8 @@ impl ThinLensCamera {
     /// the view.
     ///
     /// # Errors
-    /// If the distance is not a length greater than zero, or the radius is not a length up to the distance.
+    /// Returns an error if the distance is not a length greater than zero, or the radius is not a length up to the
+    /// distance.
     pub fn new(
         pinhole: PinholeCamera,
         aperture_radius: f64,
@@ -52,7 +53,7 @@ impl ThinLensCamera {
     /// The same as [`ThinLensCamera::new`], with the plane of focus through a point.
     ///
     /// # Errors
-    /// As [`ThinLensCamera::new`], and if the point does not lie before the camera.
+    /// The same errors as [`ThinLensCamera::new`], and an error if the point does not lie in front of the camera.
     pub fn focused_on(
         pinhole: PinholeCamera,
         aperture_radius: f64,
@@ -70,7 +71,7 @@ impl ThinLensCamera {
     /// D the diameter. The focal length has no other effect: the field of view is the pinhole camera's.
     ///
     /// # Errors
-    /// If the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
+    /// Returns an error if the focal length is not a length greater than zero, or the f-number not from 2⁻⁵⁶ to 2⁵⁶.
     pub fn aperture_radius(focal_length: f64, f_stop: f64) -> Result<f64, CameraError> {
         Ok(0.5 * checked_length("`focal_length`", focal_length)?
             / checked_length("`f_stop`", f_stop)?)
@@ -177,7 +178,7 @@ impl ThinLensParameters {
     /// `bounds`.
     ///
     /// # Errors
-    /// If a value is out of range, or values exclude each other.
+    /// Returns an error if a value is out of range, or values exclude each other.
     pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<ThinLensCamera, CameraError> {
         let &Self { eye, look_at, direction, up, distance, half_extent, vertical_fov, .. } = self;
         let pinhole = PinholeParameters {

@@ -7,7 +7,7 @@ use crate::parallel;
 /// Returns a picture with less noise: light is averaged among pixels of similar shape and colour.
 ///
 /// # Errors
-/// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`].
+/// Returns an error if the picture lacks one of the layers [`crate::image::denoise::GUIDES`].
 pub fn denoise(image: &Image) -> Result<Image, MissingGuide> {
     let guided = Guided::of(image)?;
     let size = [image.width() as i64, image.height() as i64];

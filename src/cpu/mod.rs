@@ -43,7 +43,7 @@ pub enum RenderError {
 /// Rows are rendered in parallel with the feature `parallel`; the picture does not depend on it.
 ///
 /// # Errors
-/// If [`RenderSettings::check`] fails, or if there is not enough memory for the image.
+/// Returns an error if [`RenderSettings::check`] fails, or if there is not enough memory for the image.
 pub fn render(
     scene: &Scene,
     view: &View<'_>,

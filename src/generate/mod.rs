@@ -77,7 +77,7 @@ impl Kind {
     /// Generates `count` spheres (x, y, z, radius); a count of zero is not an error.
     ///
     /// # Errors
-    /// If `count` exceeds [`MAX_COUNT`], or if there is not enough memory.
+    /// Returns an error if `count` exceeds [`MAX_COUNT`], or if there is not enough memory.
     pub fn spheres(self, count: u64, seed: u64) -> Result<Vec<[f32; 4]>, GenerateError> {
         if count > MAX_COUNT {
             return Err(GenerateError::TooMany { count });

@@ -60,7 +60,7 @@ impl Standard {
     /// The spheres (x, y, z, radius).
     ///
     /// # Errors
-    /// If there is not enough memory.
+    /// Returns an error if there is not enough memory.
     pub fn spheres(self) -> Result<Vec<[f32; 4]>, GenerateError> {
         self.kind().spheres(self.count(), Self::SEED)
     }
@@ -68,7 +68,7 @@ impl Standard {
     /// The camera: its view plane is at distance 1.5 and has the half extent (1, 1).
     ///
     /// # Errors
-    /// Never, because the values are in range.
+    /// This never fails, because the values are in range.
     pub fn camera(self) -> Result<PinholeCamera, CameraError> {
         let (eye, look_at) = match self {
             Self::R1M | Self::R10M | Self::C200k => ([0.5, 0.6, -1.2], [0.5, 0.5, 0.5]),
@@ -80,7 +80,7 @@ impl Standard {
     /// The film: 1024×1024.
     ///
     /// # Errors
-    /// Never, because the size is in range.
+    /// This never fails, because the size is in range.
     pub fn film(self) -> Result<Film, FilmError> {
         Film::new(1024, 1024)
     }

@@ -24,7 +24,7 @@ pub enum BasisError {
     /// A component of the named vector is NaN or infinite.
     #[error("{name} is {value}; every component must be finite")]
     NotFinite {
-        /// Which vector.
+        /// Name of the vector.
         name: &'static str,
         /// The vector as given.
         value: DVec3,
@@ -32,7 +32,7 @@ pub enum BasisError {
     /// The named vector is zero.
     #[error("{name} is the zero vector, which has no direction")]
     Zero {
-        /// Which vector.
+        /// Name of the vector.
         name: &'static str,
     },
     /// The two vectors are parallel.
@@ -53,7 +53,7 @@ impl OrthonormalBasis {
     /// because the cross product of nearly parallel vectors is not quite perpendicular to `w`.
     ///
     /// # Errors
-    /// If a vector is zero or not finite, or if the two are parallel (within 10⁻⁹ radians).
+    /// Returns an error if a vector is zero or not finite, or if the two are parallel (within 10⁻⁹ radians).
     pub fn from_vectors(a: impl Into<DVec3>, b: impl Into<DVec3>) -> Result<Self, BasisError> {
         Self::from_named_vectors("a", a.into(), "b", b.into())
     }
@@ -61,7 +61,7 @@ impl OrthonormalBasis {
     /// The basis of a camera at `eye` that looks at `look_at`: `a = eye − look_at`, `b = up`.
     ///
     /// # Errors
-    /// As [`OrthonormalBasis::from_vectors`]; the messages speak of the eye, the target and `up`.
+    /// The same errors as [`OrthonormalBasis::from_vectors`]; the messages name the eye, the target and `up`.
     pub fn looking_at(
         eye: impl Into<DVec3>,
         look_at: impl Into<DVec3>,

@@ -20,7 +20,7 @@ impl LinearRgb {
     /// A colour from red, green and blue.
     ///
     /// # Errors
-    /// If a component is NaN, infinite or negative.
+    /// Returns an error if a component is NaN, infinite or negative.
     pub fn new(rgb: [f32; 3]) -> Result<Self, ColorError> {
         if rgb.iter().all(|c| c.is_finite() && *c >= 0.0) {
             Ok(Self(rgb))
@@ -58,7 +58,7 @@ impl LinearRgb {
     /// rounded to eight bits of sRGB.
     ///
     /// # Errors
-    /// If the text is not a valid colour, or the colour is not opaque.
+    /// Returns an error if the text is not a valid colour, or the colour is not opaque.
     #[cfg(feature = "scene-file")]
     pub fn from_css(text: &str) -> Result<Self, ColorError> {
         let color = csscolorparser::parse(text)

@@ -17,7 +17,7 @@ impl Bits {
     /// The variant for a number of bits.
     ///
     /// # Errors
-    /// If `bits` is neither 8 nor 16.
+    /// Returns an error if `bits` is neither 8 nor 16.
     pub fn new(bits: u32) -> Result<Self, EncodingError> {
         match bits {
             8 => Ok(Self::Eight),
@@ -80,7 +80,7 @@ impl Encoding {
     /// The same encoding with light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
-    /// If `stops` is not within ± [`Encoding::MAX_EXPOSURE`].
+    /// Returns an error if `stops` is not within ± [`Encoding::MAX_EXPOSURE`].
     pub fn with_exposure(self, stops: f32) -> Result<Self, EncodingError> {
         // The comparison is false for NaN as well.
         if stops.abs() <= Self::MAX_EXPOSURE {

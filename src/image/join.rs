@@ -6,7 +6,7 @@ impl Image {
     /// Joins two images of the same height, with the layers that both have.
     ///
     /// # Errors
-    /// If the memory cannot be reserved.
+    /// Returns an error if the memory cannot be reserved.
     pub fn side_by_side([left, right]: [&Self; 2]) -> Result<Self, ImageTooLarge> {
         let in_both = left.layers().iter().filter(|layer| right.layers().contains(*layer));
         let (width, height) = (left.width + right.width, left.height.min(right.height));

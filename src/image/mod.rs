@@ -76,7 +76,7 @@ impl Image {
     /// An image in which every pixel is a miss over black, without samples.
     ///
     /// # Errors
-    /// If the memory cannot be reserved.
+    /// Returns an error if the memory cannot be reserved.
     pub fn new(width: u32, height: u32, layers: LayerSet) -> Result<Self, ImageTooLarge> {
         let pixels = u64::from(width) * u64::from(height);
         let bytes = pixels.saturating_mul(layers.bytes_per_pixel());

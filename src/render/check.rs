@@ -87,7 +87,7 @@ impl RenderSettings {
     /// lighting, that the materials of the scene do not reflect more light than arrives.
     ///
     /// # Errors
-    /// If a check fails; the error describes the first problem.
+    /// Returns an error if a check fails; the error describes the first problem.
     pub fn check(&self, scene: &Scene) -> Result<(), SettingsError> {
         self.check_with(scene.checked_appearance())
     }
@@ -205,7 +205,7 @@ impl Sampling {
     /// Checks that the number of samples is in its range.
     ///
     /// # Errors
-    /// If the number of samples is out of range.
+    /// Returns an error if the number of samples is out of range.
     pub fn check(&self) -> Result<(), RangeError> {
         let most = f64::from(Self::MAX_SAMPLES);
         let range = "from 1 to 16777216";
@@ -217,7 +217,7 @@ impl PathTracing {
     /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// If a number is out of range; the error names the first.
+    /// Returns an error if a number is out of range; the error names the first.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_depth", self.max_depth.into(), [1.0, 64.0], "from 1 to 64").map(drop)
@@ -228,7 +228,7 @@ impl Studio {
     /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// If a number is out of range; the error names the first.
+    /// Returns an error if a number is out of range; the error names the first.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
         within("max_surfaces", self.max_surfaces.into(), [1.0, 64.0], "from 1 to 64")?;

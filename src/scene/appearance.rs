@@ -115,8 +115,9 @@ impl Appearance {
     /// Checks that the appearance is valid for `count` spheres.
     ///
     /// # Errors
-    /// If a colour or a set of surface properties is missing for a sphere, an index is out of range, or a number is NaN
-    /// (the error names the first such sphere), or if there are more colours or indices than spheres.
+    /// Returns an error if a colour or a set of surface properties is missing for a sphere, an index is out of range,
+    /// or a number is NaN (the error names the first such sphere), or if there are more colours or indices than
+    /// spheres.
     pub fn check(&self, count: usize) -> Result<(), SceneError> {
         let all = |what, found| match found {
             _ if found == count => Ok(()),

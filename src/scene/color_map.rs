@@ -35,7 +35,7 @@ impl ColorMap {
     /// A colour map from a table and the numbers that its first and its last entry stand for.
     ///
     /// # Errors
-    /// If there is no colour, or the ends are not finite, or the first is not less than the second.
+    /// Returns an error if there is no colour, or the ends are not finite, or the first is not less than the second.
     pub fn new(colors: Vec<LinearRgb>, range: [f32; 2]) -> Result<Self, ColorMapError> {
         if colors.is_empty() {
             return Err(ColorMapError::Empty);

@@ -64,7 +64,7 @@ impl SurfaceProperties {
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
-    /// If a parameter is out of range; the error names the first such parameter.
+    /// Returns an error if a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = |parameter, value: f32, [low, high]: [f32; 2], range| {
             RangeError::unless_within(parameter, value.into(), [low.into(), high.into()], range)

@@ -120,8 +120,8 @@ impl Scene {
     /// Checks the spheres and moves them into the frame of the scene. A scene may be empty.
     ///
     /// # Errors
-    /// If a centre or radius is out of range (the error names the first such sphere in input order), or if there are
-    /// too many spheres.
+    /// Returns an error if a centre or radius is out of range (the error names the first such sphere in input order),
+    /// or if there are too many spheres.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
         let bounds = bounds_of_checked(spheres, f64_parts)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
@@ -159,7 +159,7 @@ impl Scene {
     /// world's origin are moved in place.
     ///
     /// # Errors
-    /// As [`Scene::new`].
+    /// The same errors as [`Scene::new`].
     pub fn from_f32(spheres: Vec<[f32; 4]>, color: LinearRgb) -> Result<Self, SceneError> {
         Self::from_parts(SphereArray::F32(spheres), color.into())
     }
@@ -167,7 +167,7 @@ impl Scene {
     /// A scene from spheres (x, y, z, radius) in f64, all of one colour.
     ///
     /// # Errors
-    /// As [`Scene::new`].
+    /// The same errors as [`Scene::new`].
     pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
         let bounds = bounds_of_checked(spheres, |s| *s)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
@@ -258,7 +258,7 @@ impl Scene {
     /// The colour of a sphere, by its index in input order.
     ///
     /// # Panics
-    /// If there is no such sphere.
+    /// Panics if there is no such sphere.
     #[must_use]
     pub fn color(&self, id: u32) -> LinearRgb {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
@@ -269,7 +269,7 @@ impl Scene {
     /// colour.
     ///
     /// # Panics
-    /// If there is no such sphere.
+    /// Panics if there is no such sphere.
     #[must_use]
     pub fn surface(&self, id: u32) -> SurfaceProperties {
         assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
@@ -305,7 +305,7 @@ impl SphereArray {
     /// A scene of these spheres, all of one colour.
     ///
     /// # Errors
-    /// As [`Scene::new`].
+    /// The same errors as [`Scene::new`].
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         Scene::from_parts(self, color.into())
     }

@@ -64,7 +64,7 @@ impl Sphere {
     /// Checks that the centre and the radius are in range.
     ///
     /// # Errors
-    /// If the centre or the radius is out of range.
+    /// Returns an error if the centre or the radius is out of range.
     pub fn check(&self) -> Result<(), SphereError> {
         let [x, y, z] = self.center;
         check([x, y, z, self.radius])

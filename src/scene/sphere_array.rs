@@ -39,7 +39,7 @@ impl SphereArray {
     /// Spheres from centres and radii in f32.
     ///
     /// # Errors
-    /// If the number of radii differs from the number of centres.
+    /// Returns an error if the number of radii differs from the number of centres.
     pub fn from_f32(centers: &[[f32; 3]], radii: Radii<'_, f32>) -> Result<Self, RadiiError> {
         joined(centers, radii).map(Self::F32)
     }
@@ -47,7 +47,7 @@ impl SphereArray {
     /// Spheres from centres and radii in f64.
     ///
     /// # Errors
-    /// If the number of radii differs from the number of centres.
+    /// Returns an error if the number of radii differs from the number of centres.
     pub fn from_f64(centers: &[[f64; 3]], radii: Radii<'_, f64>) -> Result<Self, RadiiError> {
         joined(centers, radii).map(Self::F64)
     }

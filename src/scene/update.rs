@@ -260,8 +260,8 @@ impl Scene {
     /// computed as well. Data that is shared with a scene on a device is copied: 4 bytes for each sphere.
     ///
     /// # Errors
-    /// If the lists have different lengths, the scene has fewer spheres, its colours are of another kind, or a number
-    /// is out of range or NaN. The scene is then unchanged.
+    /// Returns an error if the lists have different lengths, the scene has fewer spheres, its colours are of another
+    /// kind, or a number is out of range or NaN. The scene is then unchanged.
     pub fn apply(&mut self, update: &SceneUpdate<'_>) -> Result<(), UpdateError> {
         let range = update.check_range(self)?;
         if update.changes_shape() {

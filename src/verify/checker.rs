@@ -41,7 +41,7 @@ impl<'a> Checker<'a> {
     /// Prepares a scene, which takes 24 bytes for each sphere, and 8 to 16 for boxes.
     ///
     /// # Errors
-    /// If there is not enough memory.
+    /// Returns an error if there is not enough memory.
     pub fn new(scene: &'a Scene) -> Result<Self, SceneError> {
         Ok(Self { scene, candidates: Candidates::new(scene.spheres())? })
     }

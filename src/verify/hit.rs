@@ -107,7 +107,7 @@ impl LegalHits {
         self.drop_copies();
     }
 
-    /// Of spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
+    /// Among spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
     /// equal spheres, to the bit, because they share one sphere test, and at equal distances the smaller id wins. This
     /// is a guarantee of this crate: WGSL does not guarantee that two kernels, such as those of two bricks, compile the
     /// test in the same way.

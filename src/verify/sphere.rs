@@ -180,7 +180,7 @@ impl SphereTest {
             low: (-self.c - self.c_error).max(0.0) / (h.high - b.low) * (1.0 - DIVIDE - 2.0 * U),
             high: (self.c_error - self.c) / (h.low + (-b.high).max(0.0)) * (1.0 + DIVIDE + 2.0 * U),
         });
-        // b h may be flushed to zero only if both or one of them are tiny.
+        // The product b h may be flushed to zero only if both or one of them are tiny.
         let flushed = (b.high < 0.0 && h.low * -b.high <= FLUSH)
             .then(|| Interval { low: 0.0, high: h.high.min(FLUSH.sqrt()) });
         [sum, quotient, flushed].into_iter().flatten().reduce(Interval::union)

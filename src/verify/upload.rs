@@ -20,7 +20,7 @@ pub enum UploadError {
     /// A vector of the camera is wrong.
     #[error("the camera's vector {name} is {found:?} on the device; it should be {expected:?}")]
     Vector {
-        /// Which vector.
+        /// Name of the vector.
         name: &'static str,
         /// The vector on the device.
         found: [f32; 3],

@@ -41,7 +41,7 @@ impl<'a> SampledPicture<'a> {
     /// Checks the settings, and prepares the data that all samples share.
     ///
     /// # Errors
-    /// If [`RenderSettings::check`] fails.
+    /// Returns an error if [`RenderSettings::check`] fails.
     pub fn new(
         scene: &'a Scene,
         view: &View<'a>,
@@ -88,7 +88,7 @@ impl<'a> SampledPicture<'a> {
     /// Renders all pixels; see [`super::render`].
     ///
     /// # Errors
-    /// If the image does not fit into memory.
+    /// Returns an error if the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
         let settings = self.context.settings;
         if let Some(primary) = settings.primary() {
@@ -144,7 +144,7 @@ impl<'a> SampledPicture<'a> {
 /// One sample of a pixel. For many samples, create a [`SampledPicture`] once.
 ///
 /// # Errors
-/// If [`RenderSettings::check`] fails.
+/// Returns an error if [`RenderSettings::check`] fails.
 pub fn radiance(
     scene: &Scene,
     view: &View<'_>,

@@ -128,7 +128,7 @@ pub(super) fn is_occluded(
         Hiding::All => true,
         Hiding::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
-    // Of several spheres equal to the one on which the ray starts, only that one counts.
+    // If several spheres equal the one on which the ray starts, only that one counts.
     let is_there = |id: u32| match surface_ray.start {
         Start::Inside(own) => id == own || !context.is_same(own, id),
         Start::Free | Start::Outside(_) | Start::Ground => true,

@@ -83,7 +83,8 @@ impl Environment {
     /// rounded up, and each new texel is the mean, by solid angle, of the texels that it covers.
     ///
     /// # Errors
-    /// If the map is empty, the number of texels is wrong, or a component is NaN, negative or above [`MAX_RADIANCE`].
+    /// Returns an error if the map is empty, the number of texels is wrong, or a component is NaN, negative or above
+    /// [`MAX_RADIANCE`].
     pub fn new(width: u32, height: u32, texels: Vec<[f32; 3]>) -> Result<Self, EnvironmentError> {
         if width == 0 || height == 0 {
             return Err(EnvironmentError::Empty { width, height });

@@ -18,8 +18,8 @@ use crate::verify::{Recording, Rendered, RequestedCamera, TracedPixel, TracedRay
 /// Reads a run file.
 ///
 /// # Errors
-/// If the bytes are not a run file, have another version, or were altered; or if scene, film, camera or settings are
-/// not valid.
+/// Returns an error if the bytes are not a run file, have another version, or were altered; or if scene, film, camera
+/// or settings are not valid.
 pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
     let file = Container::open(bytes)?;
     Ok(Run { scene: scene(&file)?, recording: recording(&file)?, provenance: provenance(&file)? })

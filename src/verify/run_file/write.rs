@@ -13,7 +13,7 @@ use crate::verify::{Recording, Rendered, TracedPixel};
 /// for each sphere.
 ///
 /// # Errors
-/// If writing fails, or if the recording has another size than its film or lacks a layer.
+/// Returns an error if writing fails, or if the recording has another size than its film or lacks a layer.
 pub fn write(
     scene: &Scene,
     recording: &Recording,
