@@ -19,13 +19,13 @@ const VAN_DER_WAALS: [f64; 99] = [
     3.40, 3.05, 2.70,
 ];
 
-/// The radius, in Å, of what has no tabulated radius.
+/// Radius in Å of a species that has no tabulated radius.
 const FALLBACK_RADIUS: f64 = 2.0;
 
-/// The colour of what is no element, or has no tabulated colour: Jmol's deep pink.
+/// Colour of a species that is not an element or has no tabulated colour: Jmol's deep pink.
 const FALLBACK_COLOR: [u8; 3] = [255, 20, 147];
 
-/// What an atom of one species looks like.
+/// Radius and colour of the atoms of one species.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Appearance {
     /// Van der Waals radius in Å (Alvarez 2013).
@@ -36,10 +36,10 @@ pub(super) struct Appearance {
     pub(super) is_element: bool,
 }
 
-/// The appearance of a species: an element's symbol in any case, also with digits or a charge behind
-/// it (`O1`, `Fe3+`), or an atomic number.
+/// Returns the appearance of a species, which may be an element's symbol in upper or lower case, also followed by
+/// digits or a charge (`O1`, `Fe3+`), or an atomic number.
 ///
-/// What is no element gets radius 2 Å and deep pink.
+/// A species that is not an element gets the radius 2 Å and the colour deep pink.
 pub(super) fn appearance(species: &str) -> Appearance {
     let element = match species.parse::<usize>() {
         Ok(number) => Element::list().get(number.wrapping_sub(1)).copied(),
@@ -53,20 +53,25 @@ pub(super) fn appearance(species: &str) -> Appearance {
     Appearance { radius, color: LinearRgb::from_srgb8(color), is_element: element.is_some() }
 }
 
-/// What to say of species that are not chemical elements, on one line however many there are.
-pub(super) fn unknown_note(names: &[String], when: &str) -> Option<String> {
+/// Returns a note about species that are not chemical elements, on one line however many there are. `unless` names
+/// what else can give such a species a colour or a radius, beside a scene file.
+pub(super) fn unknown_note(names: &[String], unless: &str) -> Option<String> {
+    // More names would make the line too long to read.
     const NAMED: usize = 5;
     let more = match names.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
     let named = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
-    let note = format!("not chemical elements: {named}{more}; drawn in pink, with radius 2{when}");
+    let note = format!(
+        "these species are not chemical elements: {named}{more}; they are drawn in pink with radius 2 unless \
+         {unless}a scene file has a table `[elements.NAME]` for them"
+    );
     (!names.is_empty()).then_some(note)
 }
 
 fn by_symbol(symbol: &str) -> Option<Element> {
-    // Deuterium and tritium have symbols of their own, but are no elements of their own.
+    // Deuterium and tritium have their own symbols but are isotopes of hydrogen.
     let symbol = if matches!(symbol, "D" | "T") { "H" } else { symbol };
     Element::list().iter().copied().find(|e| e.symbol().eq_ignore_ascii_case(symbol))
 }
@@ -107,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_element_is_pink() {
+    fn species_that_are_not_elements_are_pink() {
         for species in ["Xx", "0", "119", "", "bead"] {
             let found = appearance(species);
             assert_eq!(found.color.to_srgb8(), FALLBACK_COLOR, "{species}");

@@ -1,34 +1,37 @@
-//! Why spheres cannot be loaded.
+//! Errors of loading spheres.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why spheres cannot be loaded. The messages of readers name the line, column or byte, not the file.
+/// An error of loading spheres. Messages from a reader name the line, column or byte but not the file, which the
+/// caller knows.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("{}: cannot be read: {error}", path.display())]
     File {
-        /// Which file.
+        /// The path of the file.
         path: PathBuf,
-        /// Why.
+        /// The error of the operating system.
         error: io::Error,
     },
-    /// Neither the name nor the content tells the format.
-    #[error("neither its name nor its content tells the format; the formats are {formats}")]
+    /// Neither the name nor the content of the file shows its format.
+    #[error(
+        "neither the name nor the content of this file shows its format; choose one of {formats}"
+    )]
     UnknownFormat {
         /// The names of all formats.
         formats: String,
     },
-    /// An option is of no use to the format.
+    /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// An array of spheres cannot be read.
+    /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]
     Npy(#[from] super::npy::SpheresError),
-    /// An archive of arrays cannot be read.
+    /// An `.npz` archive cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]
     Npz(#[from] super::npz::NpzError),
@@ -45,12 +48,12 @@ pub enum LoadError {
     Xyz(#[from] super::xyz::XyzError),
 }
 
-/// An option is of no use to the format of a file.
+/// The error of an option that does not apply to the format of a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{option} concerns {what}; drop it")]
+#[error("{option} applies only to {what}; remove it")]
 pub struct OptionError {
-    /// The option, such as `frame`.
+    /// Name of the option, such as `frame`.
     pub option: &'static str,
-    /// What has a use for it.
+    /// The kind of file that the option applies to, with its extensions.
     pub what: String,
 }

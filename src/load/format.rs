@@ -1,24 +1,24 @@
-//! The formats of files of spheres: a row for each.
+//! The table of file formats, and reading a file with one of them.
 
 use super::error::{LoadError, OptionError};
 use super::loaded::Loaded;
 use super::raw;
 
-/// A format of files of spheres.
+/// A file format for spheres.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// What it is called, such as `extxyz`.
+    /// Name of the format, such as `extxyz`.
     pub name: &'static str,
-    /// What stands behind the last dot of such a file's name, in small letters.
+    /// File name extensions of the format, in lower case and without the dot.
     pub extensions: &'static [&'static str],
-    /// What such a file holds, in a few words.
+    /// Contents of such a file, in a few words for users.
     pub about: &'static str,
-    /// Whether a file may have several frames.
+    /// Whether a file can have several frames.
     pub has_frames: bool,
-    /// Whether a file may lack radii, so that one is given for all.
+    /// Whether a file can lack radii, so that [`Options::radius`] gives one for all spheres.
     pub may_lack_radii: bool,
-    /// Whether a file gives colours, by itself or by the elements of its atoms.
+    /// Whether a file gives colours, either directly or through the elements of its atoms.
     pub has_colors: bool,
     /// Whether the first bytes of a file look like this format.
     starts: fn(&[u8]) -> bool,
@@ -26,55 +26,55 @@ pub struct Format {
     extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
 }
 
-/// How a file of spheres is to be read.
+/// Options for reading a file of spheres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// The format; if `None`, the file's name or content tells.
+    /// The format; `None` chooses it by the name or the content of the file.
     pub format: Option<&'static Format>,
-    /// Which frame of a trajectory, from 0; the first if `None`.
+    /// The frame of a trajectory to read, counted from 0; `None` reads the first.
     pub frame: Option<usize>,
-    /// The radius of all spheres, in the file's unit of length, if the file has none.
+    /// The radius of all spheres, in the file's unit of length, for files without radii.
     pub radius: Option<f64>,
 }
 
-/// All formats that this build can read. A name or an extension belongs to one of them.
+/// All formats that this build can read. No two of them share a name or an extension.
 pub static FORMATS: &[Format] = &[
     #[cfg(feature = "xyz")]
     Format {
         name: "xyz",
         extensions: &["xyz"],
-        about: "Atoms in text",
+        about: "Text with one atom on each line (XYZ)",
         has_frames: true,
         may_lack_radii: false,
         has_colors: true,
         starts: super::xyz::starts,
         reader: super::xyz::load,
-        extra_bytes: none,
+        extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "xyz")]
     Format {
         name: "extxyz",
         extensions: &["extxyz"],
-        about: "Atoms in text, with named columns",
+        about: "Text with one atom on each line and named columns (extended XYZ)",
         has_frames: true,
         may_lack_radii: false,
         has_colors: true,
         starts: never,
         reader: super::xyz::load,
-        extra_bytes: none,
+        extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "pdb")]
     Format {
         name: "pdb",
         extensions: &["pdb", "ent"],
-        about: "Atoms of a molecule in the fixed columns of the Protein Data Bank; a frame is a model",
+        about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
         has_frames: true,
         may_lack_radii: false,
         has_colors: true,
         starts: super::pdb::starts,
         reader: |bytes, options| Ok(super::pdb::read(bytes, options.frame.unwrap_or_default())?),
-        extra_bytes: none,
+        extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "npy")]
     Format {
@@ -86,13 +86,13 @@ pub static FORMATS: &[Format] = &[
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
         reader: |bytes, options| Ok(Loaded::new(super::npy::read_spheres(bytes, options.radius)?)),
-        extra_bytes: none,
+        extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "npy")]
     Format {
         name: "npz",
         extensions: &["npz"],
-        about: "An archive with such an array",
+        about: "A NumPy archive with an array of shape (n, 4) or, with a radius, (n, 3)",
         has_frames: false,
         may_lack_radii: true,
         has_colors: false,
@@ -103,13 +103,13 @@ pub static FORMATS: &[Format] = &[
     Format {
         name: "raw-f32x4",
         extensions: &[],
-        about: "Nothing but numbers: x, y, z, radius in little-endian f32",
+        about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
         has_frames: false,
         may_lack_radii: false,
         has_colors: false,
         starts: never,
         reader: |bytes, _| Ok(Loaded::new(raw::read_spheres(bytes)?)),
-        extra_bytes: none,
+        extra_bytes: no_extra_bytes,
     },
 ];
 
@@ -117,31 +117,31 @@ fn never(_: &[u8]) -> bool {
     false
 }
 
-fn none(_: &[u8]) -> Result<u64, LoadError> {
+fn no_extra_bytes(_: &[u8]) -> Result<u64, LoadError> {
     Ok(0)
 }
 
 impl Format {
-    /// The format of a name.
+    /// Returns the format with this name.
     #[must_use]
     pub fn of_name(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
     }
 
-    /// The format that an extension stands for, in whatever case.
+    /// Returns the format with this extension, which may be in upper or lower case.
     #[must_use]
     pub fn of_extension(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
     }
 
-    /// The format that the first bytes of a file look like; a few hundred are enough.
+    /// Returns the format that the first bytes of a file look like; a few hundred bytes are enough.
     #[must_use]
     pub fn of_content(bytes: &[u8]) -> Option<&'static Self> {
         FORMATS.iter().find(|format| (format.starts)(bytes))
     }
 
-    /// The extensions of all formats of which something is true, as in `.npy, .npz`.
+    /// Lists the extensions of all formats for which `is_wanted` returns true, such as `.npy, .npz`.
     #[must_use]
     pub fn extensions_of(is_wanted: impl Fn(&Self) -> bool) -> String {
         let wanted = FORMATS.iter().filter(|format| is_wanted(format));
@@ -149,10 +149,10 @@ impl Format {
         extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
     }
 
-    /// Whether the format has a use for every option that is given.
+    /// Checks that every given option applies to this format.
     ///
     /// # Errors
-    /// The first option for which it has none.
+    /// Returns the first option that does not apply.
     pub fn check(&self, options: &Options) -> Result<(), OptionError> {
         if options.frame.is_some() && !self.has_frames {
             let what =
@@ -167,7 +167,7 @@ impl Format {
         Ok(())
     }
 
-    /// How many bytes reading takes beside the file itself, as far as the file says; 0 if it does not.
+    /// Returns how many bytes of memory reading takes beside the file itself, or 0 if the file does not say.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -178,7 +178,7 @@ impl Format {
     /// Reads a file of this format.
     ///
     /// # Errors
-    /// If the file cannot be read, or an option is of no use to it.
+    /// If the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
         self.check(options)?;
         (self.reader)(bytes, options)
@@ -194,19 +194,19 @@ impl PartialEq for Format {
 }
 
 impl Options {
-    /// The same for a format that is known.
+    /// Returns these options with a format.
     #[must_use]
     pub fn with_format(self, format: &'static Format) -> Self {
         Self { format: Some(format), ..self }
     }
 
-    /// The same for a frame of a trajectory, from 0.
+    /// Returns these options with a frame of a trajectory, counted from 0.
     #[must_use]
     pub fn with_frame(self, frame: usize) -> Self {
         Self { frame: Some(frame), ..self }
     }
 
-    /// The same with a radius of all spheres, for files that have none.
+    /// Returns these options with one radius for all spheres, for files without radii.
     #[must_use]
     pub fn with_radius(self, radius: f64) -> Self {
         Self { radius: Some(radius), ..self }
@@ -230,17 +230,17 @@ mod tests {
     }
 
     #[test]
-    fn options_without_use_are_refused() {
+    fn options_that_do_not_apply_are_refused() {
         let raw = Format::of_name("raw-f32x4").unwrap();
         let refused = raw.read(&[], &Options::default().with_frame(1)).unwrap_err().to_string();
-        assert!(refused.starts_with("frame concerns trajectories ("), "{refused}");
+        assert!(refused.starts_with("frame applies only to trajectories ("), "{refused}");
         assert!(raw.read(&[], &Options::default().with_radius(1.0)).is_err());
         assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
     #[cfg(all(feature = "npy", feature = "pdb", feature = "xyz"))]
     #[test]
-    fn content_tells_the_format() {
+    fn content_shows_the_format() {
         for (bytes, name) in [
             (&b"\x93NUMPY\x01"[..], "npy"),
             (b"PK\x03\x04", "npz"),

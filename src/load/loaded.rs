@@ -1,33 +1,33 @@
-//! What a file of spheres holds.
+//! The contents of a file of spheres.
 
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors, Scene, SceneError};
 
-/// The spheres of one frame of a file, and what else the file says of each.
+/// The spheres of one frame of a file, with their colours and other named values.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Loaded {
-    /// Centres and radii, in the order of the file. Not checked:
+    /// Centres and radii, in the order of the file. They are not checked;
     /// [`Scene::from_parts`](crate::Scene::from_parts) does that.
     pub spheres: SphereArray,
     /// The colour of each sphere, if the file or the elements of its atoms give one.
     pub colors: Option<Vec<LinearRgb>>,
-    /// Named values of each sphere, in the order of the file.
+    /// Other named values of the spheres. Each column has one value for each sphere, in the order of the file.
     pub columns: Vec<Column>,
-    /// The three edges of the periodic cell, if the file has one.
+    /// The three edge vectors of the periodic cell, if the file has one.
     pub cell: Option<[[f64; 3]; 3]>,
-    /// How many frames the file has; `None` if it was not read to its end.
+    /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
-    /// What the user should know although it is not an error, one line each, without the file's name.
+    /// Notes for the user that are not errors, one line each and without the file's name.
     pub notes: Vec<String>,
 }
 
-/// One value of every sphere.
+/// A named value of every sphere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// What the value is called, such as `species`, `chain` or `b_factor`.
+    /// Name of the value, such as `species`, `chain` or `b_factor`.
     pub name: String,
     /// One value for each sphere.
     pub values: ColumnValues,
@@ -37,23 +37,23 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ColumnValues {
-    /// Text of which few different values occur.
+    /// Text that takes few different values.
     Labels(Labels),
     /// Numbers.
     Numbers(Vec<f64>),
 }
 
-/// Text for each sphere, of which few different values occur.
+/// A text for each sphere, stored as an index because few different texts occur.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Labels {
-    /// The different values, each once, in order of appearance.
+    /// The different texts, each once, in order of first appearance.
     pub names: Vec<String>,
-    /// For each sphere, the index of its value in `names`.
+    /// For each sphere, the index of its text in `names`.
     pub indices: Vec<u32>,
 }
 
 impl Loaded {
-    /// Spheres without anything else.
+    /// Makes a `Loaded` that has spheres and nothing else.
     #[must_use]
     pub fn new(spheres: SphereArray) -> Self {
         Self {
@@ -66,13 +66,13 @@ impl Loaded {
         }
     }
 
-    /// The column of a name.
+    /// Returns the values of the column with this name.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&ColumnValues> {
         self.columns.iter().find(|column| column.name == name).map(|column| &column.values)
     }
 
-    /// The column of a name, if it has text.
+    /// Returns the column with this name, if its values are text.
     #[must_use]
     pub fn labels(&self, name: &str) -> Option<&Labels> {
         match self.column(name)? {
@@ -81,7 +81,7 @@ impl Loaded {
         }
     }
 
-    /// The spheres one by one; `color` is that of spheres whose file gives none.
+    /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.
     pub fn colored_spheres(&self, color: LinearRgb) -> impl Iterator<Item = Sphere> {
         let color_of = move |index: usize| {
             self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color)
@@ -91,10 +91,10 @@ impl Loaded {
         self.spheres.with_color(color).enumerate().map(colored)
     }
 
-    /// The spheres as a scene; `color` is that of spheres whose file gives none.
+    /// Makes a scene of the spheres. If the file gives no colours, every sphere gets `color`.
     ///
     /// # Errors
-    /// The first sphere that is out of range.
+    /// Names the first sphere that is out of range.
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         let colors = self.colors.map_or(Colors::One(color), |colors| Colors::distinct(&colors));
         Scene::from_parts(self.spheres, Appearance::new(colors))

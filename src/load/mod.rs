@@ -1,7 +1,7 @@
-//! One door for files of spheres: a path or bytes in, [`Loaded`] out.
+//! Reads files of spheres: [`open`] takes a path, [`from_bytes`] takes bytes, and both return a [`Loaded`].
 //!
-//! [`FORMATS`] has a row for every format, and nothing else in the library or the program knows their names.
-//! [`open`] and [`from_bytes`] choose a row and read.
+//! [`FORMATS`] lists every format that this build can read; no other module names a format. The format of a file is
+//! the one in [`Options::format`], or else follows from the file's extension, or else from its content.
 //!
 //! ```
 //! # #[cfg(feature = "xyz")] {

@@ -1,4 +1,4 @@
-//! Spheres in an `.npz` file: a zip archive of NumPy arrays, as `savez` and `savez_compressed` write it.
+//! Reads spheres from an `.npz` file: a zip archive of NumPy arrays, as `savez` and `savez_compressed` write it.
 
 use std::io::Read;
 
@@ -10,57 +10,57 @@ use super::npy::{self, SpheresError};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 
-/// What an array with spheres may be called beside others; the first that is there is taken.
+/// Names that mark the array to read among several; the first name that occurs counts.
 const NAMES: [&str; 2] = ["spheres", "positions"];
 
-/// Deflate makes at most this many bytes of one (zlib's technical details: 258 bytes from two bits).
+/// The most bytes that one byte of deflate can expand to (zlib's technical details: 258 bytes from two bits).
 const MAX_RATIO: u64 = 1032;
 
-/// Why an archive has no list of spheres.
+/// An error of reading spheres from an `.npz` archive.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NpzError {
-    /// Not a zip archive, or a damaged one.
-    #[error("this is no whole .npz file: {message}")]
+    /// The file is not a zip archive, or is damaged.
+    #[error("this is not a complete .npz file: {message}")]
     Archive {
-        /// What is wrong with it.
+        /// What is wrong with the archive.
         message: String,
     },
-    /// No array at all.
-    #[error("there is no array in it")]
+    /// The archive has no array.
+    #[error("the archive has no array; save the spheres with numpy.savez")]
     Empty,
-    /// Several arrays, and none has one of the names.
+    /// The archive has several arrays, and none is called `spheres` or `positions`.
     #[error(
-        "it has the arrays {}; call the one to read `spheres` or `positions`, or save it alone",
+        "the archive has the arrays {}; name the one to read `spheres` or `positions`, or save it alone",
         listed(names)
     )]
     Ambiguous {
-        /// Their names.
+        /// Names of the arrays.
         names: Vec<String>,
     },
-    /// The array cannot be taken out.
+    /// The array cannot be extracted.
     #[error("array `{name}`: {message}")]
     Entry {
-        /// Its name.
+        /// Name of the array.
         name: String,
-        /// Why.
+        /// Why the array cannot be extracted.
         message: String,
     },
-    /// The array is no list of spheres.
+    /// The array is not a list of spheres.
     #[error("array `{name}`: {error}")]
     Spheres {
-        /// Its name.
+        /// Name of the array.
         name: String,
-        /// Why.
+        /// What is wrong with the array.
         error: SpheresError,
     },
 }
 
-/// Reads the only array of an archive, or the one called `spheres` or `positions`, as
+/// Reads spheres from the only array of an archive, or else from the one called `spheres` or `positions`, as
 /// [`npy::read_spheres`] does.
 ///
 /// # Errors
-/// If there is no such array, it is not whole, or it is no list of spheres.
+/// If there is no such array, it is damaged, or it is not a list of spheres.
 pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, NpzError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
     let (name, entry) = entry_with_spheres(&archive)?;
@@ -70,7 +70,7 @@ pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, Np
     npy::read_spheres(&array, radius).map_err(|error| NpzError::Spheres { name, error })
 }
 
-/// How many bytes the array that [`read_spheres`] reads is said to have once it is taken out of the archive.
+/// Returns the uncompressed size in bytes of the array that [`read_spheres`] reads, as the archive declares it.
 ///
 /// # Errors
 /// If there is no such array.
@@ -80,13 +80,13 @@ pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
     Ok(entry.wayfinder.uncompressed_size_hint())
 }
 
-/// Where an array is in its archive.
+/// The position of an array in its archive, and how it is compressed.
 struct Entry {
     wayfinder: rawzip::ZipArchiveEntryWayfinder,
     method: CompressionMethod,
 }
 
-/// The array to read, and its name.
+/// Finds the array to read, and its name.
 fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry), NpzError> {
     let mut entries = Vec::new();
     for entry in archive.entries() {
@@ -96,7 +96,7 @@ fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry
             entries.push((name.to_owned(), entry));
         }
     }
-    // Of two of one name the later one holds, as for NumPy.
+    // If two arrays have the same name, the later one counts, as in NumPy.
     let named = |wanted: &&str| entries.iter().rposition(|(name, _)| name == wanted);
     let index = match (entries.len(), NAMES.iter().find_map(named)) {
         (0, _) => return Err(NpzError::Empty),
@@ -112,7 +112,7 @@ fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry
     Ok((shortened(&one_line(&name)), entry))
 }
 
-/// The bytes of an entry: those of the archive if they are stored, else new ones.
+/// Returns the bytes of an entry, which are borrowed from the archive if they are not compressed.
 fn contents<'a>(
     archive: &'a ZipSliceArchive<&[u8]>,
     wayfinder: rawzip::ZipArchiveEntryWayfinder,
@@ -130,15 +130,18 @@ fn contents<'a>(
         CompressionMethod::DEFLATE => {
             let size = wayfinder.uncompressed_size_hint();
             if size > (data.len() as u64).saturating_mul(MAX_RATIO) {
-                return Err(format!("{} bytes cannot hold {size} by deflate", data.len()));
+                return Err(format!(
+                    "{} compressed bytes cannot expand to {size} bytes",
+                    data.len()
+                ));
             }
             let mut inflated = Vec::new();
             usize::try_from(size)
                 .ok()
                 .and_then(|size| inflated.try_reserve_exact(size).ok())
-                .ok_or_else(|| format!("there is no memory for its {size} bytes"))?;
+                .ok_or_else(|| format!("there is not enough memory for its {size} bytes"))?;
             let reader = entry.verifying_reader(DeflateDecoder::new(data));
-            // One more, so that the reader comes to the end and verifies.
+            // One byte more, so that the reader reaches the end of the data and verifies the checksum.
             reader
                 .take(size.saturating_add(1))
                 .read_to_end(&mut inflated)
@@ -146,13 +149,15 @@ fn contents<'a>(
             if inflated.len() as u64 == size {
                 Ok(inflated.into())
             } else {
-                Err(format!("it is longer than the {size} bytes that the archive says"))
+                Err(format!("it is longer than the {size} bytes that the archive declares"))
             }
         }
         method => {
             let method = format!("{method:?}");
             let method = method.rsplit("::").next().unwrap_or_default();
-            Err(format!("it is compressed by {method}; stored and deflated arrays can be read"))
+            Err(format!(
+                "it is compressed with {method}, but only stored and deflated arrays can be read; use numpy.savez_compressed"
+            ))
         }
     }
 }
@@ -161,7 +166,7 @@ fn broken(error: &rawzip::Error) -> NpzError {
     NpzError::Archive { message: one_line(&error.to_string()) }
 }
 
-/// Names that fit on a line, however many there are.
+/// Lists names on one line, however many there are.
 fn listed(names: &[String]) -> String {
     const NAMED: usize = 5;
     let named = names.iter().take(NAMED).map(|name| format!("`{}`", shortened(&one_line(name))));

@@ -1,22 +1,22 @@
-//! Rows of numbers out of bytes.
+//! Decodes rows of numbers from bytes.
 
 use std::collections::TryReserveError;
 
 use crate::parallel;
 
-/// How the numbers of a table lie one behind the other.
+/// The order in which the numbers of a table are stored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
-    /// How many spheres.
+    /// Number of rows, one for each sphere.
     pub(super) rows: usize,
-    /// 3: x, y, z; or 4: and the radius.
+    /// Number of columns: 3 for x, y, z, or 4 for x, y, z, radius.
     pub(super) columns: usize,
-    /// Whether all x come first, then all y, as Fortran has it.
+    /// Whether the table is stored column by column (Fortran order): all x first, then all y.
     pub(super) by_column: bool,
 }
 
-/// The rows, with `radius` in the fourth place where there are but three columns. What the layout wants
-/// and `bytes` lack is an empty list; readers refuse such files with words of their own.
+/// Decodes the rows; `radius` is the fourth number of each if there are only three columns. If there are fewer
+/// `bytes` than the layout needs, the result is empty: readers check that themselves and name the fault.
 pub(super) fn rows<T: Copy + Send + Sync, const WIDTH: usize>(
     bytes: &[u8],
     layout: Layout,
@@ -31,8 +31,8 @@ pub(super) fn rows<T: Copy + Send + Sync, const WIDTH: usize>(
     // One loop for each layout, so that the compiler can make it a copy.
     match (columns, by_column) {
         (4, false) => parallel::try_map(rows, |row| {
-            let place = row * 4;
-            [0, 1, 2, 3].map(|column| decode(numbers[place + column]))
+            let start = row * 4;
+            [0, 1, 2, 3].map(|column| decode(numbers[start + column]))
         }),
         _ => parallel::try_map(rows, |row| {
             [0, 1, 2, 3].map(|column| match (column < columns, by_column) {

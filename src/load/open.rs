@@ -1,4 +1,4 @@
-//! From a path or bytes to spheres.
+//! Opens files of spheres, and chooses their format.
 
 use std::path::Path;
 
@@ -6,11 +6,11 @@ use super::error::LoadError;
 use super::format::{FORMATS, Format, Options};
 use super::loaded::Loaded;
 
-/// Reads a file of spheres. The format is that of the options, or else what the extension says, or else what the
-/// content looks like.
+/// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
+/// content.
 ///
 /// # Errors
-/// If the file cannot be read, its format is not known, or an option is of no use to it.
+/// If the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
     let bytes =
@@ -18,11 +18,11 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadErr
     from_bytes(&bytes, path, options)
 }
 
-/// As [`open`], of a file that is in memory. `name` is that of the file, if it has one, and tells the format by its
-/// extension; nothing of that name is read.
+/// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
+/// choose the format as [`open`] does, and no file is opened.
 ///
 /// # Errors
-/// As [`open`].
+/// If the bytes cannot be read, their format is not known, or an option does not apply to it.
 pub fn from_bytes(
     bytes: &[u8],
     name: impl AsRef<Path>,
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_no_format_is_refused() {
+    fn a_file_of_unknown_format_is_refused() {
         let refused = from_bytes(b"hello", "a.doc", &Options::default()).unwrap_err().to_string();
         assert!(refused.ends_with("raw-f32x4"), "{refused}");
         let missing = open("no/such/file.xyz", &Options::default()).unwrap_err().to_string();
@@ -54,7 +54,7 @@ mod tests {
 
     #[cfg(feature = "xyz")]
     #[test]
-    fn the_content_tells_where_the_name_does_not() {
+    fn the_content_decides_where_the_name_does_not() {
         let xyz = b"1\n\nO 0 0 0\n";
         for name in ["a.xyz", "a.XYZ", "a", "a.txt"] {
             let loaded = from_bytes(xyz, name, &Options::default()).unwrap();

@@ -5,10 +5,10 @@
 //! frame; every other record is skipped. Lengths are taken as they are, in Å.
 //!
 //! The columns are `species`, `name`, `residue`, `chain`, `residue_number`, `b_factor`, `occupancy` and
-//! `record`. Of an atom with alternate locations one is kept.
+//! `record`. One location of an atom with alternate locations is kept.
 //!
-//! Programs bend the format, so that more is read than it allows: residue names of four characters,
-//! residue numbers in hybrid-36, and lines that end behind the coordinates.
+//! Many programs deviate from the format, so this reader accepts more than it allows: residue names of four
+//! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
 
 mod altloc;
 mod atoms;
@@ -27,13 +27,13 @@ use record::{Kind, Lines, Record};
 
 use super::Loaded;
 
-/// Reads one frame, which is a model, counted from 0 in the order of the file.
+/// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.
 ///
 /// A file without MODEL records has one frame. The file is read to its end, so that
 /// [`Loaded::frames`] is known, but atoms of other models are not checked.
 ///
 /// # Errors
-/// If the text is not a PDB file, or has no such frame.
+/// If the text is not a valid PDB file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
     // Some editors put a byte order mark before UTF-8.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -53,26 +53,26 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     FIRST.iter().any(|name| bytes.starts_with(name))
 }
 
-/// What the lines so far have said. Lines count from 1.
+/// The state of reading after some lines. Lines are counted from 1.
 #[derive(Default)]
 struct Reader {
-    /// The frame that is wanted.
+    /// The frame to read.
     frame: usize,
-    /// Whether a line was seen that shows which format the file has.
+    /// Whether a line was read that is neither blank nor a comment.
     begun: bool,
-    /// How many MODEL records there were.
+    /// Number of MODEL records so far.
     models: usize,
-    /// Where the first MODEL record is.
+    /// Line of the first MODEL record.
     first_model: usize,
-    /// Where the model that has not ended began.
+    /// Line of the MODEL record of the model that has not ended.
     open: Option<usize>,
-    /// Where the wanted model began.
+    /// Line of the MODEL record of the frame to read.
     wanted: usize,
-    /// Where the first atom is.
+    /// Line of the first atom.
     first_atom: Option<usize>,
-    /// Whether a file without models has ended, whatever follows.
+    /// Whether a file without models has reached an END or ENDMDL record after its atoms.
     ended: bool,
-    /// Where the first atom behind this end is.
+    /// Line of the first atom after this end.
     behind_end: Option<usize>,
     cell: Option<[[f64; 3]; 3]>,
     atoms: Atoms,
@@ -114,7 +114,8 @@ impl Reader {
         }
     }
 
-    /// Programs that write trajectories put a CRYST1 record before or into each model.
+    /// Whether the frame to read has not ended. Programs that write trajectories put a CRYST1 record before or into
+    /// each model.
     fn before_end_of_frame(&self) -> bool {
         match self.models {
             0 => !self.ended,
@@ -172,8 +173,8 @@ impl Reader {
         loaded.frames = Some(frames);
         if let Some(line) = self.behind_end {
             loaded.notes.push(format!(
-                "the atoms from line {line} on are left out, because they follow the end of the structure; \
-                 MODEL and ENDMDL must enclose each of several frames"
+                "the atoms from line {line} on are left out, because they follow the end of the structure; if they \
+                 are further frames, enclose each frame with MODEL and ENDMDL"
             ));
         }
         Ok(loaded)

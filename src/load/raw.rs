@@ -1,41 +1,42 @@
-//! Reads spheres from nothing but numbers: little-endian f32, x, y, z, radius, sphere after sphere.
+//! Reads spheres from raw numbers without a header: x, y, z and radius of each sphere in little-endian f32.
 
 use super::numbers::{Layout, rows};
 use crate::scene::sphere_array::SphereArray;
 
-/// Bytes of a sphere.
-const SPHERE: usize = 16;
+/// Bytes per sphere.
+const SPHERE_BYTES: usize = 16;
 
-/// Why bytes are no list of spheres.
+/// An error of reading raw spheres.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RawError {
-    /// Part of a sphere is left over.
+    /// The number of bytes is not a multiple of the size of a sphere.
     #[error(
-        "{bytes} bytes are {} spheres of {SPHERE} bytes (x, y, z, radius in little-endian f32), and {} bytes are left over",
-        bytes / SPHERE, bytes % SPHERE
+        "the file has {bytes} bytes, which are {} × {SPHERE_BYTES} + {}, but each sphere takes {SPHERE_BYTES} bytes \
+         (x, y, z, radius in little-endian f32); the file is cut off or has another format",
+        bytes / SPHERE_BYTES, bytes % SPHERE_BYTES
     )]
     LeftOver {
-        /// How many bytes there are.
+        /// Number of bytes in the file.
         bytes: usize,
     },
-    /// There is no memory for so many.
-    #[error("there is no memory for {count} spheres")]
+    /// There is not enough memory for the spheres.
+    #[error("there is not enough memory for {count} spheres")]
     Memory {
-        /// How many there are.
+        /// Number of spheres.
         count: usize,
     },
 }
 
-/// Reads spheres.
+/// Reads spheres of 16 bytes each: x, y, z and radius in little-endian f32.
 ///
 /// # Errors
-/// If part of a sphere is left over.
+/// If the number of bytes is not a multiple of 16, or there is not enough memory.
 pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, RawError> {
-    if !bytes.len().is_multiple_of(SPHERE) {
+    if !bytes.len().is_multiple_of(SPHERE_BYTES) {
         return Err(RawError::LeftOver { bytes: bytes.len() });
     }
-    let count = bytes.len() / SPHERE;
+    let count = bytes.len() / SPHERE_BYTES;
     let layout = Layout { rows: count, columns: 4, by_column: false };
     let spheres = rows(bytes, layout, f32::from_le_bytes, 0.0);
     spheres.map(SphereArray::F32).map_err(|_| RawError::Memory { count })

@@ -1,9 +1,9 @@
-//! Reads XYZ and extended XYZ.
+//! Reads XYZ and extended XYZ files.
 //!
-//! XYZ: a line with the number of atoms, a comment line, then a line `species x y z …` per atom;
-//! a trajectory is such frames one after the other. Extended XYZ (the comment line has
-//! `Properties=name:type:columns:…`, as ASE and OVITO write it) names the columns; of these `species`
-//! (or `Z`), `pos`, `radius` and `color` are used. Lengths are taken as they are, in Å.
+//! A frame of an XYZ file is a line with the number of atoms, a comment line, and a line `species x y z …` for each
+//! atom. A trajectory is several frames, one after the other. In an extended XYZ file the comment line names the
+//! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. Of these columns `species` (or `Z`), `pos`,
+//! `radius` and `color` are used. Lengths are taken as they are, in Å.
 
 use std::collections::HashMap;
 
@@ -25,121 +25,133 @@ pub struct Atoms {
     pub colors: Vec<LinearRgb>,
     /// The species of each atom.
     pub species: Labels,
-    /// Species that are no chemical element, each once, in order of appearance.
+    /// Species that are not chemical elements, each once, in order of first appearance.
     pub unknown_species: Vec<String>,
 }
 
-/// Why a file is no XYZ file, or has no such frame. Lines count from 1.
+/// An error of reading an XYZ file. Lines are counted from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum XyzError {
-    /// A frame must start with the number of its atoms.
-    #[error("line {line}: `{found}` is no number of atoms{}", after_frame(previous))]
+    /// A frame does not start with a valid number of atoms.
+    #[error(
+        "line {line}: `{found}` is not a valid number of atoms, which must begin a frame{}",
+        after_frame(previous)
+    )]
     Count {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// The line as it is.
+        /// The text of the line.
         found: String,
-        /// The frame before, if there is one.
+        /// The frame before this line, if there is one.
         previous: Option<DeclaredFrame>,
     },
-    /// There is no frame at all.
+    /// The file has no frame.
     #[error("the file is empty; an XYZ file starts with the number of its atoms")]
     Empty,
     /// The file ends before the frame does.
     #[error(
-        "line {}: frame {} declares {} atoms, but the file ends after {found}",
-        frame.line, frame.index, frame.atoms
+        "line {}: frame {} declares {}, but the file ends after {found}",
+        frame.line, frame.index, atoms(frame.atoms)
     )]
     TooFewAtoms {
-        /// The frame.
+        /// The frame that is affected.
         frame: DeclaredFrame,
-        /// How many atom lines it has.
+        /// Number of atoms that the file has in this frame.
         found: usize,
     },
     /// An atom's line has too few columns.
     #[error(
-        "line {line}: the {what} is missing; the line has {columns} columns (frame {} declares {} atoms on line {})",
-        frame.index, frame.atoms, frame.line
+        "line {line}: the {what} is missing; the line has {columns} {} (frame {} declares {} on line {})",
+        if *columns == 1 { "column" } else { "columns" }, frame.index, atoms(frame.atoms), frame.line
     )]
     MissingColumn {
-        /// The frame.
+        /// The frame that is affected.
         frame: DeclaredFrame,
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
-        /// How many columns there are.
+        /// Number of columns of the line.
         columns: usize,
     },
-    /// A value is no finite number.
-    #[error("line {line}: the {what} is `{found}`, which is no finite number")]
+    /// A value is not a finite number.
+    #[error("line {line}: the {what} is `{found}`, which is not a finite number")]
     Number {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
-        /// The text as it is.
+        /// The text that was found.
         found: String,
     },
     /// An atom is out of range.
     #[error("line {line}: atom {atom}: {error}")]
     Sphere {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// Its number in the frame, from 0.
+        /// Index of the atom in its frame, from 0.
         atom: usize,
-        /// What is wrong with it.
+        /// What is wrong with the atom.
         error: SphereError,
     },
     /// The list of properties of an extended XYZ frame cannot be used.
     #[error("line {line}: {message}")]
     Properties {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// What is wrong with it.
+        /// What is wrong with the list.
         message: String,
     },
-    /// A line is not UTF-8.
-    #[error("line {line}: this is no text; an XYZ file is plain text")]
+    /// A line is not UTF-8 text.
+    #[error("line {line}: this line is not UTF-8 text; an XYZ file is plain text")]
     NotText {
-        /// Where.
+        /// Number of the line.
         line: usize,
     },
-    /// The trajectory is shorter.
-    #[error("there is no frame {wanted}; the file has {frames} frames, counted from 0")]
+    /// The file has fewer frames.
+    #[error(
+        "there is no frame {wanted}; the file has {frames} {}, counted from 0",
+        if *frames == 1 { "frame" } else { "frames" }
+    )]
     NoSuchFrame {
         /// The frame that was asked for.
         wanted: usize,
-        /// How many there are.
+        /// Number of frames in the file.
         frames: usize,
     },
 }
 
-/// The head of a frame.
+/// A frame as its first line declares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeclaredFrame {
-    /// Number of the frame, from 0.
+    /// Index of the frame, from 0.
     pub index: usize,
-    /// Where its number of atoms stands.
+    /// Number of the line with the number of atoms, from 1.
     pub line: usize,
-    /// How many atoms it declares.
+    /// The number of atoms that the line declares.
     pub atoms: usize,
 }
 
+/// The end of a sentence about the line after a frame, which is wrong if the frame's number of atoms is.
 fn after_frame(previous: &Option<DeclaredFrame>) -> String {
     previous.map_or_else(String::new, |frame| {
-        format!("; frame {} declares {} atoms on line {}", frame.index, frame.atoms, frame.line)
+        let DeclaredFrame { index, line, atoms: count } = frame;
+        format!("; frame {index} before it declares {} on line {line}", atoms(count))
     })
+}
+
+fn atoms(count: usize) -> String {
+    if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") }
 }
 
 /// Reads one frame, counted from 0.
 ///
-/// What stands before the frame is only counted; the line behind it must be the end or another frame's
-/// number of atoms, so that a wrong count is noticed.
+/// The lines before the frame are counted but not checked. After the frame, the file must end or another frame must
+/// begin, so that a wrong number of atoms is noticed.
 ///
 /// # Errors
-/// If the text is no XYZ, or has no such frame.
+/// If the text is not a valid XYZ file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
     // Some editors put a byte order mark before UTF-8.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -162,7 +174,7 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
     Err(XyzError::NoSuchFrame { wanted: frame, frames: index })
 }
 
-/// Whether the first line is a number, as that of atoms is.
+/// Whether the first line that is not blank is a number, as in an XYZ file.
 pub(super) fn starts(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let first = bytes.trim_ascii_start().split(|byte| *byte == b'\n').next().unwrap_or_default();
@@ -170,7 +182,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     !first.is_empty() && first.iter().all(u8::is_ascii_digit)
 }
 
-/// Reads one frame, with the colours of its elements.
+/// Reads the frame that the options name, for [`crate::load`].
 pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let Atoms { spheres, colors, species, unknown_species } =
         read(bytes, options.frame.unwrap_or_default())?;
@@ -179,18 +191,18 @@ pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
     loaded
         .columns
         .push(Column { name: "species".to_owned(), values: ColumnValues::Labels(species) });
-    loaded.notes.extend(unknown_note(&unknown_species, " if the file gives none"));
+    loaded.notes.extend(unknown_note(&unknown_species, "the file gives a color or radius or "));
     Ok(loaded)
 }
 
-/// Lines of text, counted.
+/// The lines of a text, which it counts.
 struct Lines<'a> {
     rest: &'a [u8],
     line: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// The next line without its end, not yet checked to be text.
+    /// Returns the next line without its line end. The bytes may not be valid text.
     fn next_bytes(&mut self) -> Option<&'a [u8]> {
         if self.rest.is_empty() {
             return None;
@@ -213,7 +225,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The head of the next frame, or `None` at the end; blank lines before it are passed over.
+/// Reads the first line of the next frame and skips blank lines before it; `None` at the end of the file.
 fn next_head(
     lines: &mut Lines<'_>,
     index: usize,
@@ -232,7 +244,7 @@ fn next_head(
 }
 
 fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzError> {
-    // The comment line belongs to the frame, but not to its atoms.
+    // The comment line is not one of the atoms.
     let _comment = lines.next_bytes();
     for found in 0..frame.atoms {
         lines.next_bytes().ok_or(XyzError::TooFewAtoms { frame, found })?;
@@ -241,7 +253,7 @@ fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzErro
 }
 
 fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzError> {
-    // In whatever encoding; what matters of it is ASCII.
+    // The comment may have any encoding; the part that is read is ASCII.
     let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
     let columns = Columns::from_comment(&comment)
         .map_err(|message| XyzError::Properties { line: lines.line, message })?;
@@ -249,7 +261,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzE
     let (mut names, mut species_indices) = (Vec::new(), Vec::new());
     let mut unknown_species = Vec::new();
     let mut known: HashMap<&str, (u32, Appearance)> = HashMap::new();
-    // Neighbours are often of one species.
+    // Consecutive atoms often have the same species.
     let mut last: Option<(&str, (u32, Appearance))> = None;
     for found in 0..frame.atoms {
         let text = lines.next()?.ok_or(XyzError::TooFewAtoms { frame, found })?;
@@ -264,7 +276,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzE
                     unknown_species.push(shortened(species));
                 }
                 names.push(shortened(species));
-                // No more than spheres, which are fewer than 2³².
+                // There are no more names than spheres, which are fewer than 2³².
                 (names.len() as u32 - 1, appearance)
             }),
         };
@@ -294,7 +306,7 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzE
     Ok(Atoms { spheres, colors, species, unknown_species })
 }
 
-/// Where an atom's line has what, counted in columns from 0.
+/// The columns of an atom's line that hold its values, counted from 0.
 struct Columns {
     species: usize,
     position: usize,
@@ -313,16 +325,16 @@ impl Columns {
         for field in fields.chunks(3) {
             let &[name, kind, count] = field else {
                 return Err(format!(
-                    "Properties={} is no list of name:type:columns triples",
+                    "Properties={} is not a list of name:type:columns triples",
                     shortened(properties)
                 ));
             };
-            let count: usize = count
-                .parse()
-                .map_err(|_| format!("Properties: `{count}` of {name} is no number of columns"))?;
+            let count: usize = count.parse().map_err(|_| {
+                format!("Properties: `{count}` is not a valid number of columns for {name}")
+            })?;
             match (name.to_ascii_lowercase().as_str(), kind, count) {
                 ("species", "S", 1) => species = Some(column),
-                // A symbol tells more than a number, wherever it stands.
+                // A column of symbols has precedence over one of atomic numbers, whichever comes first.
                 ("z" | "numbers", "I", 1) => species = species.or(Some(column)),
                 ("pos", "R", 3) => position = Some(column),
                 ("radius", "R", 1) => radius = Some(column),
@@ -334,15 +346,17 @@ impl Columns {
                 .ok_or_else(|| format!("Properties: {name} has too many columns"))?;
         }
         Ok(Self {
-            species: species.ok_or("Properties has neither species:S:1 nor Z:I:1")?,
-            position: position.ok_or("Properties lacks pos:R:3")?,
+            species: species.ok_or(
+                "Properties has neither species:S:1 nor Z:I:1; one of them must name the elements",
+            )?,
+            position: position.ok_or("Properties has no pos:R:3, which must name the positions")?,
             radius,
             color,
         })
     }
 }
 
-/// The value of `key=value` or `key="value"` in an extended XYZ comment.
+/// Finds the value of `key=value` or `key="value"` in an extended XYZ comment.
 fn value_of<'a>(key: &str, comment: &'a str) -> Option<&'a str> {
     let mut rest = comment;
     loop {
@@ -369,7 +383,7 @@ fn value_of<'a>(key: &str, comment: &'a str) -> Option<&'a str> {
     }
 }
 
-/// The columns of one line.
+/// The line of an atom, split into columns.
 struct Atom<'a> {
     frame: DeclaredFrame,
     line: usize,
@@ -393,7 +407,7 @@ impl<'a> Atom<'a> {
         })
     }
 
-    /// Three display values in [0, 1], as OVITO writes them; they are sRGB.
+    /// Reads a colour: three sRGB values in [0, 1], as OVITO writes them.
     fn color(&self, column: usize) -> Result<LinearRgb, XyzError> {
         let mut bytes = [0_u8; 3];
         for (i, byte) in bytes.iter_mut().enumerate() {
@@ -403,7 +417,7 @@ impl<'a> Atom<'a> {
     }
 }
 
-/// Also with the exponents of Fortran: `1.5D-3`.
+/// Parses a finite number, also with an exponent as Fortran writes it: `1.5D-3`.
 fn parse_number(text: &str) -> Option<f64> {
     let number: f64 = text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse()).ok()?;
     number.is_finite().then_some(number)

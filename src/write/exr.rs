@@ -1,11 +1,11 @@
-//! Writes pictures with their data layers as OpenEXR: one part, scan lines, ZIP without loss, and every number as
-//! it is in the picture.
+//! Writes pictures with their data layers as OpenEXR files: one part with scan lines and lossless ZIP compression.
+//! Every number is stored as it is in the picture.
 //!
 //! | channels | type | layer |
 //! | --- | --- | --- |
 //! | `R`, `G`, `B` | f32 | color: linear light with the Rec. 709 primaries, no exposure, no tone curve |
-//! | `A` | f32 | alpha if the picture is transparent, and `R`, `G`, `B` are premultiplied by it; else 1 |
-//! | `coverage` | f32 | alpha, also of a picture that is not transparent |
+//! | `A` | f32 | alpha if the encoding is transparent, where `R`, `G`, `B` are premultiplied by it; otherwise 1 |
+//! | `coverage` | f32 | alpha, also if the encoding is not transparent |
 //! | `Z` | f32 | depth, along the ray; +∞ for a miss |
 //! | `N.X`, `N.Y`, `N.Z` | f32 | normal |
 //! | `P.X`, `P.Y`, `P.Z` | f32 | position |
@@ -14,7 +14,7 @@
 //! | `samples` | u32 | samples |
 //! | `variance` | f32 | variance |
 //!
-//! Attributes: `software`, and `adapter` if it is known what rendered.
+//! The attributes are `software`, and `adapter` if the adapter that rendered is known.
 
 use std::io::{self, Seek, Write};
 
@@ -32,14 +32,14 @@ use ::exr::prelude::{Compression, SmallVec};
 use crate::image::encoding::Encoding;
 use crate::image::{Image, Layer, LayerSet};
 
-/// Writes a picture: colour and alpha, and those `layers` beside. Of the encoding, only whether it is transparent
-/// concerns this format. `adapter` is what rendered, if that is known.
+/// Writes a picture with colour, alpha and the `layers`. This format uses only the transparency of the encoding.
+/// `adapter` is the name of the adapter that rendered, if it is known.
 ///
-/// Nothing is copied: pixels go from the picture to the sink, a few rows at a time.
+/// The picture is not copied: a few rows at a time go to the sink.
 ///
 /// # Errors
-/// If the picture was rendered without one of the layers, or without alpha and is to be transparent; if the sink
-/// fails.
+/// If the picture was rendered without one of the layers, if the encoding is transparent and the picture has no alpha,
+/// or if the sink fails.
 pub fn write(
     picture: &Image,
     layers: LayerSet,
@@ -77,23 +77,23 @@ pub fn write(
     Ok(sink.flush()?)
 }
 
-/// Why a picture cannot be written.
+/// An error of writing an OpenEXR file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExrError {
-    /// A layer is not part of the image.
-    #[error("the image has no layer {layer}; ask for it when rendering")]
+    /// The picture was rendered without this layer.
+    #[error("the picture has no layer {layer}; ask for this layer when rendering")]
     MissingLayer {
-        /// Which layer.
+        /// The layer that is missing.
         layer: Layer,
     },
-    /// The sink's reason.
+    /// The sink failed.
     #[error(transparent)]
     Sink(#[from] io::Error),
-    /// The encoder's reason.
+    /// The encoder failed.
     #[error("the picture cannot be written as EXR: {message}")]
     Encoder {
-        /// The reason.
+        /// The message of the encoder.
         message: String,
     },
 }
@@ -107,16 +107,16 @@ impl From<Error> for ExrError {
     }
 }
 
-/// The format has Latin-1 only.
+/// Converts a text to Latin-1, which is all that the format has; other characters become `?`.
 fn latin(text: &str) -> Text {
     let bytes: SmallVec<[u8; 24]> = text.chars().map(|c| u8::try_from(c).unwrap_or(b'?')).collect();
     Text::from_bytes_unchecked(bytes)
 }
 
-/// A channel's name and samples.
+/// The name and the samples of a channel.
 type Plane<'a> = (&'static str, Samples<'a>);
 
-/// All channels.
+/// Returns all channels of the file.
 fn planes(
     picture: &Image,
     layers: LayerSet,
@@ -134,7 +134,7 @@ fn planes(
     Ok(planes)
 }
 
-/// The channels of a layer, if the picture has it.
+/// Returns the channels of a layer, or `None` if the picture does not have the layer.
 fn planes_of(picture: &Image, layer: Layer) -> Option<Vec<Plane<'_>>> {
     let planes = match layer {
         Layer::Color => vectors(["R", "G", "B"], picture.color()),
@@ -158,17 +158,17 @@ fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a
         .collect()
 }
 
-/// Where a channel's samples are in a picture.
+/// The samples of a channel, borrowed from the picture.
 #[derive(Clone, Copy)]
 enum Samples<'a> {
-    /// 1 everywhere.
+    /// The number 1 for every pixel.
     One,
     Numbers(&'a [f32]),
     Components(&'a [[f32; 3]], usize),
     Counts(&'a [u32]),
 }
 
-/// Samples, and how many a row has.
+/// The samples of a channel and the width of the picture.
 #[derive(Clone, Copy)]
 struct Channel<'a> {
     samples: Samples<'a>,

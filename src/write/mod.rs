@@ -1,4 +1,4 @@
-//! Writers: an image, its layers or spheres in, bytes out. They touch no files.
+//! Writers for pictures, their layers and spheres. They write to memory or to a sink, and never open files.
 
 #[cfg(feature = "exr")]
 pub mod exr;

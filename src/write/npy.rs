@@ -6,8 +6,8 @@ use npyz::{AutoSerialize, WriterBuilder};
 
 use crate::image::{Image, Layer};
 
-/// A layer as an `.npy` file: shape (H, W) or (H, W, 3), float32, or uint32 for ids and numbers of samples; C
-/// order, row 0 at the top.
+/// Encodes a layer as an `.npy` file. Its shape is (height, width) or (height, width, 3) in C order, with row 0 at the
+/// top. Its type is float32, or uint32 for ids and numbers of samples.
 ///
 /// # Errors
 /// If the image was rendered without this layer.
@@ -32,10 +32,10 @@ pub fn encode(image: &Image, layer: Layer) -> Result<Vec<u8>, NpyError> {
         .map_err(|error| NpyError::Encoder { message: error.to_string() })
 }
 
-/// Writes spheres as an `.npy` file: shape (n, 4), float32, C order.
+/// Writes spheres as an `.npy` file of shape (n, 4): x, y, z, radius in float32 and C order.
 ///
 /// # Errors
-/// Those of the sink.
+/// If the sink fails.
 pub fn write_spheres(spheres: &[[f32; 4]], sink: impl Write) -> io::Result<()> {
     let mut sink = BufWriter::new(sink);
     let shape = [spheres.len() as u64, 4];
@@ -46,20 +46,20 @@ pub fn write_spheres(spheres: &[[f32; 4]], sink: impl Write) -> io::Result<()> {
     sink.flush()
 }
 
-/// Why a layer cannot be written.
+/// An error of encoding a layer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NpyError {
-    /// It is not part of the image.
-    #[error("the image has no layer {layer}; ask for it when rendering")]
+    /// The image was rendered without this layer.
+    #[error("the picture has no layer {layer}; ask for this layer when rendering")]
     MissingLayer {
-        /// Which layer.
+        /// The layer that is missing.
         layer: Layer,
     },
-    /// The encoder's reason.
-    #[error("the layer cannot be written as npy: {message}")]
+    /// The encoder failed.
+    #[error("the layer cannot be written as .npy: {message}")]
     Encoder {
-        /// The reason.
+        /// The message of the encoder.
         message: String,
     },
 }

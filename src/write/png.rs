@@ -1,4 +1,4 @@
-//! Writes sRGB PNG.
+//! Writes pictures as PNG files in sRGB.
 
 use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
 
@@ -7,18 +7,18 @@ use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
 use crate::parallel::for_each;
 
-/// How many pixels a thread converts at a time.
+/// Number of pixels that a thread converts at a time.
 const CHUNK: usize = 1 << 14;
 
-/// The picture as a PNG file in sRGB, with 8 or 16 bits: RGB, or RGBA if it is transparent. Colours are exposed,
-/// go through the tone curve and are encoded; what lies beyond [0, 1] then is clamped.
+/// Encodes a picture as a PNG file in sRGB with 8 or 16 bits per channel: RGB, or RGBA if the encoding is transparent.
+/// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1].
 ///
-/// PNG wants colours that are not premultiplied, so those of a transparent picture are divided by alpha first, and
-/// are black where alpha is zero.
+/// PNG stores colours that are not premultiplied. So the colours of a transparent picture are divided by alpha first;
+/// they are black where alpha is zero.
 ///
 /// # Errors
-/// If the picture is to be transparent and was rendered without alpha; if it cannot be encoded, which for sizes
-/// that PNG allows does not happen.
+/// If the encoding is transparent and the picture was rendered without alpha, or if the encoder fails, which does not
+/// happen for sizes that PNG allows.
 pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
     let alpha = match encoding.transparent() {
         true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
@@ -45,10 +45,11 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
     write([picture.width(), picture.height()], color_type, depth, &samples)
 }
 
-/// A PNG file of an image of width and height `size`, whose pixels have three bytes each, row by row from the top.
+/// Encodes sRGB bytes as a PNG file. `size` is the width and height; `rgb` has three bytes per pixel, row by row from
+/// the top.
 ///
 /// # Errors
-/// If there are not as many bytes as that takes.
+/// If `rgb` does not have three bytes per pixel.
 pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
     write(size, ColorType::Rgb, BitDepth::Eight, rgb)
 }
@@ -73,22 +74,22 @@ fn write(
     Ok(bytes)
 }
 
-/// Why a picture cannot be written.
+/// An error of encoding a PNG file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PngError {
-    /// What tells how transparent it is, is missing.
-    #[error("a transparent picture needs the layer alpha; ask for it when rendering")]
+    /// The picture was rendered without the layer alpha.
+    #[error("a transparent picture needs the layer alpha; ask for this layer when rendering")]
     MissingAlpha,
-    /// The encoder's reason.
+    /// The encoder failed.
     #[error("the picture cannot be written as PNG: {message}")]
     Encoder {
-        /// The reason.
+        /// The message of the encoder.
         message: String,
     },
 }
 
-/// The bytes of all pixels: `RGB` of a colour and, where there is alpha, `A` of that.
+/// Encodes all pixels: `RGB` bytes for each colour and, if there is alpha, `A` bytes for alpha.
 fn samples<const RGB: usize, const A: usize>(
     color: &[[f32; 3]],
     alpha: Option<&[f32]>,
@@ -104,7 +105,7 @@ fn samples<const RGB: usize, const A: usize>(
         for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
             let alpha = alpha.map(|alpha| alpha[start + index]);
             let rgb = alpha.map_or(*rgb, |alpha| divided(*rgb, alpha));
-            // Most of many pictures is background.
+            // Large parts of many pictures have one colour, such as the background.
             let bits = rgb.map(f32::to_bits);
             if bits != before {
                 (before, encoded) = (bits, of_color(rgb));
@@ -119,7 +120,7 @@ fn samples<const RGB: usize, const A: usize>(
     bytes
 }
 
-/// What was premultiplied, as it was before.
+/// Divides a premultiplied colour by alpha.
 fn divided(rgb: [f32; 3], alpha: f32) -> [f32; 3] {
     if alpha > 0.0 { rgb.map(|x| x / alpha) } else { [0.0; 3] }
 }

@@ -1,11 +1,11 @@
-//! Writes spheres as nothing but numbers: little-endian f32, x, y, z, radius, sphere after sphere.
+//! Writes spheres as raw numbers without a header: x, y, z and radius of each sphere in little-endian f32.
 
 use std::io::{self, Write};
 
-/// Writes spheres, each of 16 bytes.
+/// Writes spheres as 16 bytes each: x, y, z and radius in little-endian f32.
 ///
 /// # Errors
-/// Those of the sink.
+/// If the sink fails.
 pub fn write_spheres(spheres: &[[f32; 4]], mut sink: impl Write) -> io::Result<()> {
     let mut bytes = Vec::new();
     for chunk in spheres.chunks(1 << 12) {

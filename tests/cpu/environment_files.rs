@@ -1,4 +1,4 @@
-//! Environments from files, and files that are none.
+//! Tests of reading environment maps from files, and of refusing other files.
 
 use std::io::Cursor;
 
@@ -12,14 +12,14 @@ use pinhole::Environment;
 use pinhole::light::environment::EnvironmentError;
 use pinhole::load::environment::{EnvironmentFileError, MAX_TEXELS, read};
 
-/// A file whose pixels stand one after the other, as the format's inventor allows.
+/// A file without run-length encoding.
 fn flat_hdr(header: &str, pixels: &[[u8; 4]]) -> Vec<u8> {
     [header.as_bytes(), pixels.as_flattened()].concat()
 }
 
 const HEADER: &str = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2.0\n\n-Y 1 +X 2\n";
 
-/// Mantissas over 256, times 2 to the power of the last byte less 128.
+/// Each component is its byte over 256, times 2 to the power of the last byte less 128.
 #[test]
 fn radiance_of_known_bytes() {
     for header in
@@ -33,7 +33,7 @@ fn radiance_of_known_bytes() {
 
 fn texels(width: usize, height: usize) -> Vec<[f32; 3]> {
     let mut random = fastrand::Rng::with_seed(4);
-    // What f16 holds, and RGBE nearly.
+    // These numbers fit exactly into f16, and nearly into RGBE.
     (0..width * height)
         .map(|_| [0; 3].map(|_: i32| f32::from(random.u8(..)) / 16.0 + 0.25))
         .collect()
@@ -133,12 +133,13 @@ fn exr_without_colour_says_what_it_has() {
     assert_eq!(error, EnvironmentFileError::Channels { found: "R, Y, diffuse.G".to_owned() });
     assert_eq!(
         error.to_string(),
-        "no part of the OpenEXR file has the channels R, G and B; the first has R, Y, diffuse.G"
+        "no part of the OpenEXR file has the channels R, G and B, which are needed; \
+         the first part has R, Y, diffuse.G"
     );
 }
 
 #[test]
-fn a_cube_is_no_map() {
+fn a_cube_map_is_refused() {
     let attributes =
         LayerAttributes { environment_map: Some(EnvironmentMap::Cube), ..Default::default() };
     let bytes = exr_of([1, 6], &texels(1, 6), Compression::RLE, attributes);
@@ -151,7 +152,7 @@ fn a_cube_is_no_map() {
     assert!(read(&exr_of([1, 6], &texels(1, 6), Compression::RLE, attributes)).is_ok());
 }
 
-/// Their decoder panics on damaged files.
+/// The decoder of B44 panics on damaged files.
 #[test]
 fn lossy_blocks_are_not_read() {
     for compression in [Compression::B44, Compression::B44A] {
@@ -161,7 +162,7 @@ fn lossy_blocks_are_not_read() {
 }
 
 #[test]
-fn texels_that_are_no_radiance_are_named() {
+fn texels_that_are_not_a_valid_radiance_are_named() {
     for bad in [f32::NAN, -1.0, f32::INFINITY] {
         let mut texels = texels(5, 4);
         texels[13][1] = bad;
@@ -184,7 +185,7 @@ fn texels_that_are_no_radiance_are_named() {
 }
 
 #[test]
-fn files_that_are_no_images() {
+fn files_that_are_not_environment_maps() {
     for bytes in [&b""[..], b"#", b"v/1", b"\x89PNG\r\n", b"P6\n1 1\n255\n"] {
         assert_eq!(read(bytes).unwrap_err(), EnvironmentFileError::Unknown);
     }
@@ -213,9 +214,11 @@ fn what_is_too_large_is_refused_before_it_is_read() {
     assert_eq!(error, EnvironmentFileError::TooLarge { width: width.into(), height: 1 });
     assert_eq!(
         error.to_string(),
-        format!("4294967295×1 texels are too many; the most are {MAX_TEXELS}")
+        format!(
+            "the image has 4294967295×1 texels, more than the limit of {MAX_TEXELS}; use a smaller image"
+        )
     );
-    // What a file may have, and this one is too short for.
+    // A size that a file may have, but for which this file is too short.
     let bytes = flat_hdr(&HEADER.replace("+X 2", "+X 10000000"), &[[9; 4]; 2]);
     let truncated = EnvironmentFileError::Truncated { format: "Radiance HDR", bytes: bytes.len() };
     assert_eq!(read(&bytes).unwrap_err(), truncated);
@@ -228,7 +231,7 @@ fn what_is_too_large_is_refused_before_it_is_read() {
     assert_eq!(error, EnvironmentFileError::TooLarge { width: 0x1000_0000, height: 4 });
 }
 
-/// Whatever is in it, a file is read or refused, without a panic.
+/// Reads a file; whatever is in it, the file is read or refused without a panic.
 fn survives(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     let result = read(bytes);
     if let Err(error) = &result {

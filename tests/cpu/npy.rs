@@ -1,4 +1,4 @@
-//! Arrays of spheres: .npy, .npz and raw; good files, bad files, and files that are noise.
+//! Tests of reading arrays of spheres from .npy, .npz and raw files: good files, bad files and noise.
 
 use pinhole::SphereArray;
 use pinhole::load::npy::{SpheresError, read_spheres};
@@ -8,7 +8,7 @@ use pinhole::write::npy::write_spheres;
 
 use crate::arrays::{npy, zip};
 
-/// Four spheres by rows.
+/// Two spheres: x, y, z, radius.
 const ROWS: [[f32; 4]; 2] = [[1.0, 2.0, 3.0, 0.5], [4.0, -5.0, 6.5, 0.25]];
 
 fn bytes<const N: usize>(numbers: &[f32], encode: impl Fn(f32) -> [u8; N]) -> Vec<u8> {
@@ -52,7 +52,7 @@ fn both_precisions_both_byte_orders_both_layouts() {
 }
 
 #[test]
-fn an_array_without_rows_is_no_sphere() {
+fn an_array_without_rows_gives_no_spheres() {
     assert!(read_spheres(&npy("<f4", false, "(0, 4)", b""), None).unwrap().is_empty());
     assert!(read_spheres(&npy(">f8", true, "(0, 3)", b""), Some(1.0)).unwrap().is_empty());
     assert!(raw::read_spheres(b"").unwrap().is_empty());
@@ -82,18 +82,18 @@ fn long_arrays() {
 }
 
 #[test]
-fn arrays_that_are_no_spheres() {
-    let shape = "wanted is (n, 4): x, y, z, radius, or (n, 3): x, y, z";
+fn arrays_that_are_not_lists_of_spheres() {
+    let shape = "it must be (n, 4) for x, y, z, radius or (n, 3) for x, y, z";
     for (shape_of, found) in
         [("(8,)", "(8,)"), ("(2, 5)", "(2, 5)"), ("(1, 2, 4)", "(1, 2, 4)"), ("()", "()")]
     {
         let error = message(&npy("<f4", false, shape_of, &[0; 32]), None);
-        assert_eq!(error, format!("the array has the shape {found}; {shape}"));
+        assert_eq!(error, format!("the array has the shape {found}, but {shape}"));
     }
     for dtype in ["<f2", "<i4", "|u1", "<c8", "|O", "|b1", "<U3", "<f16"] {
         let error = message(&npy(dtype, false, "(2, 4)", &[0; 32]), None);
         let expected = format!(
-            "the array has the type {dtype}; wanted is float32 or float64, so save a.astype('float32')"
+            "the array has the type {dtype}, but it must be float32 or float64; save it as a.astype('float32')"
         );
         assert_eq!(error, expected);
     }
@@ -103,11 +103,11 @@ fn arrays_that_are_no_spheres() {
     assert!(message(&structure, None).contains("the type a structure of fields"));
     assert_eq!(
         message(&npy("<f4", false, "(2, 3)", &[0; 24]), None),
-        "the array has the shape (2, 3), without radii; give one radius for all"
+        "the array has the shape (2, 3) without radii; give one radius for all spheres"
     );
     assert_eq!(
         message(&file(), Some(1.0)),
-        "the array has the shape (2, 4), with radii; a radius for all has no use"
+        "the array has the shape (2, 4) with radii; remove the radius that is given for all spheres"
     );
 }
 
@@ -124,18 +124,19 @@ fn files_that_are_not_whole() {
     let cut = message(&file[..file.len() - 1], None);
     assert_eq!(
         cut,
-        "(2, 4) of type <f4 takes 32 bytes, but 31 follow the header; the file is cut off"
+        "an array of shape (2, 4) and type <f4 takes 32 bytes, but 31 bytes follow the header; the file is cut off"
     );
     let longer = [&file[..], b"\n"].concat();
     assert_eq!(
         message(&longer, None),
-        "(2, 4) of type <f4 takes 32 bytes, but 33 follow the header; something stands behind the array"
+        "an array of shape (2, 4) and type <f4 takes 32 bytes, but 33 bytes follow the header; \
+         there are other data after the array"
     );
     // 10¹⁸ rows, and the most that there can be: none of them is believed.
     for rows in ["1000000000000000000", "18446744073709551615", "4611686018427387904"] {
         for (dtype, order) in [("<f4", false), (">f8", true)] {
             let error = message(&npy(dtype, order, &format!("({rows}, 4)"), &[0; 100]), None);
-            assert!(error.contains("but 100 follow the header"), "{error}");
+            assert!(error.contains("but 100 bytes follow the header"), "{error}");
         }
     }
     let sides = "18446744073709551615, 18446744073709551615";
@@ -144,13 +145,13 @@ fn files_that_are_not_whole() {
     assert_eq!(read_spheres(b"PK\x03\x04", None), Err(SpheresError::NoNpy));
     for length in 6..100 {
         let error = message(&file[..length], None);
-        assert!(error.starts_with("the header is cut off; "), "{length}: {error}");
+        assert!(error.starts_with("the .npy header is cut off; "), "{length}: {error}");
     }
     assert!(message(b"\x93NUMPY\x04\x00    ", None).contains("unknown version 4.0"));
     assert!(message(b"\x93NUMPY\x02\x00\xff\xff\xff\xff", None).contains("4294967295 bytes long"));
-    assert!(message(b"\x93NUMPY\x01\x00\x02\x00\xff\xff", None).contains("is no text"));
+    assert!(message(b"\x93NUMPY\x01\x00\x02\x00\xff\xff", None).contains("is not valid text"));
     let garbage = file_with_header("import os");
-    assert!(message(&garbage, None).contains("is no Python dictionary: `import os`"));
+    assert!(message(&garbage, None).contains("is not a valid Python dictionary: `import os`"));
 }
 
 #[test]
@@ -166,19 +167,25 @@ fn archives() {
     let error = |archive: &[u8]| npz::read_spheres(archive, None).unwrap_err().to_string();
     assert_eq!(
         error(&zip(&[("a.npy", &file), ("b.npy", &file)], true)),
-        "it has the arrays `a`, `b`; call the one to read `spheres` or `positions`, or save it alone"
+        "the archive has the arrays `a`, `b`; name the one to read `spheres` or `positions`, or save it alone"
     );
-    assert_eq!(error(&zip(&[("a.txt", &file)], true)), "there is no array in it");
-    assert_eq!(error(&zip(&[], true)), "there is no array in it");
+    assert_eq!(
+        error(&zip(&[("a.txt", &file)], true)),
+        "the archive has no array; save the spheres with numpy.savez"
+    );
+    assert_eq!(
+        error(&zip(&[], true)),
+        "the archive has no array; save the spheres with numpy.savez"
+    );
     let flat = npy("<f4", false, "(8,)", &[0; 32]);
     assert!(
         error(&zip(&[("a.npy", &flat)], true))
             .starts_with("array `a`: the array has the shape (8,)")
     );
-    assert!(error(b"not a zip").starts_with("this is no whole .npz file: "));
-    assert!(error(&file).starts_with("this is no whole .npz file: "));
+    assert!(error(b"not a zip").starts_with("this is not a complete .npz file: "));
+    assert!(error(&file).starts_with("this is not a complete .npz file: "));
     let whole = zip(&[("a.npy", &file)], false);
-    assert!(error(&whole[..whole.len() - 1]).starts_with("this is no whole .npz file: "));
+    assert!(error(&whole[..whole.len() - 1]).starts_with("this is not a complete .npz file: "));
 }
 
 /// A flipped bit in the numbers is found by the archive's checksum.
@@ -197,7 +204,8 @@ fn raw_numbers() {
     let error = raw::read_spheres(&[0; 39]).unwrap_err().to_string();
     assert_eq!(
         error,
-        "39 bytes are 2 spheres of 16 bytes (x, y, z, radius in little-endian f32), and 7 bytes are left over"
+        "the file has 39 bytes, which are 2 × 16 + 7, but each sphere takes 16 bytes \
+         (x, y, z, radius in little-endian f32); the file is cut off or has another format"
     );
 }
 

@@ -1,4 +1,4 @@
-//! The XYZ reader: good files, bad files, and files that are noise.
+//! Tests of the XYZ reader: good files, bad files and noise.
 
 use pinhole::load::xyz::{self, XyzError};
 use pinhole::{LinearRgb, Sphere};
@@ -99,30 +99,37 @@ fn errors_name_line_and_remedy() {
     for (text, expected) in [
         ("", "the file is empty; an XYZ file starts with the number of its atoms"),
         ("\n \n", "the file is empty; an XYZ file starts with the number of its atoms"),
-        ("three\n", "line 1: `three` is no number of atoms"),
-        ("-1\n\n", "line 1: `-1` is no number of atoms"),
+        ("three\n", "line 1: `three` is not a valid number of atoms, which must begin a frame"),
+        ("-1\n\n", "line 1: `-1` is not a valid number of atoms, which must begin a frame"),
         ("3\n\nO 0 0 0\nH 0 0 1\n", "line 1: frame 0 declares 3 atoms, but the file ends after 2"),
         ("3\n", "line 1: frame 0 declares 3 atoms, but the file ends after 0"),
         (
             "1\n\nO 0 0 0\nH 0 0 1\n",
-            "line 4: `H 0 0 1` is no number of atoms; frame 0 declares 1 atoms on line 1",
+            "line 4: `H 0 0 1` is not a valid number of atoms, which must begin a frame; \
+             frame 0 before it declares 1 atom on line 1",
         ),
-        ("1\n\nO 0 zero 0\n", "line 3: the y coordinate is `zero`, which is no finite number"),
-        ("1\n\nO 0 0 nan\n", "line 3: the z coordinate is `nan`, which is no finite number"),
-        ("1\n\nO inf 0 0\n", "line 3: the x coordinate is `inf`, which is no finite number"),
+        ("1\n\nO 0 zero 0\n", "line 3: the y coordinate is `zero`, which is not a finite number"),
+        ("1\n\nO 0 0 nan\n", "line 3: the z coordinate is `nan`, which is not a finite number"),
+        ("1\n\nO inf 0 0\n", "line 3: the x coordinate is `inf`, which is not a finite number"),
         (
             "1\n\nO 0 0\n",
-            "line 3: the z coordinate is missing; the line has 3 columns (frame 0 declares 1 atoms on line 1)",
+            "line 3: the z coordinate is missing; the line has 3 columns (frame 0 declares 1 atom on line 1)",
         ),
         (
             "1\n\n\n",
-            "line 3: the species is missing; the line has 0 columns (frame 0 declares 1 atoms on line 1)",
+            "line 3: the species is missing; the line has 0 columns (frame 0 declares 1 atom on line 1)",
         ),
-        ("1\nProperties=species:S:1\nO 0 0 0\n", "line 2: Properties lacks pos:R:3"),
-        ("1\nProperties=pos:R:3\n0 0 0\n", "line 2: Properties has neither species:S:1 nor Z:I:1"),
+        (
+            "1\nProperties=species:S:1\nO 0 0 0\n",
+            "line 2: Properties has no pos:R:3, which must name the positions",
+        ),
+        (
+            "1\nProperties=pos:R:3\n0 0 0\n",
+            "line 2: Properties has neither species:S:1 nor Z:I:1; one of them must name the elements",
+        ),
         (
             "1\nProperties=species:S\nO 0 0 0\n",
-            "line 2: Properties=species:S is no list of name:type:columns triples",
+            "line 2: Properties=species:S is not a list of name:type:columns triples",
         ),
     ] {
         assert_eq!(message(text), expected);

@@ -1,4 +1,4 @@
-//! OpenEXR.
+//! Reads environment maps from OpenEXR files.
 
 use std::cell::{Cell, RefCell};
 
@@ -13,7 +13,7 @@ use crate::light::environment::Environment;
 
 const FORMAT: &str = "OpenEXR";
 
-/// What is needed, as the file calls it.
+/// Names of the channels that are read.
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
@@ -22,7 +22,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     let unreadable = |message: &str| {
         Err(EnvironmentFileError::Format { format: FORMAT, message: message.to_owned() })
     };
-    // Before anything is allocated: the decoder cannot be told a limit.
+    // The size is checked before the decoder allocates anything, because the decoder has no limit of its own.
     let meta =
         MetaData::read_from_buffered(Watched::new(bytes, &at_end), false).map_err(refused)?;
     let names = |channels: &[exr::meta::attribute::ChannelDescription]| -> Vec<String> {
@@ -36,13 +36,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
         let found = crate::text::one_line(&first.unwrap_or_default());
         return Err(EnvironmentFileError::Channels { found });
     };
-    // Their decoder overflows on damaged files (exr 1.74).
+    // The decoder of B44 overflows on damaged files (exr 1.74).
     let is_lossy = |compression| matches!(compression, Compression::B44 | Compression::B44A);
     if meta.headers.iter().any(|header| is_lossy(header.compression)) {
-        return unreadable("its compression is B44, which is not supported");
+        return unreadable(
+            "its compression is B44, which is not supported; save it with ZIP compression",
+        );
     }
     if header.own_attributes.environment_map == Some(EnvironmentMap::Cube) {
-        return unreadable("it is a cube, and not an equirectangular map");
+        return unreadable("it is a cube map, but only equirectangular maps can be read");
     }
     let Vec2(width, height) = header.layer_size;
     let room = RefCell::new(black([width, height].map(|count| count as u64), FORMAT, bytes.len())?);
@@ -60,13 +62,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
         )
         .first_valid_layer()
         .all_attributes()
-        // Its threads would end the process if they met what the decoder does not expect.
+        // A file that the decoder does not expect makes its threads panic, which would end the process.
         .non_parallel()
         .from_buffered(Watched::new(bytes, &at_end))
         .map_err(refused)?;
     let size = image.layer_data.size;
     if size != header.layer_size {
-        return unreadable("its first part with colours cannot be read");
+        return unreadable("its first part with the channels R, G and B cannot be read");
     }
     let (_, texels) = image.layer_data.channel_data.pixels;
     let [width, height] = [size.width(), size.height()].map(|count| count as u32);

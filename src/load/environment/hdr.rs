@@ -1,4 +1,4 @@
-//! Radiance HDR: G. Ward, "Real Pixels", Graphics Gems II, 1991.
+//! Reads environment maps from Radiance HDR files: G. Ward, "Real Pixels", Graphics Gems II, 1991.
 
 use std::cell::Cell;
 
@@ -14,7 +14,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     let at_end = Cell::new(false);
     let refused = |error| refusal(FORMAT, bytes, &at_end, &error);
     if has_empty_runs(bytes) {
-        let message = "runs of no pixels follow each other".to_owned();
+        let message = "it has several empty runs of pixels in a row".to_owned();
         return Err(EnvironmentFileError::Format { format: FORMAT, message });
     }
     // Not strict: the signature may be `#?RGBE` as well, and headers have lines of all kinds.
@@ -26,13 +26,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     Ok(Environment::new(width, height, texels)?)
 }
 
-/// Whether there are eight markers of runs of which the last four are empty, which no encoder writes: the
-/// decoder's multiplier of such a run overflows (image 0.25.10).
+/// Whether the file has eight run markers in a row of which the last four are empty. No encoder writes that, and the
+/// decoder's multiplier for such a run overflows (image 0.25.10).
 fn has_empty_runs(bytes: &[u8]) -> bool {
     const MARKER: usize = 4;
     let is_marker = |marker: &[u8]| marker[..3] == [1, 1, 1];
     bytes.windows(8 * MARKER).any(|run| {
-        // What is rarest is looked at first.
+        // The rarest condition is tested first.
         run.ends_with(&[1, 1, 1, 0])
             && run.chunks(MARKER).all(is_marker)
             && run[4 * MARKER..].chunks(MARKER).all(|marker| marker[3] == 0)

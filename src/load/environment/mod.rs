@@ -1,7 +1,8 @@
-//! Reads environments from Radiance HDR and OpenEXR files: equirectangular maps, whose upper edge is up.
+//! Reads environment maps from Radiance HDR and OpenEXR files. The maps are equirectangular, with the zenith at the
+//! upper edge.
 //!
-//! Numbers are taken as they are, as linear radiance with the primaries of Rec. 709: exposures, colour corrections
-//! and chromaticities that a file declares are not applied.
+//! Texels are taken as they are, as linear radiance with the primaries of Rec. 709. Exposures, colour corrections and
+//! chromaticities that a file declares are not applied.
 
 use std::cell::Cell;
 use std::io::{Cursor, Read, Seek, SeekFrom};
@@ -13,76 +14,78 @@ mod exr;
 #[cfg(feature = "hdr")]
 mod hdr;
 
-/// The most texels of a file: 16,384 × 8192.
+/// The largest number of texels that a file may have: 16,384 × 8192.
 pub const MAX_TEXELS: u64 = 1 << 27;
 
-/// Why a file is no environment.
+/// An error of reading an environment map.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentFileError {
-    /// It begins with neither signature.
-    #[error("this is no image of light; it begins neither as Radiance HDR nor as OpenEXR does")]
+    /// The file begins with the signature of neither format.
+    #[error("this is neither a Radiance HDR nor an OpenEXR file; convert the image to one of them")]
     Unknown,
-    /// It is in a format that this build does not read.
+    /// This build cannot read the format of the file.
     #[error(
-        "this is an {format} file, and this build has no reader for it; it needs the feature `{feature}`"
+        "this file has the format {format}, which this build cannot read; build pinhole with the feature `{feature}`"
     )]
     NotBuilt {
-        /// The format.
+        /// Name of the format.
         format: &'static str,
-        /// The feature of this crate that reads it.
+        /// The feature of this crate that adds its reader.
         feature: &'static str,
     },
     /// The file ends before the image does.
-    #[error("the {format} file is incomplete: it ends after {bytes} bytes, before the image does")]
+    #[error("the {format} file is incomplete: it ends after {bytes} bytes, before its image does")]
     Truncated {
-        /// The format.
+        /// Name of the format.
         format: &'static str,
-        /// How long the file is.
+        /// Length of the file in bytes.
         bytes: usize,
     },
-    /// The decoder does not understand it.
-    #[error("the {format} file is damaged, or of a kind that cannot be read: {message}")]
+    /// The decoder cannot read the file.
+    #[error("the {format} file is damaged or of a kind that cannot be read: {message}")]
     Format {
-        /// The format.
+        /// Name of the format.
         format: &'static str,
         /// The decoder's reason.
         message: String,
     },
-    /// There is no colour in it.
+    /// The file has no colours.
     #[error(
-        "no part of the OpenEXR file has the channels R, G and B; the first has {}",
-        if found.is_empty() { "none" } else { found }
+        "no part of the OpenEXR file has the channels R, G and B, which are needed; the first part has {}",
+        if found.is_empty() { "no channels" } else { found }
     )]
     Channels {
-        /// The channels of the first part.
+        /// Names of the channels of the first part.
         found: String,
     },
-    /// It has more texels than [`MAX_TEXELS`].
-    #[error("{width}×{height} texels are too many; the most are {MAX_TEXELS}")]
+    /// The map has more texels than [`MAX_TEXELS`].
+    #[error(
+        "the image has {width}×{height} texels, more than the limit of {MAX_TEXELS}; use a smaller image"
+    )]
     TooLarge {
-        /// Columns.
+        /// Number of columns.
         width: u64,
-        /// Rows.
+        /// Number of rows.
         height: u64,
     },
-    /// There is no memory for it.
-    #[error("there is no memory for {texels} texels")]
+    /// There is not enough memory for the map.
+    #[error("there is not enough memory for {texels} texels; use a smaller image")]
     Memory {
-        /// How many.
+        /// Number of texels.
         texels: u64,
     },
-    /// Its texels are no radiance.
+    /// The size of the map or one of its texels is not valid.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
 }
 
-/// Reads an environment; its first bytes tell the format.
+/// Reads an environment map; the first bytes of the file show its format.
 ///
-/// Of an OpenEXR file, the first part with the channels R, G and B is read.
+/// From an OpenEXR file, the first part with the channels R, G and B is read.
 ///
 /// # Errors
-/// If the file is of neither format, damaged or too large, or if a texel is no radiance.
+/// If the file has neither format, is damaged or too large, or if a texel is not a valid radiance.
 pub fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     if bytes.starts_with(b"#?") {
         #[cfg(feature = "hdr")]
@@ -99,12 +102,15 @@ pub fn read(bytes: &[u8]) -> Result<Environment, EnvironmentFileError> {
     Err(EnvironmentFileError::Unknown)
 }
 
-/// How many texels a byte of a file may stand for, and a small file without any. The formats' own best is less:
-/// 172 for deflate, of three halves a texel, and some 1,400 for long runs in Radiance's oldest encoding.
+/// Limit on the number of texels that a file may declare for each of its bytes. What the formats can reach is less:
+/// 172 with deflate, at three halves per texel, and about 1,400 with long runs in Radiance's oldest encoding.
 const TEXELS_PER_BYTE: u64 = 2048;
+
+/// Number of texels that a file of any length may declare.
 const SMALL: u64 = 1 << 20;
 
-/// Room for an image, black; not for more than such a file can have, which may say anything.
+/// Allocates a black image. Its size comes from a header that may be wrong, so a size that a file of so many `bytes`
+/// cannot hold is refused.
 fn black(
     [width, height]: [u64; 2],
     format: &'static str,
@@ -123,7 +129,8 @@ fn black(
     Ok(room)
 }
 
-/// A file that remembers whether more was read than it has. Decoders report that in many ways.
+/// A file in memory that remembers whether a decoder tried to read beyond its end. Each decoder reports that in its
+/// own way.
 struct Watched<'a> {
     bytes: Cursor<&'a [u8]>,
     at_end: &'a Cell<bool>,
@@ -151,7 +158,7 @@ impl Seek for Watched<'_> {
     }
 }
 
-/// What a decoder says when it gives up.
+/// Returns the error for a decoder that gave up, with its message.
 fn refusal(
     format: &'static str,
     bytes: &[u8],

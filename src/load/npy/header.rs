@@ -1,8 +1,8 @@
-//! The header of an `.npy` file, as NumPy Enhancement Proposal 1 lays it down.
+//! Reads the header of an `.npy` file, as NumPy Enhancement Proposal 1 defines it.
 //!
-//! npyz reads headers too, but believes what they say: it multiplies the sides of a shape before it can
-//! be asked for them, and takes the header's length for memory that it has. So only the parser of the
-//! header's text, `py_literal`, is shared with it.
+//! The crate npyz reads headers too, but trusts them: it multiplies the dimensions of a shape before it gives access
+//! to them, and allocates as many bytes as the header's length says. Only the parser of the header's text,
+//! `py_literal`, is shared with it.
 
 use py_literal::Value;
 
@@ -11,14 +11,14 @@ use crate::text::{one_line, shortened};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The longest text that is parsed; the longest that NumPy itself reads if it is not told otherwise.
+/// The longest header in bytes that is parsed. This is also NumPy's own default limit.
 const MAX_TEXT: usize = 10_000;
 
-/// The deepest nesting of brackets that is parsed. The parser recurses, and tries what is nested more
-/// than once; an array of plain numbers needs two levels, a structured one some more.
+/// The deepest nesting of brackets that is parsed. The parser is recursive and parses nested brackets more than once.
+/// An array of plain numbers needs two levels, and a structured array a few more.
 const MAX_DEPTH: usize = 8;
 
-/// What a header says.
+/// The contents of a header.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) dtype: String,
@@ -26,7 +26,7 @@ pub(super) struct Header {
     pub(super) shape: Vec<u64>,
 }
 
-/// Cuts a file into its header and what follows.
+/// Splits a file into its header and the data after it.
 pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), SpheresError> {
     let bad = |message: &str| SpheresError::Header { message: message.to_owned() };
     let rest = bytes.strip_prefix(MAGIC).ok_or(SpheresError::NoNpy)?;
@@ -45,44 +45,48 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Header, &[u8]), SpheresError> {
         }
     };
     if length > MAX_TEXT {
-        return Err(bad(&format!("is {length} bytes long; {MAX_TEXT} are read")));
+        return Err(bad(&format!(
+            "is {length} bytes long, more than the limit of {MAX_TEXT} bytes"
+        )));
     }
     let (text, data) = rest.split_at_checked(length).ok_or_else(|| bad("is cut off"))?;
-    let text = str::from_utf8(text).map_err(|_| bad("is no text"))?;
+    let text = str::from_utf8(text).map_err(|_| bad("is not valid text"))?;
     Ok((parse(text).map_err(|message| SpheresError::Header { message })?, data))
 }
 
-/// `{'descr': '<f4', 'fortran_order': False, 'shape': (10, 4), }`
+/// Parses the text of a header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (10, 4), }`.
 fn parse(text: &str) -> Result<Header, String> {
     if depth(text) > MAX_DEPTH {
-        return Err("nests brackets too deeply".to_owned());
+        return Err(format!("has brackets nested more than {MAX_DEPTH} levels deep"));
     }
-    let no_dictionary = || format!("is no Python dictionary: `{}`", shortened(&one_line(text)));
-    let Ok(Value::Dict(entries)) = text.trim_end().parse() else { return Err(no_dictionary()) };
+    let not_a_dictionary =
+        || format!("is not a valid Python dictionary: `{}`", shortened(&one_line(text)));
+    let Ok(Value::Dict(entries)) = text.trim_end().parse() else { return Err(not_a_dictionary()) };
     let value = |name: &str| {
         let mut named =
             entries.iter().filter(|(key, _)| key.as_string().is_some_and(|k| k == name));
-        named.next().map(|(_, value)| value).ok_or_else(|| format!("lacks `{name}`"))
+        named.next().map(|(_, value)| value).ok_or_else(|| format!("has no key `{name}`"))
     };
     let dtype = match value("descr")? {
         Value::String(dtype) => dtype.clone(),
-        // Fields and their types. Nothing else is needed to refuse them.
+        // A list of fields and their types. Such arrays are refused, so the fields do not matter.
         Value::List(_) => "a structure of fields".to_owned(),
-        _ => return Err("has a `descr` that is no type".to_owned()),
+        _ => return Err("has a `descr` that is not a valid type".to_owned()),
     };
     let Value::Boolean(fortran_order) = *value("fortran_order")? else {
         return Err("has a `fortran_order` that is neither True nor False".to_owned());
     };
-    let Value::Tuple(sides) = value("shape")? else {
-        return Err("has a `shape` that is no tuple".to_owned());
+    let Value::Tuple(dimensions) = value("shape")? else {
+        return Err("has a `shape` that is not a tuple".to_owned());
     };
-    let side = |side: &Value| u64::try_from(side.as_integer()?).ok();
-    let shape: Option<Vec<u64>> = sides.iter().map(side).collect();
-    let shape = shape.ok_or("has a `shape` with a side that is no number of elements")?;
+    let count = |dimension: &Value| u64::try_from(dimension.as_integer()?).ok();
+    let shape: Option<Vec<u64>> = dimensions.iter().map(count).collect();
+    let shape =
+        shape.ok_or("has a `shape` with a dimension that is not a valid number of elements")?;
     Ok(Header { dtype, fortran_order, shape })
 }
 
-/// How deeply brackets are nested, at most: those within strings count too.
+/// Returns the deepest nesting of brackets. Brackets within strings count too.
 fn depth(text: &str) -> usize {
     let (mut depth, mut deepest) = (0_usize, 0);
     for c in text.chars() {
@@ -110,35 +114,38 @@ mod tests {
     }
 
     #[test]
-    fn headers_that_are_none() {
+    fn headers_that_are_not_valid() {
         for (text, expected) in [
-            ("", "is no Python dictionary: ``"),
-            ("{'descr': '<f4'", "is no Python dictionary: `{'descr': '<f4'`"),
-            ("[1, 2]", "is no Python dictionary: `[1, 2]`"),
-            ("{}", "lacks `descr`"),
-            ("{'descr': '<f4', 'shape': (1, 4)}", "lacks `fortran_order`"),
-            ("{'descr': 4, 'fortran_order': True, 'shape': ()}", "has a `descr` that is no type"),
+            ("", "is not a valid Python dictionary: ``"),
+            ("{'descr': '<f4'", "is not a valid Python dictionary: `{'descr': '<f4'`"),
+            ("[1, 2]", "is not a valid Python dictionary: `[1, 2]`"),
+            ("{}", "has no key `descr`"),
+            ("{'descr': '<f4', 'shape': (1, 4)}", "has no key `fortran_order`"),
+            (
+                "{'descr': 4, 'fortran_order': True, 'shape': ()}",
+                "has a `descr` that is not a valid type",
+            ),
             (
                 "{'descr': '<f4', 'fortran_order': 0, 'shape': ()}",
                 "has a `fortran_order` that is neither True nor False",
             ),
             (
                 "{'descr': '<f4', 'fortran_order': True, 'shape': 3}",
-                "has a `shape` that is no tuple",
+                "has a `shape` that is not a tuple",
             ),
             (
                 "{'descr': '<f4', 'fortran_order': True, 'shape': (-1, 4)}",
-                "has a `shape` with a side that is no number of elements",
+                "has a `shape` with a dimension that is not a valid number of elements",
             ),
             (
                 "{'descr': '<f4', 'fortran_order': True, 'shape': (18446744073709551616, 4)}",
-                "has a `shape` with a side that is no number of elements",
+                "has a `shape` with a dimension that is not a valid number of elements",
             ),
         ] {
             assert_eq!(parse(text), Err(expected.to_owned()), "{text}");
         }
         // A recursive parser would take long for this, or run out of stack.
         let nested = "(".repeat(9000);
-        assert_eq!(parse(&nested), Err("nests brackets too deeply".to_owned()));
+        assert_eq!(parse(&nested), Err("has brackets nested more than 8 levels deep".to_owned()));
     }
 }

@@ -6,78 +6,83 @@ use super::numbers::{Layout, rows};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
 
-/// Why an array is no list of spheres.
+/// An error of reading spheres from an `.npy` file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpheresError {
-    /// Not NumPy's format.
-    #[error("this is no .npy file; it does not start with \\x93NUMPY")]
+    /// The file does not start with the signature of the format.
+    #[error(
+        "this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save"
+    )]
     NoNpy,
     /// The header cannot be read.
-    #[error("the header {message}; write the file with numpy.save")]
+    #[error("the .npy header {message}; write the file with numpy.save")]
     Header {
-        /// What is wrong with it.
+        /// What is wrong with the header, as the end of a sentence.
         message: String,
     },
-    /// Other numbers than f32 and f64.
+    /// The numbers are neither float32 nor float64.
     #[error(
-        "the array has the type {}; wanted is float32 or float64, so save a.astype('float32')",
+        "the array has the type {}, but it must be float32 or float64; save it as a.astype('float32')",
         shortened(&one_line(found))
     )]
     Type {
-        /// NumPy's name of the type.
+        /// NumPy's name of the type of the array.
         found: String,
     },
-    /// Neither (n, 4) nor (n, 3).
+    /// The shape is neither (n, 4) nor (n, 3).
     #[error(
-        "the array has the shape {}; wanted is (n, 4): x, y, z, radius, or (n, 3): x, y, z",
+        "the array has the shape {}, but it must be (n, 4) for x, y, z, radius or (n, 3) for x, y, z",
         tuple(shape)
     )]
     Shape {
-        /// The array's sides.
+        /// The shape of the array.
         shape: Vec<u64>,
     },
-    /// No radii in the array, and none given.
-    #[error("the array has the shape ({rows}, 3), without radii; give one radius for all")]
+    /// The array has no radii, and no radius was given.
+    #[error("the array has the shape ({rows}, 3) without radii; give one radius for all spheres")]
     NoRadius {
-        /// How many spheres there are.
+        /// Number of spheres.
         rows: u64,
     },
-    /// Radii in the array, and one given.
-    #[error("the array has the shape ({rows}, 4), with radii; a radius for all has no use")]
-    TwoRadii {
-        /// How many spheres there are.
-        rows: u64,
-    },
-    /// Fewer or more bytes than the header says.
+    /// The array has radii, and a radius was given as well.
     #[error(
-        "{} of type {dtype} takes {wanted} bytes, but {found} follow the header; {}",
+        "the array has the shape ({rows}, 4) with radii; remove the radius that is given for all spheres"
+    )]
+    TwoRadii {
+        /// Number of spheres.
+        rows: u64,
+    },
+    /// The file has fewer or more bytes than its header says.
+    #[error(
+        "an array of shape {} and type {dtype} takes {wanted} bytes, but {found} bytes follow the header; {}",
         tuple(shape),
-        if u128::from(*found) < *wanted { "the file is cut off" } else { "something stands behind the array" }
+        if u128::from(*found) < *wanted { "the file is cut off" } else { "there are other data after the array" }
     )]
     Size {
-        /// The array's sides.
+        /// The shape of the array.
         shape: Vec<u64>,
-        /// NumPy's name of the type.
+        /// NumPy's name of the type of the array.
         dtype: String,
-        /// By the header, in bytes.
+        /// Size of the array by its header, in bytes.
         wanted: u128,
-        /// In bytes.
+        /// Size of the data after the header, in bytes.
         found: u64,
     },
-    /// There is no memory for so many.
-    #[error("there is no memory for {rows} spheres")]
+    /// There is not enough memory for the spheres.
+    #[error("there is not enough memory for {rows} spheres")]
     Memory {
-        /// How many there are.
+        /// Number of spheres.
         rows: u64,
     },
 }
 
-/// Reads an `.npy` file of shape (n, 4): x, y, z, radius; or (n, 3), and then `radius` is that of all.
-/// Float32 or float64 in either byte order, in C or Fortran order. An array without rows is no sphere.
+/// Reads an `.npy` file of shape (n, 4): x, y, z, radius; or of shape (n, 3): x, y, z, where all spheres get `radius`.
+/// The numbers are float32 or float64 in either byte order, in C or Fortran order. An array without rows gives no
+/// spheres.
 ///
 /// # Errors
-/// If the file is no such array, or has fewer or more bytes than its header says.
+/// If the file is not such an array, or has fewer or more bytes than its header says.
 pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, SpheresError> {
     let (header, data) = header::split(bytes)?;
     let shape = header.shape;
@@ -98,7 +103,7 @@ pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, Sp
         return Err(SpheresError::Size { shape, dtype, wanted, found });
     }
     let layout = Layout {
-        // No more than there are bytes.
+        // This fits into usize, because there are not fewer bytes than rows.
         rows: count as usize,
         columns: columns as usize,
         by_column: header.fortran_order,
@@ -113,13 +118,13 @@ pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, Sp
     .map_err(|_| SpheresError::Memory { rows: count })
 }
 
-/// A shape as Python writes it.
+/// Formats a shape as Python writes it.
 fn tuple(shape: &[u64]) -> String {
     match shape {
-        [side] => format!("({side},)"),
-        sides => {
-            let sides: Vec<_> = sides.iter().map(u64::to_string).collect();
-            format!("({})", shortened(&sides.join(", ")))
+        [dimension] => format!("({dimension},)"),
+        dimensions => {
+            let dimensions: Vec<_> = dimensions.iter().map(u64::to_string).collect();
+            format!("({})", shortened(&dimensions.join(", ")))
         }
     }
 }

@@ -1,39 +1,40 @@
-//! Which of an atom's alternate locations is kept.
+//! Chooses which alternate location of each atom is kept.
 
 use std::collections::HashMap;
 
-/// What tells the locations of one atom apart, and atoms from each other.
+/// An atom record, reduced to the fields that identify the atom and one of its alternate locations.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct Candidate {
     /// The residue: its chain, its number and its insertion code.
     pub(super) key: (u32, u64, u8),
-    /// The name of the residue, which differs where one residue or another is at one place.
+    /// The index of the residue's name. Two residues can be alternatives for the same place in the chain.
     pub(super) residue: u32,
-    /// The name of the atom.
+    /// The index of the atom's name.
     pub(super) name: u32,
     /// The letter of the location, or a blank.
     pub(super) letter: u8,
-    /// How much of the atom is there.
+    /// The fraction of the atoms at this location, from 0 to 1.
     pub(super) occupancy: f64,
 }
 
-/// All atoms of one residue that have one letter.
+/// The atoms of one residue that share a location letter.
 struct Location {
     letter: u8,
     residue: u32,
-    /// The highest of its atoms.
+    /// The highest occupancy of these atoms.
     occupancy: f64,
 }
 
-/// Which atoms are kept.
+/// Returns for each atom record whether it is kept.
 ///
-/// In each residue the letters are ranked by the highest occupancy of their atoms, and by their order in
-/// the file where this is the same; the blank precedes them all. Of each atom the location of the best
-/// rank that it has is kept, so that neighbours belong together. Atoms of another residue than that of
-/// the best letter are not kept.
-pub(super) fn kept(atoms: impl Iterator<Item = Place> + Clone) -> Vec<bool> {
+/// In each residue the letters are ranked by the highest occupancy of their atoms, and by their order in the file
+/// where the occupancies are equal; the blank precedes them all. Each atom keeps the best-ranked of its locations, so
+/// that neighbouring atoms come from the same location. If a residue name other than that of the best letter occurs
+/// at the same place in the chain, its atoms are not kept.
+pub(super) fn kept(atoms: impl Iterator<Item = Candidate> + Clone) -> Vec<bool> {
     let mut residues: HashMap<_, Vec<Location>> = HashMap::new();
-    for Place { key, residue, letter, occupancy, .. } in atoms.clone().filter(|a| a.letter != b' ')
+    for Candidate { key, residue, letter, occupancy, .. } in
+        atoms.clone().filter(|a| a.letter != b' ')
     {
         let locations = residues.entry(key).or_default();
         match locations.iter_mut().find(|location| location.letter == letter) {
@@ -44,7 +45,7 @@ pub(super) fn kept(atoms: impl Iterator<Item = Place> + Clone) -> Vec<bool> {
     for locations in residues.values_mut() {
         locations.sort_by(|a, b| b.occupancy.total_cmp(&a.occupancy));
     }
-    let rank = |atom: &Place| {
+    let rank = |atom: &Candidate| {
         let locations = residues.get(&atom.key)?;
         if atom.letter == b' ' {
             return Some(0);

@@ -1,6 +1,6 @@
-//! The atoms of one model, from their records to what is loaded.
+//! Collects the atoms of one model.
 
-use super::altloc::{self, Place};
+use super::altloc::{self, Candidate};
 use super::element::{self, Residue};
 use super::error::PdbError;
 use super::hybrid36;
@@ -11,7 +11,7 @@ use crate::load::elements::{Appearance, appearance, unknown_note};
 use crate::load::{Column, ColumnValues, Loaded};
 use crate::scene::sphere_array::SphereArray;
 
-/// What an atom must have, each with its first and last column.
+/// Fields that an atom must have, each with its first and last column.
 const NEEDED: [(&str, usize, usize); 6] = [
     ("atom name", 13, 16),
     ("residue name", 18, 20),
@@ -21,7 +21,7 @@ const NEEDED: [(&str, usize, usize); 6] = [
     ("z coordinate", 47, 54),
 ];
 
-/// The atoms so far, in the order of the file.
+/// The atoms that were read so far, in the order of the file.
 #[derive(Default)]
 pub(super) struct Atoms {
     spheres: Vec<[f64; 4]>,
@@ -35,7 +35,7 @@ pub(super) struct Atoms {
     residue_number: Vec<f64>,
     occupancy: Vec<f64>,
     b_factor: Vec<f64>,
-    /// The letters of alternate locations and the insertion codes of residues.
+    /// The letter of the alternate location and the insertion code of the residue, for each atom.
     letters: Vec<[u8; 2]>,
     has_alternates: bool,
 }
@@ -64,7 +64,7 @@ impl Atoms {
 
         let name = record.bytes(13);
         self.name.push(name);
-        // In the format the name ends in column 20, and column 21 is blank.
+        // The format has residue names of three characters and a blank column 21; other programs use all four.
         let residue = self.residue.push(record.bytes(18)) as usize;
         if let (true, Some(name)) =
             (residue == self.residues.len(), self.residue.names.get(residue))
@@ -85,12 +85,12 @@ impl Atoms {
         Ok(())
     }
 
-    /// Keeps one location of each atom; a note says how many were left out.
+    /// Keeps one location of each atom. Returns a note if others were left out.
     fn keep_one_location(&mut self) -> Option<String> {
         if !self.has_alternates {
             return None;
         }
-        let keep = altloc::kept(self.places());
+        let keep = altloc::kept(self.candidates());
         let left_out = keep.iter().filter(|kept| !**kept).count();
         if left_out == 0 {
             return None;
@@ -106,16 +106,16 @@ impl Atoms {
         }
         let atoms = if left_out == 1 { "1 atom is" } else { &format!("{left_out} atoms are") };
         Some(format!(
-            "{atoms} left out, because they are alternate locations of others; those with the highest \
-             occupancy are kept"
+            "{atoms} left out as alternate {}; the locations with the highest occupancy are kept",
+            if left_out == 1 { "location of another atom" } else { "locations of other atoms" }
         ))
     }
 
-    fn places(&self) -> impl Iterator<Item = Place> + Clone {
+    fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone {
         let indices = self.chain.indices.iter().zip(&self.residue.indices).zip(&self.name.indices);
         let numbers = self.residue_number.iter().zip(&self.occupancy);
         indices.zip(numbers).zip(&self.letters).map(
-            |((((chain, residue), name), (number, occupancy)), [letter, insertion])| Place {
+            |((((chain, residue), name), (number, occupancy)), [letter, insertion])| Candidate {
                 key: (*chain, number.to_bits(), *insertion),
                 residue: *residue,
                 name: *name,
@@ -125,13 +125,13 @@ impl Atoms {
         )
     }
 
-    /// What is loaded, without a cell and without the number of frames.
+    /// Returns the atoms as loaded data, without a cell and a number of frames.
     pub(super) fn into_loaded(mut self) -> Loaded {
         let left_out = self.keep_one_location();
         let unknown = self.species.unknown();
         let record = match self.record.into_values() {
             ColumnValues::Labels(mut labels) => {
-                // Labels are made of fields of four characters.
+                // Labels hold fields of four characters, so the name of the record was shortened.
                 let names = labels.names.iter_mut();
                 names.filter(|name| *name == "HETA").for_each(|name| name.push_str("TM"));
                 ColumnValues::Labels(labels)
@@ -161,9 +161,9 @@ impl Atoms {
 #[derive(Default)]
 struct Species {
     labels: Labels,
-    /// What each of the names appearances like.
+    /// The appearance of each name in `labels`.
     appearances: Vec<Appearance>,
-    /// The index of what has this name, this symbol and this kind of residue.
+    /// The index in `labels` for a name, a symbol and a kind of residue.
     known: Memo,
 }
 
@@ -178,7 +178,7 @@ impl Species {
             field.iter_mut().zip(text.bytes()).for_each(|(to, from)| *to = from);
             let index = self.labels.index(field);
             if index as usize == self.appearances.len() {
-                // Without a text it appearances like what is not an element.
+                // An empty text gives the appearance of a species that is not an element.
                 self.appearances.push(appearance(if is_element { &text } else { "" }));
             }
             self.known.insert(key, index);
@@ -194,7 +194,7 @@ impl Species {
         self.appearances = former.iter().filter_map(appearance).collect();
     }
 
-    /// A note about what is not an element.
+    /// Returns a note about species that are not elements.
     fn unknown(&self) -> Option<String> {
         let appearances = self.labels.names.iter().zip(&self.appearances);
         let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);

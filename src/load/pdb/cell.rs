@@ -1,10 +1,10 @@
-//! The periodic cell of a CRYST1 record.
+//! Reads the periodic cell from a CRYST1 record.
 
 use super::error::PdbError;
 use super::record::Record;
 
-/// The edges of the cell, the first along x and the second in the plane of x and y, or `None` if the record
-/// only fills its place, as in files of structures that are not crystals.
+/// Returns the edge vectors of the cell, the first along x and the second in the plane of x and y; or `None` if the
+/// record is only a placeholder, as in files of structures that are not crystals.
 pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, PdbError> {
     const FIELDS: [(&str, usize, usize); 6] = [
         ("length of the cell's edge a", 7, 15),
@@ -21,7 +21,7 @@ pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, PdbErr
     }
     let [a, b, c, alpha, beta, gamma] = values;
     let all = |values: [f64; 3], wanted| values.iter().all(|value| same(*value, wanted));
-    // Programs that know no cell write zeros.
+    // Programs write zeros for a structure without a cell.
     if all([a, b, c], 0.0) || (all([a, b, c], 1.0) && all([alpha, beta, gamma], 90.0)) {
         return Ok(None);
     }
@@ -43,12 +43,12 @@ pub(super) fn edges(record: &Record<'_>) -> Result<Option<[[f64; 3]; 3]>, PdbErr
     ]))
 }
 
-/// Exactly 0 at the right angle, which most cells have.
+/// The cosine of an angle in degrees: exactly 0 at a right angle, which most cells have.
 fn cos_degrees(angle: f64) -> f64 {
     if same(angle, 90.0) { 0.0 } else { angle.to_radians().cos() }
 }
 
-/// The format has three digits behind the point.
+/// Whether two values are equal in the format, which has at most three decimals.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-6
 }

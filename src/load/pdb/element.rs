@@ -1,8 +1,8 @@
-//! Which chemical element an atom is of.
+//! Determines the chemical element of an atom.
 
 use crate::load::elements::appearance;
 
-/// Residues whose atoms are known to be of few elements, whatever their names look like.
+/// Kinds of residues. The atoms of known kinds are of few elements, whatever their names look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Residue {
     AminoAcid,
@@ -11,7 +11,7 @@ pub(super) enum Residue {
 }
 
 impl Residue {
-    /// Also the names that programs for molecular dynamics use.
+    /// Returns the kind of a residue by its name. Names that molecular dynamics programs use are included.
     pub(super) fn of(name: &str) -> Self {
         match name {
             "ALA" | "ARG" | "ASN" | "ASP" | "CYS" | "GLN" | "GLU" | "GLY" | "HIS" | "ILE"
@@ -27,7 +27,7 @@ impl Residue {
     }
 }
 
-/// The symbol of an atom's element, such as `Fe`, or the best name for what is not an element.
+/// Returns the symbol of an atom's element, such as `Fe`, and true; or the best name of another species, and false.
 ///
 /// `name` is columns 13-16 and `symbol` is columns 77-78, which may be blank.
 pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (String, bool) {
@@ -44,12 +44,13 @@ pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (Strin
     } else if name.iter().any(u8::is_ascii_alphabetic) {
         (text(&name), false)
     } else {
-        // The symbol that the wwPDB gives to atoms of unknown elements.
+        // The wwPDB gives this symbol to atoms of unknown elements.
         ("X".to_owned(), false)
     }
 }
 
-/// Old files have no symbols; their atom names have the symbol right-justified in the first two characters.
+/// Returns the element that an atom's name shows. Old files have no symbols, but names whose first two characters are
+/// the right-justified symbol.
 fn by_name(name: [u8; 4], residue: Residue) -> Option<String> {
     let [first, second, third, fourth] = name;
     if residue != Residue::Other
@@ -58,18 +59,18 @@ fn by_name(name: [u8; 4], residue: Residue) -> Option<String> {
         return Some(element);
     }
     if !first.is_ascii_alphabetic() {
-        // A symbol of two letters in the wrong place (` MG `), only if there is no other way to see it.
+        // A symbol of two letters in the wrong columns (` MG `) is accepted only if nothing else fits.
         return element(&[second]).or_else(|| element(&[second, third]));
     }
-    // Names of four characters leave no room for the blank before a symbol of one letter. Hydrogens
-    // often have such names, but mercury, holmium and dysprosium hardly ever.
+    // Names of four characters have no blank before a symbol of one letter. Hydrogen often has such names, but
+    // mercury, holmium and dysprosium hardly ever do.
     if fourth != b' ' && matches!(first, b'H' | b'D') {
         return element(&[first]);
     }
     element(&[first, second]).or_else(|| element(&[first]))
 }
 
-/// The first letter tells the element, wherever in the field it is.
+/// Returns the element of an atom in a known residue, which the first letter of its name shows.
 fn in_known_residue(name: [u8; 4]) -> Option<String> {
     let mut letters = name.into_iter().skip_while(|byte| !byte.is_ascii_alphabetic());
     let (first, second) = (letters.next()?, letters.next());
@@ -81,7 +82,7 @@ fn in_known_residue(name: [u8; 4]) -> Option<String> {
     }
 }
 
-/// The symbol with a capital and a small letter, if it is one.
+/// Returns the symbol of an element in its usual case, or `None` if there is no such element.
 fn element(symbol: &[u8]) -> Option<String> {
     let mut text = String::new();
     for (i, byte) in symbol.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! What can be wrong with a PDB file.
+//! Errors of reading PDB files.
 
-/// Why a file is not a PDB file, or has no such frame. Lines and columns count from 1.
+/// An error of reading a PDB file. Lines and columns are counted from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PdbError {
@@ -11,11 +11,11 @@ pub enum PdbError {
         article = if *record == "ATOM" { "an" } else { "a" }
     )]
     Short {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// How many columns the line has.
+        /// Number of columns of the line.
         columns: usize,
-        /// The name of the record.
+        /// Name of the record.
         record: &'static str,
         /// The first value that is missing, at least in part.
         what: &'static str,
@@ -30,13 +30,13 @@ pub enum PdbError {
         not_valid(found, "a finite number")
     )]
     Number {
-        /// Where.
+        /// Number of the line.
         line: usize,
         /// The first column of the value.
         first: usize,
         /// The last column of the value.
         last: usize,
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
         /// The text without the blanks around it.
         found: String,
@@ -48,20 +48,20 @@ pub enum PdbError {
         not_valid(found, "a valid residue number")
     )]
     ResidueNumber {
-        /// Where.
+        /// Number of the line.
         line: usize,
         /// The text without the blanks around it.
         found: String,
     },
-    /// A record that is read has a byte that is not ASCII, so that its columns cannot be told.
+    /// A record has a byte that is not ASCII, so that its columns cannot be counted.
     #[error(
         "line {line}, column {column}: the byte 0x{byte:02x} is not ASCII; ATOM, HETATM and CRYST1 records \
          must be ASCII text"
     )]
     NotAscii {
-        /// Where.
+        /// Number of the line.
         line: usize,
-        /// Where in the line.
+        /// Column of the byte.
         column: usize,
         /// The byte.
         byte: u8,
@@ -72,9 +72,9 @@ pub enum PdbError {
          records (the first on line {model_line}); every atom must then stand between MODEL and ENDMDL"
     )]
     AtomOutsideModel {
-        /// Where the atom is.
+        /// Line of the atom.
         line: usize,
-        /// Where the first MODEL record is.
+        /// Line of the first MODEL record.
         model_line: usize,
     },
     /// The models are mixed: one begins inside another.
@@ -83,9 +83,9 @@ pub enum PdbError {
          ENDMDL must end a model before another begins"
     )]
     ModelInsideModel {
-        /// Where the inner model begins.
+        /// Line where the inner model begins.
         line: usize,
-        /// Where the outer model begins.
+        /// Line where the outer model begins.
         outer_line: usize,
     },
     /// The file has fewer models.
@@ -96,7 +96,7 @@ pub enum PdbError {
     NoSuchFrame {
         /// The frame that was asked for.
         wanted: usize,
-        /// How many there are.
+        /// Number of models in the file, at least 1.
         frames: usize,
     },
     /// The model has no atoms, although others have.
@@ -107,22 +107,22 @@ pub enum PdbError {
     EmptyFrame {
         /// The frame that was asked for.
         frame: usize,
-        /// Where it begins.
+        /// Line where the model begins.
         line: usize,
     },
     /// The file has no atoms.
     #[error("there are no ATOM or HETATM records; a PDB file has one for each atom")]
     NoAtoms,
-    /// The file is of the format that followed PDB.
+    /// The file is an mmCIF file, the successor of PDB.
     #[error("this is an mmCIF file, not a PDB file; download the entry in PDB format")]
     MmCif,
     /// No periodic cell has these lengths and angles.
     #[error(
-        "line {line}: there is no cell with the edges {lengths:?} and the angles {angles:?}; edges must be \
-         longer than 0, and angles in degrees must be those between three edges that are not in one plane"
+        "line {line}: no periodic cell has edges of the lengths {lengths:?} and the angles {angles:?}; lengths \
+         must be greater than 0, and the angles in degrees must belong to three edges that are not in one plane"
     )]
     Cell {
-        /// Where.
+        /// Number of the line.
         line: usize,
         /// The lengths of the edges a, b and c, in Å.
         lengths: [f64; 3],
@@ -131,6 +131,7 @@ pub enum PdbError {
     },
 }
 
+/// The end of a sentence about the text of a field.
 fn not_valid(found: &str, kind: &str) -> String {
     match found {
         "" => "blank".to_owned(),

@@ -1,12 +1,12 @@
-//! Residue numbers of four characters, also beyond 9999.
+//! Decodes residue numbers of four characters, also beyond 9999.
 //!
-//! Hybrid-36 (R. W. Grosse-Kunstleve, `cci.lbl.gov/hybrid_36`): after 9999 come A000 to ZZZZ, where every
-//! character is a digit of base 36, and then a000 to zzzz.
+//! In hybrid-36 (R. W. Grosse-Kunstleve, `cci.lbl.gov/hybrid_36`), 9999 is followed by A000 to ZZZZ, where every
+//! character is a digit in base 36, and then by a000 to zzzz.
 
-/// How many numbers of four digits begin with one given digit in base 36.
+/// Count of the four-digit numbers in base 36 that begin with a given digit.
 const BLOCK: i32 = 36 * 36 * 36;
 
-/// The number that a field without blanks around it holds.
+/// Decodes a field that has no blanks around it; `None` if it is not a valid number.
 pub(super) fn decode(text: &str) -> Option<i32> {
     match *text.as_bytes() {
         [first @ b'A'..=b'Z', b, c, d] => {
@@ -19,7 +19,7 @@ pub(super) fn decode(text: &str) -> Option<i32> {
     }
 }
 
-/// The number with the letters from `ten` on as the digits from 10 on.
+/// Decodes four digits in base 36. The digit 10 is the letter `ten`, and the letters after it follow.
 fn base36(digits: [u8; 4], ten: u8) -> Option<i32> {
     digits.into_iter().try_fold(0, |number, digit| {
         let value = match digit {

@@ -1,12 +1,10 @@
-//! Short texts of which few different ones occur.
+//! Stores short texts of which few different ones occur.
 
 use std::collections::HashMap;
 
 use crate::load::ColumnValues;
 
-/// What was found for a key before.
-///
-/// Before the map stands a small table with what was found last for keys of one hash.
+/// A map from keys to indices. A small table in front of the hash map holds the last key found in each of its slots.
 pub(super) struct Memo {
     recent: [Option<(u64, u32)>; Self::RECENT],
     all: HashMap<u64, u32>,
@@ -33,7 +31,8 @@ impl Memo {
         self.all.insert(key, value);
     }
 
-    /// Multiplicative hashing: the upper bits of a product with 2⁶⁴ divided by the golden ratio.
+    /// Returns the slot of a key by multiplicative hashing: the upper bits of its product with 2⁶⁴ divided by the golden
+    /// ratio.
     fn slot(key: u64) -> usize {
         (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize
     }
@@ -54,27 +53,27 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// Appends the text of an atom; the answer is its index among the names.
+    /// Appends the text of an atom and returns its index in `names`.
     pub(super) fn push(&mut self, field: [u8; 4]) -> u32 {
         let index = self.index(field);
         self.indices.push(index);
         index
     }
 
-    /// The index of a text among the names, to which it is added if it is new.
+    /// Returns the index of a text in `names`; a new text is added.
     pub(super) fn index(&mut self, field: [u8; 4]) -> u32 {
         let key = u64::from(u32::from_le_bytes(field));
         if let Some(index) = self.known.get(key) {
             return index;
         }
-        // The same text may stand elsewhere in its field.
+        // The same text may have another position in its field.
         let text = field.trim_ascii();
         let mut left = [b' '; 4];
         left.iter_mut().zip(text).for_each(|(to, from)| *to = *from);
         let left = u64::from(u32::from_le_bytes(left));
         let index = self.known.get(left).unwrap_or_else(|| {
             self.names.push(String::from_utf8_lossy(text).into_owned());
-            // No more than atoms, which are fewer than 2³².
+            // There are no more names than atoms, which are fewer than 2³².
             self.names.len() as u32 - 1
         });
         self.known.insert(left, index);
@@ -82,7 +81,7 @@ impl Labels {
         index
     }
 
-    /// Keeps some atoms, and the names that these have; the answer is the former index of each of them.
+    /// Keeps some atoms and the names that they use. Returns the former index of each of these names.
     pub(super) fn retain(&mut self, keep: &[bool]) -> Vec<u32> {
         retain(&mut self.indices, keep);
         let mut names = Vec::new();
@@ -109,7 +108,7 @@ impl Labels {
     }
 }
 
-/// Keeps some of the values.
+/// Keeps the values for which `keep` is true.
 pub(super) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     values.retain(|_| keep.next().copied().unwrap_or(true));

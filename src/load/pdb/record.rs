@@ -1,8 +1,8 @@
-//! Lines, and what stands in which columns of them.
+//! Splits a PDB file into lines, and reads fields by their columns.
 
 use super::error::PdbError;
 
-/// The records that matter.
+/// Kinds of lines that the reader distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Atom,
@@ -11,20 +11,20 @@ pub(super) enum Kind {
     Model,
     Endmdl,
     End,
-    /// Not a record: a name that stands before the atoms of an mmCIF file.
+    /// A name of mmCIF, which appears there before the atoms. It is not a PDB record.
     AtomSite,
     Other,
 }
 
 impl Kind {
-    /// The kind of a line, by its name in columns 1 to 6.
+    /// Returns the kind of a line by the record name in columns 1 to 6.
     ///
     /// A serial number of six digits may begin in column 6.
     pub(super) fn of(line: &[u8]) -> Self {
         let is = |name: &[u8]| {
             line.strip_prefix(name).is_some_and(|rest| matches!(rest.first(), None | Some(b' ')))
         };
-        // Most lines of most files are atoms, and most others are known by their first letter.
+        // Most lines of most files are atoms, and the first letter rules out most other lines.
         match line.first() {
             Some(b'A') if is(b"ATOM") => Self::Atom,
             Some(b'H') if line.starts_with(b"HETATM") => Self::Hetatm,
@@ -38,7 +38,7 @@ impl Kind {
     }
 }
 
-/// The lines of a file without their ends, with their numbers from 1.
+/// The lines of a file without their line ends, with their numbers from 1.
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
     line: usize,
@@ -65,7 +65,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// One line that is read. Columns count from 1, and the last one of a field belongs to it.
+/// One line whose fields are read. Columns are counted from 1, and a field includes its last column.
 pub(super) struct Record<'a> {
     pub(super) line: usize,
     pub(super) name: &'static str,
@@ -74,7 +74,7 @@ pub(super) struct Record<'a> {
 
 impl<'a> Record<'a> {
     pub(super) fn new(line: usize, bytes: &'a [u8], name: &'static str) -> Result<Self, PdbError> {
-        // What stands behind these columns does not belong to the format.
+        // The format has 80 columns; anything after them is ignored.
         let bytes = bytes.get(..80).unwrap_or(bytes);
         match std::str::from_utf8(bytes) {
             Ok(text) if text.is_ascii() => Ok(Self { line, name, text }),
@@ -86,7 +86,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Refuses a line that ends before one of the fields: what it is, its first and its last column.
+    /// Refuses a line that ends before one of the fields. Each field has a name, a first and a last column.
     pub(super) fn must_have(
         &self,
         fields: &[(&'static str, usize, usize)],
@@ -105,13 +105,13 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// The text of a field without the blanks around it; empty where the line has ended.
+    /// Returns the text of a field without the blanks around it; it is empty where the line has ended.
     pub(super) fn text(&self, first: usize, last: usize) -> &'a str {
         let last = last.min(self.text.len());
         self.text.get(first - 1..last).unwrap_or_default().trim_ascii()
     }
 
-    /// The bytes of a field with the blanks around it; blanks where the line has ended.
+    /// Returns the bytes of a field with the blanks around it; there are blanks where the line has ended.
     pub(super) fn bytes<const WIDTH: usize>(&self, first: usize) -> [u8; WIDTH] {
         let rest = self.text.as_bytes().get(first - 1..).unwrap_or_default();
         rest.first_chunk().copied().unwrap_or_else(|| {
@@ -134,7 +134,7 @@ impl<'a> Record<'a> {
         })
     }
 
-    /// The number of a field that may be blank.
+    /// Returns the number in a field, or `absent` if the field is blank.
     pub(super) fn number_or(
         &self,
         absent: f64,

@@ -136,14 +136,17 @@ fn line_ends_blanks_marks_and_short_lines() {
 #[test]
 fn unknown_elements_are_noted() {
     let named = |symbol| Row { name: " J  ", residue: "LIG", symbol, ..ROW };
+    let note = |names: &str| {
+        format!(
+            "these species are not chemical elements: {names}; they are drawn in pink with radius 2 unless a scene \
+             file has a table `[elements.NAME]` for them"
+        )
+    };
     let one = loaded(&file(&[named("X"), ROW, named("X")]));
-    assert_eq!(one.notes, ["not chemical elements: X; drawn in pink, with radius 2"]);
+    assert_eq!(one.notes, [note("X")]);
     assert!((spheres(&one)[0][3] - 2.0).abs() < 1e-12);
     let many = ["X", "QA", "QB", "QC", "QD", "QE", "QF", "QG"].map(named);
-    assert_eq!(
-        loaded(&file(&many)).notes,
-        ["not chemical elements: X, QA, QB, QC, QD and 3 more; drawn in pink, with radius 2"]
-    );
+    assert_eq!(loaded(&file(&many)).notes, [note("X, QA, QB, QC, QD and 3 more")]);
 }
 
 #[test]
@@ -172,10 +175,11 @@ fn alternate_locations() {
     assert_eq!(labels(&all, "residue"), ["ALA", "ALA", "ALA", "ALA", "ALA", "THR"]);
     let Some(ColumnValues::Labels(Labels { names, .. })) = all.column("residue") else { panic!() };
     assert_eq!(names, &["ALA", "THR"]);
-    let note = "left out, because they are alternate locations of others; those with the highest \
-                occupancy are kept";
-    assert_eq!(all.notes, [format!("6 atoms are {note}")]);
-    assert_eq!(loaded(&file(&rows[1..3])).notes, [format!("1 atom is {note}")]);
+    let kept = "the locations with the highest occupancy are kept";
+    let six = format!("6 atoms are left out as alternate locations of other atoms; {kept}");
+    assert_eq!(all.notes, [six]);
+    let one = format!("1 atom is left out as alternate location of another atom; {kept}");
+    assert_eq!(loaded(&file(&rows[1..3])).notes, [one]);
     assert_eq!(loaded(&file(&rows[1..2])).notes, [""; 0]);
 }
 
@@ -233,8 +237,8 @@ fn atoms_behind_the_end_are_noted() {
         assert_eq!(
             loaded.notes,
             [
-                "the atoms from line 3 on are left out, because they follow the end of the structure; \
-              MODEL and ENDMDL must enclose each of several frames"
+                "the atoms from line 3 on are left out, because they follow the end of the structure; if they are \
+                 further frames, enclose each frame with MODEL and ENDMDL"
             ]
         );
     }
@@ -265,9 +269,9 @@ fn cells() {
     assert_eq!(cell("    0.000    0.000    0.000   0.00   0.00   0.00"), Ok(None));
     assert_eq!(
         cell("    1.000    2.000    3.000  10.00  10.00  90.00").unwrap_err(),
-        "line 1: there is no cell with the edges [1.0, 2.0, 3.0] and the angles [10.0, 10.0, 90.0]; edges \
-         must be longer than 0, and angles in degrees must be those between three edges that are not in \
-         one plane"
+        "line 1: no periodic cell has edges of the lengths [1.0, 2.0, 3.0] and the angles [10.0, 10.0, 90.0]; \
+         lengths must be greater than 0, and the angles in degrees must belong to three edges that are not in one \
+         plane"
     );
     assert_eq!(
         cell("    1.000    2.000    3.000  90.00    abc  90.00").unwrap_err(),
