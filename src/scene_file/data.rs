@@ -1,4 +1,4 @@
-//! The keys that name a file with spheres, and say how to read it and what its spheres look like.
+//! Reads the keys that name a data file, tell how to read it, and set the appearance of its spheres.
 
 use std::collections::BTreeMap;
 
@@ -12,44 +12,44 @@ use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::scene::material::SurfaceProperties;
 
-/// A reference to a file with spheres.
+/// A reference to a data file, and the keys of the scene file that concern its spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
-    /// The path, relative to the scene file.
+    /// Path of the data file, relative to the scene file.
     pub file: String,
-    /// Which frame of a trajectory, from 0.
+    /// Frame of a trajectory, counted from 0.
     pub frame: Option<usize>,
-    /// The radius of all, for data that has none.
+    /// Radius of all spheres, for data without radii.
     pub radius: Option<f64>,
-    /// What every radius is multiplied by.
+    /// Factor for every radius.
     pub radius_scale: f64,
-    /// The colour of all, for data that has none.
+    /// Colour of all spheres, for data without colours.
     pub color: Option<LinearRgb>,
-    /// What all surfaces do with light.
+    /// Surface properties of all spheres, unless `elements` says otherwise.
     pub surface: SurfaceProperties,
-    /// What atoms of one species, or with one value of another column, look like.
+    /// Appearance of atoms of one species, or with one value of another column.
     pub elements: Vec<Element>,
-    /// The columns whose values name `elements`. A sphere looks as the first of them says for which there is an element;
-    /// empty for `species`.
+    /// Columns whose values are looked up in `elements`. The first column with a match decides; if the list is empty, the
+    /// column is `species`.
     pub elements_by: Vec<String>,
-    /// Columns, and of each the values of spheres that are left out.
+    /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
 }
 
-/// What atoms of one species look like, whatever the data or the tables of elements say.
+/// Appearance of the atoms of one species. It replaces what the data or the table of chemical elements gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
-    /// The species, or the value of another column, as it is written in the data.
+    /// The species, or the value of another column, spelled as in the data.
     pub name: String,
-    /// The radius, before `radius_scale`.
+    /// Radius before it is multiplied by `radius_scale`.
     pub radius: Option<f64>,
-    /// The colour.
+    /// Colour of the atoms.
     pub color: Option<LinearRgb>,
-    /// What the surface does with light.
+    /// Surface properties of the atoms.
     pub surface: SurfaceProperties,
 }
 
-/// A table `[elements.NAME]`.
+/// The keys of a table `[elements.NAME]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ElementTable {
@@ -59,7 +59,7 @@ pub(super) struct ElementTable {
     radius: Option<Number>,
 }
 
-/// The keys, as they stand at the top of the file.
+/// The keys at the top of the file that concern its data.
 pub(super) struct DataKeys {
     pub(super) file: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
@@ -93,9 +93,9 @@ impl DataKeys {
             ];
             let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
-                Some((key, start)) => Err(lines
-                    .span(start)
-                    .error(format!("`{key}` concerns `data`, which is not given"))),
+                Some((key, start)) => Err(lines.span(start).error(format!(
+                    "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
+                ))),
                 None => Ok(None),
             };
         };
@@ -127,6 +127,7 @@ impl DataKeys {
     }
 }
 
+/// Checks that a number, if it is given, is finite and greater than 0.
 fn positive(
     key: &'static str,
     value: Option<Number>,

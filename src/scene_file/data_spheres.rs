@@ -1,4 +1,4 @@
-//! What the spheres of a file look like, as a scene file says.
+//! Applies the keys of a scene file to the spheres of its data.
 
 use super::data::{Data, Element};
 use crate::image::color::LinearRgb;
@@ -9,44 +9,44 @@ use crate::scene::sphere_array::SphereArray;
 /// The spheres of a scene's data.
 #[derive(Clone, Debug)]
 pub enum DataSpheres {
-    /// Spheres with a colour and surface properties each.
+    /// Spheres with their own colours and surface properties.
     Spheres(Vec<Sphere>),
     /// Centres and radii alone; the scene gives all of them the same colour and surface properties.
     Array(SphereArray),
 }
 
-/// Why a scene file cannot say how the spheres of its data look.
+/// An error of applying the keys of a scene file to its data.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataError {
-    /// The data has no columns of text.
-    #[error("`{key}` concerns atoms ({files}); drop it")]
+    /// The data has no text columns.
+    #[error("`{key}` applies only to atoms ({files}); remove it")]
     NoAtoms {
-        /// The key.
+        /// The key of the scene file.
         key: &'static str,
-        /// The extensions of files that have such columns.
+        /// Extensions of the formats that have such columns.
         files: String,
     },
-    /// The data has no such column of text.
-    #[error("`{key}`: there is no column `{column}` of text in {file}; it has {columns}")]
+    /// The data has no text column of this name.
+    #[error("`{key}`: {file} has no text column `{column}`; its text columns are {columns}")]
     NoColumn {
-        /// The key.
+        /// The key of the scene file.
         key: &'static str,
-        /// The column that was named.
+        /// The column that the scene file names.
         column: String,
-        /// The file of the data.
+        /// Path of the data file.
         file: String,
-        /// The columns that there are.
+        /// Names of the text columns of the data.
         columns: String,
     },
 }
 
 impl Data {
-    /// Gives the spheres of a file the colours, radii and surface properties that this scene file says, and leaves out those that
-    /// it names. Also gives notes for the user: of elements, and of values to be left out, that do not occur.
+    /// Applies the colours, radii and surface properties of the scene file to the spheres of its data, and leaves out the
+    /// spheres that it names. Returns the spheres, and notes for the user about names that do not occur in the data.
     ///
     /// # Errors
-    /// If a column does not exist, or the data has none although columns are named.
+    /// If the scene file names a column that the data does not have.
     pub fn apply(&self, mut loaded: Loaded) -> Result<(DataSpheres, Vec<String>), DataError> {
         let mut notes = std::mem::take(&mut loaded.notes);
         if loaded.colors.is_none() {
@@ -85,17 +85,24 @@ impl Data {
             spheres.push(sphere);
         }
         if spheres.is_empty() && !is_left_out.is_empty() {
-            notes.push(format!("`leave_out` leaves none of the atoms of {}", self.file));
+            notes.push(format!(
+                "`leave_out` removes all atoms of {}; remove some of its values",
+                self.file
+            ));
         }
         let occurs = |name: &String| columns.iter().any(|labels| labels.names.contains(name));
         let absent = self.elements.iter().filter(|element| !occurs(&element.name));
         notes.extend(absent.map(|element| {
-            format!("`[elements.{}]`: there is no such atom in {}", element.name, self.file)
+            let Element { name, .. } = element;
+            format!(
+                "`[elements.{name}]`: no atom of {} has this name; check its spelling or remove the table",
+                self.file
+            )
         }));
         Ok((DataSpheres::Spheres(spheres), notes))
     }
 
-    /// Refuses what has no use for data without columns of text.
+    /// Refuses keys that do not apply to data without text columns.
     fn check_plain(&self) -> Result<(), DataError> {
         let keys = [
             ("elements", !self.elements.is_empty()),
@@ -111,6 +118,7 @@ impl Data {
         }
     }
 
+    /// Returns the text column that a key of the scene file names.
     fn labels<'a>(
         &self,
         loaded: &'a Loaded,
@@ -128,7 +136,7 @@ impl Data {
         })
     }
 
-    /// For each sphere, whether it is left out; empty if none is.
+    /// Returns for each sphere whether it is left out; the result is empty if the scene file leaves out nothing.
     fn left_out(&self, loaded: &Loaded, notes: &mut Vec<String>) -> Result<Vec<bool>, DataError> {
         let mut is_left_out = Vec::new();
         for (column, values) in &self.leave_out {
@@ -141,7 +149,10 @@ impl Data {
             }
             let absent = values.iter().filter(|value| !labels.names.contains(value));
             notes.extend(absent.map(|value| {
-                format!("`leave_out`: there is no {column} {value} in {}", self.file)
+                format!(
+                    "`leave_out`: no atom of {} has the {column} {value}; check its spelling or remove it",
+                    self.file
+                )
             }));
         }
         Ok(is_left_out)

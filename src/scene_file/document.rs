@@ -1,4 +1,4 @@
-//! The file's tables, as serde reads them.
+//! The tables of a scene file, as serde reads them.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ use crate::render::Shading;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 
-/// All tables and keys at the top.
+/// All keys and tables at the top level of a scene file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {

@@ -1,4 +1,4 @@
-//! Tables `[materials.NAME]`, and the keys that refer to them.
+//! Reads the tables `[materials.NAME]`, and the keys that refer to them.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::exact::Table;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::text::{one_line, shortened};
 
-/// What a material does with light, by name.
+/// The kinds of materials that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -100,7 +100,7 @@ impl MaterialTable {
     }
 }
 
-/// The materials of a file, by name.
+/// The surface properties of the materials of a file, by their names.
 pub(super) struct Materials(BTreeMap<String, SurfaceProperties>);
 
 impl Materials {
@@ -115,7 +115,7 @@ impl Materials {
         Ok(Self(surfaces.collect::<Result<_, _>>()?))
     }
 
-    /// What the two keys make of a surface.
+    /// Applies the keys `material` and `opacity`, where they are given, to the surface properties `base`.
     pub(super) fn over(
         &self,
         base: SurfaceProperties,

@@ -1,6 +1,7 @@
-//! Scene files: TOML text in; film, camera, settings and spheres out. No file system.
+//! Reads scene files: TOML text that describes the film, the camera, the render settings and the spheres. This module
+//! does not access the file system.
 //!
-//! `examples/*.toml` show every part with comments.
+//! The commented files `examples/*.toml` show every table and key.
 
 mod data;
 mod data_spheres;
@@ -35,15 +36,15 @@ use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Scene, SceneError};
 
-/// What a scene file says.
+/// The contents of a scene file.
 #[derive(Debug)]
 pub struct SceneFile {
-    /// The picture's size.
+    /// Size of the picture, and the direction of its y axis.
     pub film: Film,
-    /// How the picture is written.
+    /// How the picture is encoded: exposure, tone curve, transparency and bits.
     pub encoding: Encoding,
     background: LinearRgb,
-    /// Of primary rays.
+    /// Shading of pictures by primary rays.
     shading: Shading,
     lighting: SceneLighting,
     data: Option<WithSpan<Data>>,
@@ -52,10 +53,10 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads a scene file.
+    /// Parses the text of a scene file.
     ///
     /// # Errors
-    /// The first thing in the text that is not as it should be.
+    /// Returns the first error in the text, with its line and column.
     pub fn parse(text: &str) -> Result<Self, SceneFileError> {
         let lines = Lines::of(text);
         let document: Document = toml::from_str(text).map_err(|error| {
@@ -106,21 +107,21 @@ impl SceneFile {
         })
     }
 
-    /// The scene: the file's own spheres, then those of its data.
+    /// Makes the scene: first the file's own spheres, then those of its data.
     ///
     /// # Errors
-    /// The first sphere that is out of range, with its place if it stands in this file.
+    /// Names the first sphere that is out of range. The position is that of the sphere, or of the key `data`.
     pub fn scene(&self, data: &[Sphere]) -> Result<Scene, SceneFileError> {
         let own = self.spheres.iter().map(|sphere| sphere.value);
         let spheres: Vec<Sphere> = own.chain(data.iter().copied()).collect();
         Scene::new(&spheres).map_err(|error| self.spanned(&error))
     }
 
-    /// As [`SceneFile::scene`], with data that has no colours; where the file has no spheres of its own,
-    /// without a copy. They get the surface properties that the file states.
+    /// Makes the scene like [`SceneFile::scene`], from data without colours. All spheres of the data get the `color`, and
+    /// the surface properties that the file gives. If the file has no spheres of its own, the data is not copied.
     ///
     /// # Errors
-    /// As [`SceneFile::scene`].
+    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
     pub fn scene_with_array(
         &self,
         data: SphereArray,
@@ -135,6 +136,7 @@ impl SceneFile {
         self.scene(&colored.collect::<Vec<_>>())
     }
 
+    /// Adds a position in the file to an error.
     fn spanned(&self, error: &SceneError) -> SceneFileError {
         let &SceneError::Sphere { index, error: fault } = error else {
             return Span::START.error(error);
@@ -149,14 +151,14 @@ impl SceneFile {
         }
     }
 
-    /// The file with more spheres, if there is one.
+    /// Returns the reference to a data file, if the scene file has one.
     #[must_use]
     pub fn data(&self) -> Option<&Data> {
         self.data.as_ref().map(|data| &data.value)
     }
 
-    /// The camera, or of two eyes that in the middle, for a film of this shape; without a fixed place it frames
-    /// the scene.
+    /// Makes the camera for a film of this aspect ratio. For a stereo camera this is the view from the middle between the
+    /// eyes. A camera without an eye position frames the scene.
     ///
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.
@@ -167,10 +169,10 @@ impl SceneFile {
             .map_err(|error| self.camera.span.error(error))
     }
 
-    /// The cameras of the left and of the right eye, if the camera has two.
+    /// Makes the cameras of the left and the right eye, if the camera of the file is a stereo camera.
     ///
     /// # Errors
-    /// As [`SceneFile::camera`].
+    /// If a parameter is out of range, or parameters exclude each other.
     pub fn stereo_pair(
         &self,
         film: &Film,
@@ -183,7 +185,7 @@ impl SceneFile {
     }
 }
 
-/// Whether any sphere is to be more than matt and opaque.
+/// Whether the surface of any sphere is not matt and opaque.
 fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> bool {
     let matt = crate::scene::material::SurfaceProperties::default();
     let of_data = data.iter().flat_map(|data| {

@@ -1,4 +1,4 @@
-//! The table `[output]`: how the picture is written.
+//! Reads the table `[output]`, which tells how the picture is encoded.
 
 use serde::Deserialize;
 use toml::Spanned;

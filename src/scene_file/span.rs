@@ -1,4 +1,4 @@
-//! Spans of the text, and what is wrong there.
+//! Positions in the text of a scene file, and errors with a position.
 
 use std::fmt;
 use std::ops::Range;
@@ -7,19 +7,19 @@ use toml::Spanned;
 
 use crate::range::RangeError;
 
-/// What is wrong with a scene file, and where.
+/// An error in a scene file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}, column {column}: {message}")]
 pub struct SceneFileError {
-    /// From 1.
+    /// Number of the line, from 1.
     pub line: usize,
-    /// From 1, in characters.
+    /// Number of the character in the line, from 1.
     pub column: usize,
-    /// What is wrong, and what to do.
+    /// What is wrong, and what to do about it.
     pub message: String,
 }
 
-/// A value and where it is in the text.
+/// A value and its position in the text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WithSpan<T> {
     pub(super) value: T,
@@ -33,7 +33,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Where nothing more precise is known.
+    /// The start of the file, for errors without a more precise position.
     pub(super) const START: Self = Self { line: 1, column: 1 };
 
     pub(super) fn error(self, message: impl fmt::Display) -> SceneFileError {
@@ -41,7 +41,7 @@ impl Span {
     }
 }
 
-/// Where the lines of a text start.
+/// A text with the offsets of its lines.
 pub(super) struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -53,7 +53,7 @@ impl<'a> Lines<'a> {
         Self { text, starts: std::iter::once(0).chain(ends).collect() }
     }
 
-    /// Line and column of a byte.
+    /// Returns the line and column of a byte.
     pub(super) fn span(&self, byte: usize) -> Span {
         // At least one line starts at or before any byte.
         let line = self.starts.partition_point(|start| *start <= byte);
@@ -61,25 +61,25 @@ impl<'a> Lines<'a> {
         Span { line, column: before.chars().count() + 1 }
     }
 
-    /// A value and where it is.
+    /// Adds the line and column to a value.
     pub(super) fn spanned<T>(&self, value: Spanned<T>) -> WithSpan<T> {
         WithSpan { span: self.span(value.span().start), value: value.into_inner() }
     }
 }
 
-/// A number and where it is.
+/// A number and its position in bytes.
 pub(super) type Number = Spanned<f64>;
 
-/// The keys of a table that have numbers, to say where one is that is out of range.
+/// The numbers of a table by their keys, to find the position of a number that is out of range.
 pub(super) struct Keys<'a> {
     pub(super) lines: &'a Lines<'a>,
     pub(super) numbers: Vec<(&'static str, Option<Spanned<f64>>)>,
-    /// Where the table begins.
+    /// Position of the table.
     pub(super) table: Span,
 }
 
 impl Keys<'_> {
-    /// The number of a key, if it is there; at least `low` and at most `high`.
+    /// Returns the number of a key, if it is given, and checks that it lies within the bounds.
     pub(super) fn within(
         &self,
         key: &'static str,
@@ -97,7 +97,7 @@ impl Keys<'_> {
         self.numbers.iter().find(|(name, _)| *name == key)?.1.as_ref()
     }
 
-    /// The error where its number is, which is given as it was written.
+    /// Returns a range error at the position of its number, with the number as it is written in the file.
     pub(super) fn refused(&self, error: &RangeError) -> SceneFileError {
         match self.number(error.parameter) {
             Some(number) => {
@@ -109,30 +109,31 @@ impl Keys<'_> {
     }
 }
 
-/// A whole number among others.
+/// Converts a whole number, so that it can be one of the numbers of [`Keys`].
 pub(super) fn whole(number: &Option<Spanned<u32>>) -> Option<Number> {
     let number = number.as_ref()?;
     Some(Spanned::new(number.span(), f64::from(*number.get_ref())))
 }
 
-/// Refuses keys of a table that do not concern its kind: each with where it is, and whether it does.
+/// Refuses keys that do not apply to the kind of their table. Each key has its position, if it is given, and whether it
+/// applies.
 pub(super) fn refuse_foreign(
     lines: &Lines<'_>,
     kind: &str,
     keys: &[(&str, Option<Range<usize>>, bool)],
 ) -> Result<(), SceneFileError> {
-    let foreign = keys.iter().find_map(|(key, span, concerns)| {
-        span.as_ref().filter(|_| !concerns).map(|span| (key, span.start))
+    let foreign = keys.iter().find_map(|(key, span, applies)| {
+        span.as_ref().filter(|_| !applies).map(|span| (key, span.start))
     });
     match foreign {
         Some((key, start)) => Err(lines
             .span(start)
-            .error(format!("`{key}` does not concern the kind `{kind}`; drop it"))),
+            .error(format!("`{key}` does not apply to the kind `{kind}`; remove it"))),
         None => Ok(()),
     }
 }
 
-/// Where a value is, if it is there.
+/// Returns the position of a value in bytes, if it is given.
 pub(super) fn range_of<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
     value.as_ref().map(Spanned::span)
 }

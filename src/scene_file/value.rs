@@ -1,4 +1,4 @@
-//! Values that several tables have: colours and vectors.
+//! Types of values that occur in several tables: colours and vectors.
 
 use std::fmt;
 
@@ -9,11 +9,11 @@ use crate::exact;
 use crate::image::color::LinearRgb;
 use crate::render::{BRIGHTEST, SettingsError};
 
-/// A CSS colour, or a linear triple.
+/// A colour, written as a CSS colour or as a linear triple.
 #[derive(Clone, Copy)]
 pub(super) struct ColorValue(pub(super) LinearRgb);
 
-/// The colour of spheres that are given none, as 8-bit sRGB: a light grey.
+/// Colour of spheres without a colour, in 8-bit sRGB: a light grey.
 pub const DEFAULT_COLOR: [u8; 3] = [0xcc; 3];
 
 impl Default for ColorValue {
@@ -47,7 +47,7 @@ impl<'de> Deserialize<'de> for ColorValue {
     }
 }
 
-/// Three numbers.
+/// A vector of three numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Vector(pub(super) [f64; 3]);
 
@@ -57,7 +57,7 @@ impl<'de> Deserialize<'de> for Vector {
     }
 }
 
-/// A colour times a number that was checked: the light of `what`.
+/// Multiplies a colour by a number that was checked. The result is light that `what` emits, and may be too bright.
 pub(super) fn scaled(color: LinearRgb, by: f64, what: &str) -> Result<LinearRgb, SettingsError> {
     let rgb = color.to_array().map(|c| (f64::from(c) * by) as f32);
     let too_bright = || SettingsError::TooBright { what: what.to_owned(), rgb };

@@ -1,9 +1,9 @@
-//! What is wrong with a scene file, in its writer's words.
+//! Rewrites the messages of serde and toml in the words of scene files.
 
 use crate::camera::CameraKind;
 use crate::text::{one_line, shortened};
 
-/// Puts serde's words for an unknown key or name into a user's, with a suggestion.
+/// Rewrites a message of serde or toml. A message about an unknown key or name also gets a suggestion.
 pub(super) fn explain(message: &str) -> String {
     let (what, rest) = match message.split_once(" `") {
         Some(("unknown field", rest)) => ("key", rest),
@@ -17,17 +17,17 @@ pub(super) fn explain(message: &str) -> String {
         {
             return format!("a camera is a table; write {}", camera_tables());
         }
-        // toml's messages of its own are good, but may span lines.
+        // The messages of toml itself are good, but may have several lines.
         _ => return in_plain_words(message),
     };
-    // unknown field `widht`, expected one of `width`, `height`
+    // For example: unknown field `widht`, expected one of `width`, `height`
     let mut quoted = rest.split('`').step_by(2);
     let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.filter(|name| !name.is_empty()).collect();
     unknown(what, name, &known)
 }
 
-/// What to say of a name that is none of those that are known.
+/// Returns the message for a name that is not one of the known names.
 pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     let unknown = &shortened(name);
     let nearest = known.iter().copied().max_by(|a, b| {
@@ -35,11 +35,11 @@ pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     });
     match nearest.filter(|name| strsim::jaro_winkler(name, unknown) > 0.75) {
         Some(nearest) => format!("unknown {what} `{unknown}`; did you mean `{nearest}`?"),
-        None => format!("unknown {what} `{unknown}`; known here: {}", known.join(", ")),
+        None => format!("unknown {what} `{unknown}`; valid here: {}", known.join(", ")),
     }
 }
 
-/// Puts Rust's words for types, and serde's for a missing key, into a user's.
+/// Replaces Rust's names of types, and serde's term for a key, by plain words.
 fn in_plain_words(message: &str) -> String {
     let mut text = one_line(message);
     for (rust, plain) in [
@@ -54,7 +54,7 @@ fn in_plain_words(message: &str) -> String {
     text
 }
 
-/// `[camera.pinhole]` or …
+/// Lists the tables of all cameras: `[camera.pinhole]` or …
 fn camera_tables() -> String {
     let tables = CameraKind::ALL.iter().map(|kind| format!("`[camera.{}]`", kind.name()));
     tables.collect::<Vec<_>>().join(" or ")

@@ -1,4 +1,4 @@
-//! Scene files: what they may say, and what is wrong with them.
+//! Tests of scene files: what they can contain, and their error messages.
 
 use glam::{DVec2, DVec3};
 use pinhole::camera::CameraKind;
@@ -11,14 +11,14 @@ fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What the file says of primary rays.
+/// The settings of the file for primary rays.
 fn settings(file: &SceneFile) -> RenderSettings {
     let scene = file.scene(&[]).unwrap();
     let camera = file.camera(&file.film, &scene).unwrap();
     file.settings(IntegratorKind::Primary, &scene, camera.as_ref(), None).unwrap()
 }
 
-/// Whatever is wrong, wherever it shows.
+/// The message of the first error, whether it appears in parsing, in the scene or in the camera.
 fn message(text: &str) -> String {
     let error = match SceneFile::parse(text) {
         Err(error) => error,
@@ -127,7 +127,7 @@ fn a_camera_without_an_eye_frames_the_scene() {
 }
 
 #[test]
-fn errors_name_place_and_remedy() {
+fn errors_name_position_and_remedy() {
     const SPHERE: &str = "[[spheres]]\ncenter=[0,0,0]\nradius=1\n";
     for (text, expected) in [
         (
@@ -140,12 +140,12 @@ fn errors_name_place_and_remedy() {
         ),
         (
             "[camera.pinhole]\nfocus = 3\n",
-            "line 2, column 1: unknown key `focus`; known here: eye, look_at, direction, up, distance, half_extent, vertical_fov, stereo",
+            "line 2, column 1: unknown key `focus`; valid here: eye, look_at, direction, up, distance, half_extent, vertical_fov, stereo",
         ),
         ("[camera.pinhol]\n", "line 1, column 9: unknown name `pinhol`; did you mean `pinhole`?"),
         (
             "shading = 'phong'\n",
-            "line 1, column 11: unknown name `phong`; known here: flat, headlight",
+            "line 1, column 11: unknown name `phong`; valid here: flat, headlight",
         ),
         ("[film]\ny = 'dwon'\n", "line 2, column 5: unknown name `dwon`; did you mean `down`?"),
         (
@@ -156,8 +156,14 @@ fn errors_name_place_and_remedy() {
             "background = 'gren'\n",
             "line 1, column 14: `gren` is not a valid color; write a CSS name, \"#rrggbb\" or a linear triple [r, g, b]",
         ),
-        ("frame = 3\n", "line 1, column 9: `frame` concerns `data`, which is not given"),
-        ("color = 'red'\n", "line 1, column 9: `color` concerns `data`, which is not given"),
+        (
+            "frame = 3\n",
+            "line 1, column 9: `frame` applies to `data`, which is missing; add `data` or remove `frame`",
+        ),
+        (
+            "color = 'red'\n",
+            "line 1, column 9: `color` applies to `data`, which is missing; add `data` or remove `color`",
+        ),
         (
             "data = 'a.npy'\nradius = inf\n",
             "line 2, column 10: `radius` is inf; it must be finite and greater than 0",

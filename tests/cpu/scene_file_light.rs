@@ -1,4 +1,4 @@
-//! What scene files say of light and materials.
+//! Tests of the light and the materials of scene files.
 
 use pinhole::glam::DVec3;
 use pinhole::image::color::LinearRgb;
@@ -19,7 +19,7 @@ fn scene(file: &SceneFile) -> Scene {
     file.scene(&[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whatever is wrong, wherever it shows; of both integrators if the file names none.
+/// The message of the first error, whether it appears in parsing or in the settings.
 fn message(text: &str) -> String {
     let file = match SceneFile::parse(text) {
         Err(error) => return error.to_string(),
@@ -59,7 +59,7 @@ fn without_light_nothing_is_lit() {
     assert_eq!(parse("background = 'red'\nshading = 'flat'\n").integrator(), None);
 }
 
-/// What a file says of light is no obstacle to who asks for a picture without.
+/// The tables that concern light do not prevent a picture without light.
 #[test]
 fn primary_rays_take_what_concerns_them() {
     let text = "integrator = 'primary'\nshading = 'flat'\nbackground = 'red'\n";
@@ -173,18 +173,21 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     assert_eq!((found, notes), (vec![2.0, 1.0, 1.0, 5.0], Vec::new()));
     let (found, notes) = radii("leave_out = { residue = ['HOH', 'SOL'], chain = ['B'] }\n");
     assert_eq!(found, [1.0]);
-    assert_eq!(notes, ["`leave_out`: there is no residue SOL in a.pdb"]);
+    assert_eq!(
+        notes,
+        ["`leave_out`: no atom of a.pdb has the residue SOL; check its spelling or remove it"]
+    );
     let (found, notes) = radii("leave_out = { chain = ['A', 'B'] }\n");
     assert!(found.is_empty());
-    assert_eq!(notes, ["`leave_out` leaves none of the atoms of a.pdb"]);
+    assert_eq!(notes, ["`leave_out` removes all atoms of a.pdb; remove some of its values"]);
     for (text, wanted) in [
         (
             "elements_by = ['colour']\n",
-            "`elements_by`: there is no column `colour` of text in a.pdb; it has species, residue, chain",
+            "`elements_by`: a.pdb has no text column `colour`; its text columns are species, residue, chain",
         ),
         (
             "leave_out = { charge = ['1'] }\n",
-            "`leave_out`: there is no column `charge` of text in a.pdb; it has species, residue, chain",
+            "`leave_out`: a.pdb has no text column `charge`; its text columns are species, residue, chain",
         ),
     ] {
         assert_eq!(apply(text).unwrap_err().to_string(), wanted);
@@ -194,7 +197,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
         plain.data().unwrap().apply(Loaded::new(SphereArray::F32(Vec::new()))).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "`leave_out` concerns atoms (.xyz, .extxyz, .pdb, .ent); drop it"
+        "`leave_out` applies only to atoms (.xyz, .extxyz, .pdb, .ent); remove it"
     );
 }
 
@@ -207,7 +210,10 @@ fn data_has_the_look_of_all_or_of_its_species() {
     );
     let data = file.data().unwrap();
     let (atoms, notes) = data.apply(molecule()).unwrap();
-    assert_eq!(notes, ["`[elements.X]`: there is no such atom in a.xyz"]);
+    assert_eq!(
+        notes,
+        ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]
+    );
     let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
     let metal =
         SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
@@ -224,8 +230,8 @@ fn data_has_the_look_of_all_or_of_its_species() {
 fn arrays_have_the_look_of_all() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
-        let points = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
-        let scene = file.scene_with_array(points, LinearRgb::WHITE).unwrap();
+        let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
+        let scene = file.scene_with_array(spheres, LinearRgb::WHITE).unwrap();
         let last = scene.len() as u32 - 1;
         assert_eq!(scene.surface(last).opacity, 0.5);
         assert_eq!(scene.surface(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });
@@ -308,7 +314,7 @@ fn lights_of_every_kind() {
 }
 
 #[test]
-fn who_names_a_light_gets_no_others() {
+fn a_file_that_names_lights_gets_no_others() {
     let default = Light::key_and_fill().to_vec();
     let black = SkyLight::Constant(LinearRgb::BLACK);
     let by_path = |text: &str| {
@@ -346,7 +352,7 @@ fn skies() {
     assert!(file.settings(IntegratorKind::Studio, &scene, camera.as_ref(), None).is_ok());
     assert_eq!(
         file.settings(kind, &scene, camera.as_ref(), None).unwrap_err().to_string(),
-        "line 3, column 9: this image was not given"
+        "line 3, column 9: the settings need this image of the sky, which was not given"
     );
 }
 
@@ -364,7 +370,7 @@ fn a_ground_touches_the_lowest_sphere() {
 }
 
 #[test]
-fn what_is_out_of_range_is_named_with_its_place() {
+fn what_is_out_of_range_is_named_with_its_position() {
     for (text, expected) in [
         (
             "[sampling]\nsamples = 0\n",
@@ -441,7 +447,7 @@ fn what_is_out_of_range_is_named_with_its_place() {
         ),
         (
             "[[lights]]\nkind = 'directional'\ntoward = [0, 0, 0]\n",
-            "line 3, column 10: `toward` is [0.0, 0.0, 0.0], which is no direction",
+            "line 3, column 10: `toward` is [0.0, 0.0, 0.0], which is not a valid direction; its length must not be 0",
         ),
         (
             "[sun]\ntoward = [0, 1, 0]\nangular_radius = 0.01\n",
@@ -504,47 +510,47 @@ fn what_is_wrong_is_named_with_a_remedy() {
         ),
         (
             "[materials.a]\nkind = 'lambert'\nior = 1.5\n",
-            "line 3, column 7: `ior` does not concern the kind `lambert`; drop it",
+            "line 3, column 7: `ior` does not apply to the kind `lambert`; remove it",
         ),
         (
             "[[lights]]\nkind = 'head'\nat = 'camera'\n",
-            "line 3, column 6: `at` does not concern the kind `head`; drop it",
+            "line 3, column 6: `at` does not apply to the kind `head`; remove it",
         ),
         (
             "[[lights]]\nkind = 'point'\nposition = [0, 0, 0]\nstrength = 1\n",
-            "line 4, column 12: `strength` does not concern the kind `point`; drop it",
+            "line 4, column 12: `strength` does not apply to the kind `point`; remove it",
         ),
         (
             "[sky]\nkind = 'image'\nimage = 'a.hdr'\ncolor = 'red'\n",
-            "line 4, column 9: `color` does not concern the kind `image`; drop it",
+            "line 4, column 9: `color` does not apply to the kind `image`; remove it",
         ),
         (
             "[sky]\nkind = 'image'\n",
-            "line 1, column 1: an image needs a file; write `image = \"FILE.hdr\"`, or .exr",
+            "line 1, column 1: a sky of the kind `image` needs a file; add `image = \"FILE.hdr\"`, or .exr",
         ),
         (
             "[sun]\n",
-            "line 1, column 1: the light has no direction; write `toward = [x, y, z]`, where it is, or `direction`, where it shines",
+            "line 1, column 1: the light has no direction; add `toward = [x, y, z]`, the direction to the light, or `direction = [x, y, z]`, the direction in which it shines",
         ),
         (
             "[sun]\ntoward = [0, 1, 0]\ndirection = [0, 1, 0]\n",
-            "line 3, column 13: `toward` and `direction` are opposite ways to say the same; drop one",
+            "line 3, column 13: `toward` and `direction` both set the direction of the light; remove one of them",
         ),
         (
             "[[lights]]\nkind = 'sphere'\nposition = [0, 0, 0]\n",
-            "line 1, column 1: a sphere light needs a `radius`",
+            "line 1, column 1: a sphere light needs a radius; add `radius`, a length greater than 0",
         ),
         (
             "[[lights]]\nkind = 'point'\n",
-            "line 1, column 1: a point light needs a `position = [x, y, z]`",
+            "line 1, column 1: a point light needs a position; add `position = [x, y, z]`",
         ),
         (
             "[ground]\nheight = 1\npoint = [0, 0, 0]\n",
-            "line 2, column 10: `height` and `point` with `normal` say the same in two ways; drop one",
+            "line 2, column 10: `height` cannot be combined with `point` or `normal`; remove one of them",
         ),
         (
             "[ground]\nnormal = [0, 1, 0]\n",
-            "line 2, column 10: `normal` needs a `point` of the ground",
+            "line 2, column 10: `normal` needs a point on the ground; add `point = [x, y, z]`",
         ),
         (
             "[ground]\ncolor = [2, 0, 0]\n",
@@ -560,26 +566,32 @@ fn what_is_wrong_is_named_with_a_remedy() {
         ),
         (
             "[studio]\n[path]\n",
-            "line 2, column 1: `[path]` is for paths and `[studio]` for a studio; say which with `integrator = \"path\"` or `integrator = \"studio\"`",
+            "line 2, column 1: `[path]` applies to the integrator `path` and `[studio]` to the integrator `studio`; choose one with `integrator = \"path\"` or `integrator = \"studio\"`",
         ),
         (
             "shading = 'flat'\n[studio]\n",
-            "line 1, column 11: `shading` is for pictures without light, and this file asks for light; drop one",
+            "line 1, column 11: `shading` applies only to pictures without light, but this file asks for light; remove `shading`",
         ),
         (
             "integrator = 'primary'\n[sampling]\nsamples = 4\n",
-            "line 2, column 1: `[sampling]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
+            "line 2, column 1: `[sampling]` applies only to pictures with light, but `integrator = \"primary\"` makes a picture without light; remove one of them",
         ),
         (
             "integrator = 'primary'\n[ground]\n[path]\n",
-            "line 3, column 1: `[path]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
+            "line 3, column 1: `[path]` applies only to pictures with light, but `integrator = \"primary\"` makes a picture without light; remove one of them",
         ),
         (
             "integrator = 'primary'\n[[lights]]\nkind = 'head'\n",
-            "line 2, column 1: `[[lights]]` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one",
+            "line 2, column 1: `[[lights]]` applies only to pictures with light, but `integrator = \"primary\"` makes a picture without light; remove one of them",
         ),
-        ("material = 'a'\n", "line 1, column 12: `material` concerns `data`, which is not given"),
-        ("[elements.Fe]\n", "line 1, column 1: `elements` concerns `data`, which is not given"),
+        (
+            "material = 'a'\n",
+            "line 1, column 12: `material` applies to `data`, which is missing; add `data` or remove `material`",
+        ),
+        (
+            "[elements.Fe]\n",
+            "line 1, column 1: `elements` applies to `data`, which is missing; add `data` or remove `elements`",
+        ),
     ] {
         assert_eq!(message(text), expected, "{text}");
     }

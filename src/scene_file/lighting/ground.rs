@@ -1,4 +1,4 @@
-//! The table `[ground]`.
+//! Reads the table `[ground]`.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -24,7 +24,7 @@ pub(in crate::scene_file) struct GroundTable {
     shadow_catcher: bool,
 }
 
-/// A ground; without a point, it touches the lowest sphere.
+/// The ground as the file gives it. Without a point, it will touch the lowest sphere of the scene.
 #[derive(Debug)]
 pub(super) struct GroundPlan {
     point: Option<DVec3>,
@@ -41,13 +41,13 @@ impl GroundPlan {
         let span = lines.span(table.span().start);
         let GroundTable { height, point, normal, color, shadow_catcher } = table.into_inner().0;
         if let (Some(height), Some(_)) = (&height, point.as_ref().or(normal.as_ref())) {
-            return Err(lines
-                .span(height.span().start)
-                .error("`height` and `point` with `normal` say the same in two ways; drop one"));
+            return Err(lines.span(height.span().start).error(
+                "`height` cannot be combined with `point` or `normal`; remove one of them",
+            ));
         }
         if let (Some(normal), None) = (&normal, &point) {
             let span = lines.span(normal.span().start);
-            return Err(span.error("`normal` needs a `point` of the ground"));
+            return Err(span.error("`normal` needs a point on the ground; add `point = [x, y, z]`"));
         }
         let is_near = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= MAX_LENGTH);
         for (key, vector) in [("point", &point), ("normal", &normal)] {
@@ -59,7 +59,7 @@ impl GroundPlan {
             if !(is_near(&[x, y, z]) && is_direction) {
                 return Err(lines.span(vector.span().start).error(format!(
                     "`{key}` is [{x:?}, {y:?}, {z:?}]; each number must lie between -2^56 and 2^56, \
-                     and a normal must have a length"
+                     and a normal must not have the length 0"
                 )));
             }
         }

@@ -1,4 +1,4 @@
-//! Tables `[[lights]]`, and `[sun]`, which is a light as well.
+//! Reads the tables `[[lights]]`, and `[sun]`, which is also a light.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ use crate::scene_file::span::{
 };
 use crate::scene_file::value::{ColorValue, Vector, scaled};
 
-/// What a light is, by name.
+/// The kinds of lights that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -62,35 +62,36 @@ pub(in crate::scene_file) struct SunTable {
     strength: Option<Number>,
 }
 
-/// The sun's, seen from the earth, in degrees.
+/// Angular radius of the sun seen from the earth, in degrees.
 const SUN_RADIUS: f64 = 0.27;
 
-/// The largest number that a colour of light is multiplied by; what falls off with the square of a distance may be
-/// more.
+/// The largest strength or radiance, by which a colour of light is multiplied.
 const STRONGEST: f64 = 1e6;
+
+/// The largest intensity. It may be more, because the light falls off with the square of the distance.
 const MOST_INTENSE: f64 = 1e18;
 
-/// Where a light is, as far as directions say it.
+/// The two keys that can give the direction of a light.
 struct Aim {
     toward: Option<Spanned<Vector>>,
     direction: Option<Spanned<Vector>>,
 }
 
 impl Aim {
-    /// The direction towards the light.
+    /// Returns the direction from the scene to the light.
     fn toward(self, lines: &Lines<'_>, table: Span) -> Result<DVec3, SceneFileError> {
         let (key, vector, sign) = match (self.toward, self.direction) {
             (Some(toward), None) => ("toward", toward, 1.0),
             (None, Some(direction)) => ("direction", direction, -1.0),
             (Some(_), Some(direction)) => {
                 return Err(lines.span(direction.span().start).error(
-                    "`toward` and `direction` are opposite ways to say the same; drop one",
+                    "`toward` and `direction` both set the direction of the light; remove one of them",
                 ));
             }
             (None, None) => {
                 return Err(table.error(
-                    "the light has no direction; write `toward = [x, y, z]`, where it is, or \
-                     `direction`, where it shines",
+                    "the light has no direction; add `toward = [x, y, z]`, the direction to the light, or \
+                     `direction = [x, y, z]`, the direction in which it shines",
                 ));
             }
         };
@@ -98,14 +99,16 @@ impl Aim {
         unit(toward).map(|_| toward).ok_or_else(|| {
             let [x, y, z] = vector.get_ref().0;
             let span = lines.span(vector.span().start);
-            span.error(format!("`{key}` is [{x:?}, {y:?}, {z:?}], which is no direction"))
+            span.error(format!(
+                "`{key}` is [{x:?}, {y:?}, {z:?}], which is not a valid direction; its length must not be 0"
+            ))
         })
     }
 }
 
-/// The angular radius in radians.
+/// Returns the angular radius in radians. The `default` is in degrees.
 fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> {
-    // The least that a light may have, in radians, is 0.001.
+    // The renderer accepts 0.001 radians or more; this is the next round number in degrees.
     const LEAST: f64 = 0.06;
     let within = |key, most, range| {
         let given = keys.within(key, [0.0, most], range)?;
@@ -117,16 +120,16 @@ fn angular_radius(keys: &Keys<'_>, default: f64) -> Result<f64, SceneFileError> 
     let radius = within("angular_radius", 90.0, "0, or from 0.06 to 90 degrees")?;
     let diameter = within("angular_diameter", 180.0, "0, or from 0.12 to 180 degrees")?;
     match (radius, diameter) {
-        (Some(_), Some(_)) => Err(keys
-            .table
-            .error("`angular_radius` and `angular_diameter` exclude each other; drop one")),
+        (Some(_), Some(_)) => Err(keys.table.error(
+            "`angular_radius` and `angular_diameter` exclude each other; remove one of them",
+        )),
         (radius, diameter) => {
             Ok(radius.or(diameter.map(|d| d / 2.0)).unwrap_or(default).to_radians())
         }
     }
 }
 
-/// The light's colour times the number of a key.
+/// Returns the light's colour multiplied by the number of a key.
 fn times(
     color: Option<ColorValue>,
     keys: &Keys<'_>,
@@ -148,7 +151,9 @@ fn position(
 ) -> Result<DVec3, SceneFileError> {
     let Some(vector) = vector else {
         let kind = kind.name();
-        return Err(keys.table.error(format!("a {kind} light needs a `position = [x, y, z]`")));
+        return Err(keys
+            .table
+            .error(format!("a {kind} light needs a position; add `position = [x, y, z]`")));
     };
     let position = vector.get_ref().0;
     if position.iter().all(|x| x.abs() <= MAX_LENGTH) {
@@ -210,7 +215,11 @@ pub(super) fn read(
             let radius = keys.within("radius", [MIN_LENGTH, MAX_LENGTH], range)?;
             LightKind::Sphere {
                 center: position(table.position, kind, &keys)?,
-                radius: radius.ok_or_else(|| span.error("a sphere light needs a `radius`"))?,
+                radius: radius.ok_or_else(|| {
+                    span.error(
+                        "a sphere light needs a radius; add `radius`, a length greater than 0",
+                    )
+                })?,
                 radiance: times(table.color, &keys, "radiance")?,
             }
         }

@@ -1,4 +1,4 @@
-//! What a scene file says of light: tables in, checked settings out.
+//! Reads the tables of a scene file that concern light, and makes checked render settings of them.
 
 use std::ops::Range;
 
@@ -33,22 +33,22 @@ use crate::render::{Integrator, PathTracing, RenderSettings, Sampling, SettingsE
 use crate::scene::Scene;
 use crate::scene::material::Material;
 
-/// How a picture is made, by name.
+/// The integrators that a scene file can name. The integrator computes the colour of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
-    /// By what a pixel's ray meets first, without lights.
+    /// Primary rays: a pixel shows what its ray meets first, without lights.
     #[default]
     Primary,
-    /// Directly from lights to surfaces.
+    /// Studio light: light goes directly from the lights to the surfaces.
     Studio,
-    /// As it is scattered.
+    /// Path tracing: light is followed as surfaces scatter it.
     Path,
 }
 
-/// The tables, as they stand at the top of the file.
+/// The keys and tables at the top of the file that concern light.
 pub(super) struct LightingTables {
-    /// Where the key for pictures without light is.
+    /// Offset in bytes of the key `shading`, which applies to pictures without light.
     pub(super) shading: Option<usize>,
     pub(super) integrator: Option<IntegratorKind>,
     pub(super) studio: Option<Spanned<Table<StudioTable>>>,
@@ -58,11 +58,11 @@ pub(super) struct LightingTables {
     pub(super) sky: Option<Spanned<Table<SkyTable>>>,
     pub(super) sun: Option<Spanned<Table<SunTable>>>,
     pub(super) ground: Option<Spanned<Table<GroundTable>>>,
-    /// Whether surfaces are to be more than matt and opaque.
+    /// Whether any surface is not matt and opaque.
     pub(super) has_materials: bool,
 }
 
-/// What the tables say, checked as far as it can be without a scene.
+/// The contents of the tables, checked as far as that is possible without a scene.
 #[derive(Debug)]
 pub(super) struct SceneLighting {
     integrator: Option<IntegratorKind>,
@@ -70,7 +70,7 @@ pub(super) struct SceneLighting {
     path: PathTracing,
     is_denoised: bool,
     sampling: Sampling,
-    /// `None` if the file says nothing of light that comes from elsewhere than spheres.
+    /// The lights and the sun; `None` if the file names neither lights nor a sun nor a sky.
     lights: Option<Vec<Light>>,
     sky: Option<SkyPlan>,
     ground: Option<WithSpan<GroundPlan>>,
@@ -95,7 +95,7 @@ impl LightingTables {
         })
     }
 
-    /// What the file says, or what it says that only a lit picture has.
+    /// Returns the integrator that the file names, or else the one that its tables and materials need.
     fn integrator(&self, lines: &Lines<'_>) -> Result<Option<IntegratorKind>, SceneFileError> {
         let of_paths = [("[path]", range_of(&self.path)), ("[sky]", range_of(&self.sky))];
         let of_studio = [("[studio]", range_of(&self.studio))];
@@ -112,15 +112,16 @@ impl LightingTables {
         let of_any = || first(&of_paths).or(first(&of_studio)).or(first(&of_both));
         if let (Some(IntegratorKind::Primary), Some((table, start))) = (self.integrator, of_any()) {
             return Err(lines.span(start).error(format!(
-                "`{table}` is for pictures with light, and `integrator = \"primary\"` makes one without; drop one"
+                "`{table}` applies only to pictures with light, but `integrator = \"primary\"` makes a picture without \
+                 light; remove one of them"
             )));
         }
         let kind = match (self.integrator, first(&of_paths), first(&of_studio)) {
             (Some(kind), ..) => Some(kind),
             (None, Some((table, start)), Some(_)) => {
                 return Err(lines.span(start).error(format!(
-                    "`{table}` is for paths and `[studio]` for a studio; say which with \
-                     `integrator = \"path\"` or `integrator = \"studio\"`"
+                    "`{table}` applies to the integrator `path` and `[studio]` to the integrator `studio`; choose one \
+                     with `integrator = \"path\"` or `integrator = \"studio\"`"
                 )));
             }
             (None, Some(_), None) => Some(IntegratorKind::Path),
@@ -131,7 +132,7 @@ impl LightingTables {
         };
         match (kind, self.shading) {
             (Some(IntegratorKind::Studio | IntegratorKind::Path), Some(start)) => Err(lines.span(start).error(
-                "`shading` is for pictures without light, and this file asks for light; drop one",
+                "`shading` applies only to pictures without light, but this file asks for light; remove `shading`",
             )),
             _ => Ok(kind),
         }
@@ -139,25 +140,26 @@ impl LightingTables {
 }
 
 impl SceneFile {
-    /// How the picture is made, if the file says so: by the key `integrator`, or by a table, material or opacity that
-    /// only a lit picture shows. A file that says nothing asks for primary rays.
+    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity that
+    /// needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
     #[must_use]
     pub fn integrator(&self) -> Option<IntegratorKind> {
         self.lighting.integrator
     }
 
-    /// The image of the sky that paths need, relative to the scene file.
+    /// Returns the path of the sky image, relative to the scene file. Only the integrator `path` needs the image.
     #[must_use]
     pub fn sky_image(&self) -> Option<&str> {
         self.lighting.sky.as_ref()?.image()
     }
 
-    /// The settings, for an integrator that need not be the file's own; what it does not use is left out. A file that
-    /// names lights, a sun or a sky gets no others; what is left open follows the scene and, for the depth cue, the
-    /// camera. Transparency is for the caller to decide.
+    /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
+    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there are
+    /// the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is the
+    /// image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
     ///
     /// # Errors
-    /// Of a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
+    /// For a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
     /// image of the sky is needed and not given.
     pub fn settings(
         &self,
@@ -178,7 +180,7 @@ impl SceneFile {
             }
             IntegratorKind::Path => Integrator::Path(says.path),
         };
-        // Only paths are lit by a sky, and only they need its image.
+        // Only path tracing is lit by a sky and needs its image.
         let sky = match &says.sky {
             _ if kind == IntegratorKind::Studio => defaults.sky,
             Some(sky) => sky.sky(image)?,
@@ -199,7 +201,7 @@ impl SceneFile {
         settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
     }
 
-    /// Refuses spheres of this file that would create light.
+    /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
     fn check_colors(&self) -> Result<(), SceneFileError> {
         for (index, sphere) in self.spheres.iter().enumerate() {
             let (color, surface) = (sphere.value.color, sphere.value.surface);
@@ -218,7 +220,8 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Of what is left when all tables, and the spheres of this file, have been checked.
+    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been checked
+    /// before, so only a few errors are left.
     fn span_of(&self, error: &SettingsError) -> Span {
         let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
         let data = || self.data.as_ref().map(|data| data.span);

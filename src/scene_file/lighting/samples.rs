@@ -1,4 +1,4 @@
-//! The tables `[sampling]` and `[path]`.
+//! Reads the tables `[sampling]` and `[path]`.
 
 use serde::Deserialize;
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! The table `[sky]`.
+//! Reads the table `[sky]`.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::scene_file::span::{
 };
 use crate::scene_file::value::{ColorValue, scaled};
 
-/// What a sky is, by name.
+/// The kinds of skies that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
@@ -47,7 +47,7 @@ pub(in crate::scene_file) struct SkyTable {
     visible: Option<bool>,
 }
 
-/// A sky but for its image.
+/// The sky as the file gives it; its image is not loaded yet.
 #[derive(Debug)]
 pub(super) struct SkyPlan {
     light: SkyPlanLight,
@@ -87,7 +87,7 @@ impl SkyPlan {
             let color = value.map_or(LinearRgb::gray(default), |color| color.into_inner().0);
             scaled(color, strength, "the sky").map_err(|error| span.error(error))
         };
-        // Without numbers of its own, the gradient of a sky that no file describes.
+        // The defaults of the gradient are those of the sky without a scene file.
         let light = match kind {
             Kind::Constant => SkyPlanLight::Known(SkyLight::Constant(color(table.color, 1.0)?)),
             Kind::Gradient => SkyPlanLight::Known(SkyLight::Gradient {
@@ -99,7 +99,7 @@ impl SkyPlan {
                 let range = "from -36000 to 36000 degrees";
                 let degrees = keys.within("rotation", [-36e3, 36e3], range)?.unwrap_or(0.0);
                 let file = table.image.ok_or_else(|| {
-                    span.error("an image needs a file; write `image = \"FILE.hdr\"`, or .exr")
+                    span.error("a sky of the kind `image` needs a file; add `image = \"FILE.hdr\"`, or .exr")
                 })?;
                 SkyPlanLight::Image {
                     file: lines.spanned(file),
@@ -122,9 +122,9 @@ impl SkyPlan {
         let light = match &self.light {
             SkyPlanLight::Known(light) => light.clone(),
             SkyPlanLight::Image { file, strength, rotation } => SkyLight::Image {
-                environment: Arc::new(
-                    image.ok_or_else(|| file.span.error("this image was not given"))?,
-                ),
+                environment: Arc::new(image.ok_or_else(|| {
+                    file.span.error("the settings need this image of the sky, which was not given")
+                })?),
                 strength: *strength,
                 rotation: *rotation,
             },

@@ -1,4 +1,4 @@
-//! The table `[studio]` and those in it.
+//! Reads the table `[studio]` and the tables inside it.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -48,7 +48,7 @@ struct OutlineTable {
     angle: Option<Number>,
 }
 
-/// A studio but for what follows the scene.
+/// The studio as the file gives it; missing values of the depth cue follow from the scene.
 #[derive(Debug)]
 pub(super) struct StudioPlan {
     studio: Studio,
@@ -85,7 +85,7 @@ impl StudioPlan {
         Ok(Self { studio: Studio { occlusion, outline, ..bare }, depth_cue })
     }
 
-    /// The studio for a scene that a camera sees.
+    /// Returns the studio for a scene and a camera.
     pub(super) fn studio(
         &self,
         scene: &Scene,
@@ -105,7 +105,7 @@ impl StudioPlan {
     }
 }
 
-/// From where to where, seen from the camera, there are spheres at most.
+/// Returns bounds of the distances from the camera at which there are spheres.
 fn reach(scene: &Scene, camera: &dyn Camera) -> [f64; 2] {
     let bounds = scene.bounds_to_frame();
     let distance = (bounds.center() - camera.vectors().origin).length();
@@ -113,7 +113,7 @@ fn reach(scene: &Scene, camera: &dyn Camera) -> [f64; 2] {
     [(distance - radius).max(0.0), distance + radius].map(|length| length.min(MAX_LENGTH))
 }
 
-/// Checks what of the studio is not yet known to be right.
+/// Checks a studio. An error points to the key that it names.
 fn check(studio: &Studio, keys: &Keys<'_>) -> Result<(), SceneFileError> {
     studio.check().map_err(|error| keys.refused(&error))
 }
