@@ -1,4 +1,4 @@
-//! The device in use, as reports name it.
+//! The description of an adapter in reports.
 
 use serde::Serialize;
 
@@ -30,7 +30,7 @@ impl AdapterReport {
         }
     }
 
-    /// The one that a run comes from.
+    /// Describes the adapter that rendered a saved run.
     pub(super) fn of_run(provenance: &Provenance) -> Self {
         let Provenance { adapter, backend, device_type, driver, driver_info, .. } = provenance;
         Self {
@@ -42,13 +42,13 @@ impl AdapterReport {
         }
     }
 
-    /// Which clock tells how long it works.
+    /// Returns the clock that measures the work of this adapter.
     #[cfg(feature = "gpu")]
     pub(super) fn clock(&self) -> &'static str {
         if self.device_type == "Cpu" { HOST_CLOCK } else { DEVICE_CLOCK }
     }
 
-    /// On one line.
+    /// Describes the adapter on one line.
     pub(super) fn line(&self) -> String {
         let Self { name, backend, device_type, driver, driver_info } = self;
         format!("{name} ({backend}, {device_type}), driver: {driver} {driver_info}")

@@ -1,4 +1,4 @@
-//! Arguments as they are typed. What they mean is checked where it is used.
+//! The command line as clap parses it. Values are checked where they are used.
 
 use std::path::PathBuf;
 
@@ -13,11 +13,11 @@ use pinhole::accel::AccelChoice;
 use pinhole::image::tone::ToneCurve;
 use pinhole::load::Format;
 
-/// Ray traces spheres with compute shaders, without a display.
+/// Ray traces spheres with compute shaders, without a display, and checks its pictures.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
-    after_help = "Exit codes: 0 done; 1 the job failed, or would not fit; 2 wrong usage; 3 a check failed; \
+    after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
     130 stopped by a signal."
 )]
 pub(super) struct Arguments {
@@ -27,21 +27,21 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Render a scene file or a data file
+    /// Render a picture of a scene file or a data file
     Render(Box<RenderArgs>),
-    /// Render on an adapter, and decide of every pixel whether a conforming device may have made it
+    /// Render on an adapter, and check for every pixel whether a conforming device may have made it
     Verify(Box<VerifyArgs>),
-    /// Say what a render would take of the device and the machine, and whether it fits
+    /// Show how much memory a render would need on the device and the machine, and whether it fits
     #[cfg(feature = "gpu")]
     Plan(Box<PlanArgs>),
-    /// Measure structures on an adapter
+    /// Measure how fast an adapter traces rays with different acceleration structures
     #[cfg(feature = "gpu")]
     Bench(BenchArgs),
-    /// Write the scene file of three spheres into this folder and render it
+    /// Write an example scene file into the current folder and render it
     Demo(DemoArgs),
-    /// Write a file of made-up spheres, for trying things out and measuring
+    /// Write a file of generated spheres, for tests and measurements
     Generate(GenerateArgs),
-    /// List adapters, drivers, limits and features
+    /// List the adapters of this machine with their drivers, limits and features
     Info(InfoArgs),
 }
 
@@ -49,7 +49,7 @@ pub(super) enum Command {
 pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
-    /// The picture (.png, .exr), or - for PNG on standard output
+    /// File for the picture (.png or .exr), or - to write PNG to standard output
     #[arg(short, long, value_name = "OUT.png")]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -62,30 +62,30 @@ pub(super) struct RenderArgs {
     pub(super) device: DeviceArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Also write a layer (color, alpha, depth, normal, position, albedo, id, samples, variance): as a NumPy array,
-    /// or without a file into an .exr picture; may be repeated
+    /// Data layer to write in addition: LAYER=FILE.npy writes a NumPy array, and LAYER alone adds it to an .exr picture.
+    /// Layers are color, alpha, depth, normal, position, albedo, id, samples and variance; may be repeated
     #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
     pub(super) layers: Vec<String>,
-    /// How the pictures of a camera with two eyes are written [default: side-by-side]
+    /// How the two pictures of a stereo camera are written [default: side-by-side]
     #[arg(long, value_enum)]
     pub(super) stereo: Option<Stereo>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Stereo {
-    /// In one picture, twice as wide, the left eye's on the left
+    /// In one picture of twice the width, with the left eye on the left
     SideBySide,
-    /// In files of their own: OUT-left.png and OUT-right.png
+    /// In two files: OUT-left.png and OUT-right.png
     TwoFiles,
 }
 
-/// How the picture is written. [`super::encoding::EncodingFlags`] checks it.
+/// Flags for writing the picture. [`super::encoding::EncodingFlags`] checks them.
 #[derive(Debug, Args)]
 pub(super) struct EncodingArgs {
-    /// Bits of a sample of a PNG, 8 or 16 [default: the scene's, or 8]
+    /// Bits per channel of a PNG, 8 or 16 [default: the scene's, or 8]
     #[arg(long, value_name = "N")]
     pub(super) bits: Option<u32>,
-    /// No background: RGBA, with alpha where spheres are [default: the scene's, or false]
+    /// Make the background transparent: write RGBA, with alpha from the spheres [default: the scene's, or false]
     #[arg(
         long,
         value_name = "BOOL",
@@ -94,21 +94,21 @@ pub(super) struct EncodingArgs {
         default_missing_value = "true"
     )]
     pub(super) transparent: Option<bool>,
-    /// Make a PNG brighter by so many stops [default: the scene's, or 0]
+    /// Exposure of a PNG in stops from -32 to 32; each stop doubles the brightness [default: the scene's, or 0]
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub(super) exposure: Option<f32>,
-    /// How light that a PNG cannot show is brought into range [default: the scene's, or none]
+    /// Tone curve of a PNG, which brings light that is brighter than white into range [default: the scene's, or none]
     #[arg(long, value_enum)]
     pub(super) tone: Option<Tone>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Tone {
-    /// It is cut off
+    /// No curve: brighter light is clipped
     None,
-    /// A curve like film's, for each of red, green and blue
+    /// A curve like that of film, for red, green and blue separately
     Filmic,
-    /// AgX: strong light turns white
+    /// AgX: strong colors turn white
     Agx,
 }
 
@@ -122,33 +122,33 @@ impl From<Tone> for ToneCurve {
     }
 }
 
-/// What is shown, and from where. [`super::input::Source`] checks it.
+/// The scene and the view of it. [`super::input::Source`] checks them.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .npy, .npz; .bin with --format), which is framed by
-    /// itself
+    /// File to render: a scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .npy, .npz; .bin with --format), which
+    /// the camera frames automatically
     #[arg(value_name = "SCENE_OR_DATA")]
     pub(super) path: PathBuf,
     #[command(flatten)]
     pub(super) view: ViewArgs,
 }
 
-/// What flags say of an input.
+/// Flags for reading the input, and for the camera.
 #[derive(Debug, Args)]
 pub(super) struct ViewArgs {
-    /// What a data file is, whatever its extension says
+    /// Format of the data file, whatever its extension is
     #[arg(long, value_parser = format_parser())]
     pub(super) format: Option<&'static Format>,
-    /// The radius of all spheres of an array of shape (n, 3)
+    /// Radius of all spheres, for data without radii: an array of shape (n, 3)
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(super) radius: Option<f64>,
-    /// The CSS color of all spheres of data without colors [default: #cccccc]
+    /// CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]
     #[arg(long, value_name = "CSS")]
     pub(super) color: Option<String>,
-    /// Which frame of a trajectory, counted from 0 [default: the scene's, or 0]
+    /// Frame of a trajectory, counted from 0 [default: the scene's, or 0]
     #[arg(long, value_name = "N")]
     pub(super) frame: Option<usize>,
-    /// Size in pixels, such as 800x600 [default: the scene's, or 800x600]
+    /// Width and height of the picture in pixels, such as 800x600 [default: the scene's, or 800x600]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
     #[command(flatten)]
@@ -163,66 +163,66 @@ pub(super) struct DemoArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct GenerateArgs {
-    /// What the spheres look like
+    /// Arrangement of the spheres
     #[arg(value_name = "KIND", value_parser = kinds())]
     pub(super) kind: String,
-    /// How many spheres
+    /// Number of spheres
     #[arg(short = 'n', value_name = "N")]
     pub(super) count: u64,
-    /// The file: a NumPy array (.npy), or raw f32 (.bin), x, y, z, radius
+    /// File for the spheres: a NumPy array (.npy) or raw little-endian f32 (.bin) of x, y, z, radius
     #[arg(short, long, value_name = "OUT.npy")]
     pub(super) output: PathBuf,
-    /// The same kind, number and seed give the same file on every machine
+    /// Seed of the random numbers: the same kind, number and seed give the same file on every machine
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(super) seed: u64,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct DeviceArgs {
-    /// What renders: a GPU if there is an adapter, a GPU, or the CPU reference
+    /// What renders the picture
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub(super) backend: Backend,
     #[command(flatten)]
     pub(super) adapter: AdapterArgs,
 }
 
-/// Which device, and what of it.
+/// Flags that choose the adapter and its limits.
 #[derive(Debug, Args)]
 pub(super) struct AdapterArgs {
-    /// The adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best one]
+    /// Use the adapter whose name contains this text [default: `WGPU_ADAPTER_NAME`, or the best adapter]
     #[arg(long, value_name = "NAME")]
     pub(super) adapter: Option<String>,
-    /// The limits that the device is opened with [default: adapter]
+    /// Limits of the device that the program may use [default: adapter]
     #[arg(long, value_enum)]
     pub(super) limits: Option<Limits>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Limits {
-    /// All that the adapter has
+    /// All limits that the adapter offers
     Adapter,
-    /// WebGPU's defaults, or less where the adapter has less
+    /// The default limits of WebGPU, or less where the adapter offers less
     Webgpu,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct AccelArgs {
-    /// What finds the spheres of a ray on an adapter [default: auto]
+    /// Acceleration structure with which an adapter finds the spheres that a ray hits [default: auto]
     #[arg(long, value_enum)]
     pub(super) accel: Option<Structure>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Structure {
-    /// What suits the spheres
+    /// The structure that suits the scene best
     Auto,
-    /// A grid of cells, nested where it is crowded
+    /// A grid of cells, with nested grids where spheres are dense
     Grid,
-    /// A tree with eight children a node (BVH8)
+    /// A tree with eight children per node (BVH8)
     Tree,
-    /// A tree with two children a node (BVH2): slower, a second opinion
+    /// A tree with two children per node (BVH2): slower, for comparison
     BinaryTree,
-    /// Every sphere for every ray: slow, a second opinion
+    /// No structure, every ray tests every sphere: slow, for comparison
     List,
 }
 
@@ -238,7 +238,8 @@ impl From<Structure> for AccelChoice {
     }
 }
 
-/// Arguments of `verify` that say what is rendered, and by what; a recording has all that in it.
+/// Arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay` excludes
+/// them.
 const RENDERING: [&str; 27] = [
     "path",
     "format",
@@ -271,20 +272,20 @@ const RENDERING: [&str; 27] = [
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "What is checked, in f64 and with a bound for every rounding that WGSL leaves open: the numbers \
-    that the device was given, every ray, hit, depth, normal and color. Where several answers are legal, the one \
-    given must be among them. The CPU reference never stands in for an adapter.\n\n\
+    after_help = "The check covers the data on the device and every ray, hit, depth, normal and color. It computes in \
+    f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
+    given one of them. The CPU reference never replaces an adapter here.\n\n\
     Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
     or RUN is damaged; 2 wrong usage; 3 the picture is not legal.\n\n\
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
-    `decided_fraction`, `worst_depth` and `worst_normal` (of their bounds), `upload` (null, or what is wrong), \
-    `violations` (the first hundred: pixel, stage, message), `paths` (where light is followed along paths: paths, \
+    `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
+    wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
     stages, upload, violation_count, violations, legal), `legal`, `command`. `version` and `command` are those \
-    of the program that rendered. Keys may be added, not changed."
+    of the program that rendered. New versions may add keys, but do not change these."
 )]
 pub(super) struct VerifyArgs {
-    /// A scene file or a data file, as `render` takes them
+    /// File to check: a scene file or a data file, as for `render`
     #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]
     pub(super) path: Option<PathBuf>,
     #[command(flatten)]
@@ -293,20 +294,20 @@ pub(super) struct VerifyArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// How many samples of each pixel are followed and checked, bounce by bounce, of a scene whose integrator is
-    /// `path`; of a picture with a side of more than 256 pixels, those in its middle [default: 1]
+    /// Samples of each pixel whose light paths are checked bounce by bounce, for scenes with the integrator `path`. In a
+    /// picture with a side of more than 256 pixels, only the middle is checked [default: 1]
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub(super) paths: Option<u32>,
-    /// Also write what was found as JSON
+    /// Also write the results to this file as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
-    /// Also write a page for people, report.html, into this folder; it is created if it is missing
+    /// Also write the results as a web page, report.html, into this folder, which is created if it is missing
     #[arg(long, value_name = "DIR")]
     pub(super) report: Option<PathBuf>,
-    /// Also keep scene and recording in a file, for --replay
+    /// Also save the scene and the recording to this file, for --replay
     #[arg(long, value_name = "RUN")]
     pub(super) save: Option<PathBuf>,
-    /// Check a recording that was saved; needs no adapter
+    /// Check a saved recording again; this needs no adapter
     #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING)]
     pub(super) replay: Option<PathBuf>,
 }
@@ -314,13 +315,13 @@ pub(super) struct VerifyArgs {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Nothing is allocated on the device. Exit codes: 0 it fits; 1 it does not, \
-    with the line that `render` would end with; 2 wrong usage.\n\n\
-    JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, reason, bricks), `picture` (width, height, \
-    tile_width, tile_height, tiles, submissions_at_least), `buffers` (name, bytes, bytes_per_binding, \
+    after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
+    and the error is that of `render`; 2 wrong usage.\n\n\
+    JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
+    reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), `buffers` (name, bytes, bytes_per_binding, \
     bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, `host_peak`, \
     `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
-    `problem`. Keys may be added, not changed."
+    `problem`. New versions may add keys, but do not change these."
 )]
 pub(super) struct PlanArgs {
     #[command(flatten)]
@@ -331,11 +332,11 @@ pub(super) struct PlanArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// A layer that would be written beside the picture (alpha, depth, normal, position, albedo, id, samples,
-    /// variance); may be repeated
+    /// Data layer that would be written in addition (alpha, depth, normal, position, albedo, id, samples, variance); may
+    /// be repeated
     #[arg(long = "layer", value_name = "LAYER")]
     pub(super) layers: Vec<String>,
-    /// Print JSON
+    /// Print the results as JSON
     #[arg(long)]
     pub(super) json: bool,
 }
@@ -343,45 +344,49 @@ pub(super) struct PlanArgs {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Each scene is measured with what --accel auto chooses for many pictures and with the other \
-    of grid and tree. Rays go through the centres of all pixels; `any` asks only whether there is a hit. \
-    Times are medians; the peak of the process's memory only grows. Exit codes: as of `render`.\n\n\
+    after_help = "Each scene is measured with the structure that --accel auto chooses for many pictures, and with the \
+    other of grid and tree. Rays go through the centers of all pixels; `any` asks only whether there is a hit. \
+    Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of `render`.\n\n\
     JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
     trace_device, any_wall, any_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
     any_rays_per_second, submissions, longest_submission_seconds, device_bytes, device_bytes_per_sphere, \
-    peak_memory_bytes. Keys may be added, not changed."
+    peak_memory_bytes. New versions may add keys, but do not change these."
 )]
 pub(super) struct BenchArgs {
-    /// R1M, R10M, L1M, C200k, or a scene or data file; R10M takes most of a GiB [default: R1M L1M C200k]
+    /// Scenes to measure: R1M, R10M, L1M, C200k, or scene or data files; R10M needs almost 1 GiB of memory
+    /// [default: R1M L1M C200k]
     #[arg(value_name = "SCENE")]
     pub(super) scenes: Vec<PathBuf>,
-    /// Size in pixels [default: 1024x1024, or the file's]
+    /// Width and height of the pictures in pixels [default: 1024x1024, or the file's]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<String>,
-    /// What the data files are, whatever their extensions say
+    /// Format of the data files, whatever their extensions are
     #[arg(long, value_parser = format_parser())]
     pub(super) format: Option<&'static Format>,
-    /// The radius of all spheres of arrays of shape (n, 3)
+    /// Radius of all spheres, for data without radii: arrays of shape (n, 3)
     #[arg(long, value_name = "R")]
     pub(super) radius: Option<f64>,
-    /// Only these structures, with commas between them
+    /// Measure only these acceleration structures, separated by commas
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(super) accel: Vec<Structure>,
-    /// How often each is measured
+    /// Number of measurements of each structure
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) reps: u32,
     #[command(flatten)]
     pub(super) adapter: AdapterArgs,
-    /// Print JSON
+    /// Print the results as JSON
     #[arg(long)]
     pub(super) json: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Backend {
+    /// An adapter (GPU) if there is one, otherwise the CPU reference
     Auto,
+    /// An adapter (GPU); without one, the job fails
     Gpu,
+    /// The CPU reference, which is slower
     Cpu,
 }
 
@@ -389,20 +394,20 @@ pub(super) enum Backend {
 #[cfg_attr(
     feature = "gpu",
     command(
-        after_help = "The self-test has the adapter compute, and judges whether it keeps what bounds of errors \
-    count on. Exit codes: 0 done; 1 there is no adapter, or it fails to compute; 2 wrong usage; 3 it computes, \
-    but a property fails.\n\n\
+        after_help = "The self-test runs computations on the adapter and checks the properties that the error bounds \
+    of `verify` rely on. Exit codes: 0 done; 1 there is no adapter, or it cannot compute; 2 wrong usage; 3 it \
+    computes, but a property fails.\n\n\
     JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
     `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
-    outcome (ok, note, FAILED), words, figures. Keys may be added, not changed."
+    outcome (ok, note, FAILED), words, figures. New versions may add keys, but do not change these."
     )
 )]
 pub(super) struct InfoArgs {
-    /// Test whether an adapter computes as bounds of errors assume
+    /// Test whether an adapter computes as precisely as the error bounds of `verify` assume
     #[cfg(feature = "gpu")]
     #[arg(long)]
     pub(super) self_test: bool,
-    /// The adapter to test, whose name contains this text [default: the one that `render` would use]
+    /// Test the adapter whose name contains this text [default: the adapter that `render` would use]
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "NAME")]
     pub(super) adapter: Option<String>,
@@ -411,7 +416,7 @@ pub(super) struct InfoArgs {
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "DIR", conflicts_with_all = ["self_test", "adapter", "json"])]
     pub(super) dump_shaders: Option<PathBuf>,
-    /// Print JSON
+    /// Print the results as JSON
     #[arg(long)]
     pub(super) json: bool,
 }
@@ -423,7 +428,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_recording_excludes_whatever_says_what_is_rendered() {
+    fn replay_excludes_all_arguments_that_describe_the_picture() {
         let arguments = Arguments::command();
         let verify = arguments.find_subcommand("verify").unwrap();
         let others = ["json", "report", "replay", "help"];

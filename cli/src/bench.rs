@@ -1,4 +1,4 @@
-//! `pinhole bench`: structures measured on an adapter, and whether the choice between them was right.
+//! `pinhole bench`: measures acceleration structures on an adapter, and shows whether the automatic choice is fastest.
 
 use std::time::Instant;
 
@@ -50,12 +50,14 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         report.scenes.push(measured);
     }
     if args.json {
-        say(&(serde_json::to_string_pretty(&report).context("the report")? + "\n"))?;
+        say(&(serde_json::to_string_pretty(&report)
+            .context("the report cannot be written as JSON")?
+            + "\n"))?;
     }
     Ok(())
 }
 
-/// As soon as it is known: all scenes take minutes.
+/// Prints a part of the report at once, because all scenes together take minutes.
 fn say(text: &str) -> Result<(), Failure> {
     progress::clear();
     Ok(answer(text.as_bytes()).context("standard output: cannot be written")?)
@@ -82,7 +84,7 @@ fn measure_scene(
     Ok(SceneReport::new(scene, runs))
 }
 
-/// One structure, from planning it to tracing it.
+/// Measures one structure, from planning to tracing.
 fn measure(
     headless: &Headless,
     scene: &BenchScene,
@@ -101,13 +103,13 @@ fn measure(
         layers: LayerSet::COLOR,
         host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
     };
-    // For many pictures, not for this one.
+    // The structure is chosen as for many pictures, not for this one alone.
     let accel = headless.plan_accel(spheres, choice);
     let structures = StructurePlans { accel, occluders: None };
     let plan = RenderPlan::new(&request, structures, &headless.device_limits());
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
     tell(format_args!(
-        "{name}: {}, at most {} on the device, and {} of the host's memory beside the scene and the driver",
+        "{name}: {}; at most {} of memory on the device, and {} on the host in addition to the scene and the driver",
         plan.accel.structure.name(),
         memory::readable(plan.device_bytes),
         memory::readable(plan.host_bytes),
@@ -134,7 +136,7 @@ fn measure(
     let repeat = |query| repeat(headless, &buffers, name, &view, query, reps);
     let (nearest, any) = (repeat(Query::Nearest)?, repeat(Query::Any)?);
     let longest = nearest.iter().map(|time| time.longest).max().unwrap_or_default();
-    // The scene as it was built; the frame as it was planned.
+    // The scene counts as it was built, and the frame as it was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
     let device_bytes = buffers.bytes() + frame.sum::<u64>();
     let clock = AdapterReport::of(headless).clock();
@@ -171,7 +173,7 @@ fn measure(
     })
 }
 
-/// Traces the whole picture a number of times.
+/// Traces the whole picture several times.
 fn repeat(
     headless: &Headless,
     buffers: &SceneBuffers,

@@ -1,4 +1,4 @@
-//! What `pinhole bench` found, as JSON and for people.
+//! The report of `pinhole bench`, as JSON and as text.
 
 use std::time::Duration;
 
@@ -9,10 +9,10 @@ use super::bench_scene::BenchScene;
 use super::memory::readable;
 use super::table::table;
 
-/// A device's own clock.
+/// Name of the device's own clock.
 pub(super) const DEVICE_CLOCK: &str = "device";
 
-/// The host's. A software device's own says when commands were queued, not when they ran.
+/// Name of the host's clock. The clock of a software device measures when commands were queued, not when they ran.
 pub(super) const HOST_CLOCK: &str = "host";
 
 /// The JSON document.
@@ -24,7 +24,7 @@ pub(super) struct BenchReport {
     pub(super) scenes: Vec<SceneReport>,
 }
 
-/// A scene, with every structure that it was measured with.
+/// A scene with the measurements of every structure.
 #[derive(Serialize)]
 pub(super) struct SceneReport {
     name: String,
@@ -33,39 +33,39 @@ pub(super) struct SceneReport {
     height: u32,
     load_seconds: f64,
     runs: Vec<RunReport>,
-    /// Which structure was faster, where there are several.
+    /// A comparison of the structures, if there are several.
     note: Option<String>,
 }
 
-/// A structure.
+/// The measurements of one structure.
 #[derive(Serialize)]
 pub(super) struct RunReport {
     pub(super) choice: String,
     pub(super) structure: &'static str,
     pub(super) reason: String,
-    /// With planning.
+    /// Time to build the structure, including planning.
     pub(super) build_seconds: f64,
     pub(super) upload_seconds: f64,
-    /// With the building of pipelines and the way back.
+    /// Time of the first picture, including the building of pipelines and the copy back to the host.
     pub(super) first_render_seconds: f64,
     pub(super) trace_wall: Option<Spread>,
-    /// By the device's clock, if it has one.
+    /// Tracing time by the device's clock, if it has one.
     pub(super) trace_device: Option<Spread>,
     pub(super) any_wall: Option<Spread>,
     pub(super) any_device: Option<Spread>,
-    /// Whose clock rates and comparisons go by: `device`, or `host`.
+    /// Clock that the rates and the comparison use: `device` or `host`.
     pub(super) clock: &'static str,
     pub(super) rays: u64,
-    /// Of nearest hits, from the median by that clock.
+    /// Rate of nearest hits, from the median time by that clock.
     pub(super) rays_per_second: Option<f64>,
-    /// The same of any hits.
+    /// Rate of any hits, from the median time by that clock.
     pub(super) any_rays_per_second: Option<f64>,
     pub(super) submissions: u32,
     pub(super) longest_submission_seconds: f64,
-    /// Of scene and frame.
+    /// Memory on the device for the scene and the frame.
     pub(super) device_bytes: u64,
     pub(super) device_bytes_per_sphere: Option<f64>,
-    /// Of the process so far.
+    /// Largest memory use of the process so far.
     pub(super) peak_memory_bytes: Option<u64>,
 }
 
@@ -77,7 +77,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// `None` if there is no time, or one is not known.
+    /// Returns `None` if there are no times, or if one of them is not known.
     pub(super) fn of(times: impl Iterator<Item = Option<Duration>>) -> Option<Self> {
         let mut times: Vec<Duration> = times.collect::<Option<_>>()?;
         times.sort_unstable();
@@ -186,7 +186,7 @@ fn compared(runs: &[RunReport]) -> Option<String> {
     let (name, other) = (first.structure, other.structure);
     let chose = format!("{} chose {name}; {other} is", first.choice);
     let percent = |fast: f64, slow: f64| (fast / slow - 1.0) * 100.0;
-    // By time, as people speak of it.
+    // The percentage compares rates, so "faster" means more rays per second.
     Some(if theirs > own {
         format!("{chose} {:.0} % faster", percent(theirs, own))
     } else {
@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spread_is_of_all_times() {
+    fn a_spread_needs_all_times() {
         let seconds = |s: u64| Some(Duration::from_secs(s));
         let spread = Spread::of([seconds(5), seconds(1), seconds(3)].into_iter());
         assert_eq!(spread, Some(Spread { median_seconds: 3.0, best_seconds: 1.0 }));

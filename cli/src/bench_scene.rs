@@ -1,4 +1,4 @@
-//! A scene that is measured: one of the standard ones, or a file.
+//! Scenes for `pinhole bench`: standard scenes and files.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -19,16 +19,16 @@ use pinhole::scene::Scene;
 use pinhole::scene_file::DEFAULT_COLOR;
 use pinhole::text::one_line;
 
-/// What is measured where nothing is named: what any machine has memory for.
+/// The scenes to measure by default; any machine has enough memory for them.
 pub(super) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];
 
-/// A scene that was named.
+/// A scene as it was named on the command line.
 pub(super) enum BenchSource {
     Standard(Standard),
     File(PathBuf, Box<Source>),
 }
 
-/// A scene that was made or read.
+/// A scene that was generated or read.
 pub(super) struct BenchScene {
     pub(super) name: String,
     pub(super) scene: Scene,
@@ -38,7 +38,7 @@ pub(super) struct BenchScene {
 }
 
 impl BenchSource {
-    /// A standard scene of this name, or a file.
+    /// Finds the standard scene of this name, or takes the name as that of a file.
     pub(super) fn new(
         named: &Path,
         args: &BenchArgs,
@@ -50,7 +50,7 @@ impl BenchSource {
             None if named.extension().is_none() => {
                 let names: Vec<_> = Standard::ALL.iter().map(|standard| standard.name()).collect();
                 Err(Failure::usage(format!(
-                    "{}: this is neither a standard scene ({}) nor a file with an extension",
+                    "{}: this is neither a standard scene nor a file with an extension; name one of {} or a file",
                     named.display(),
                     names.join(", ")
                 )))
@@ -61,7 +61,7 @@ impl BenchSource {
         }
     }
 
-    /// Makes or reads it; says how much memory a made one takes, and refuses it where that is not there.
+    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not free.
     pub(super) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
         match self {
             Self::Standard(standard) => made(*standard, size),
@@ -90,7 +90,7 @@ fn made(standard: Standard, size: Option<(u32, u32)>) -> Result<BenchScene, Fail
     memory::check_bytes(&format!("{name}: {count} spheres need"), bytes, "a smaller scene")
         .map_err(anyhow::Error::msg)?;
     tell(format_args!("{name}: {count} spheres, {} of memory", memory::readable(bytes)));
-    progress::stage(format!("making {name}"));
+    progress::stage(format!("generating {name}"));
     let started = Instant::now();
     let spheres = standard.spheres().context(name)?;
     let scene = Scene::from_f32(spheres, LinearRgb::from_srgb8(DEFAULT_COLOR)).context(name)?;

@@ -1,4 +1,4 @@
-//! The camera on the command line. Its flags are the keys of a scene file's camera table.
+//! The camera flags of the command line. They correspond to the keys of a scene file's camera table.
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -8,63 +8,65 @@ use super::failure::Failure;
 use pinhole::camera::{CameraError, CameraKind, CameraParameters};
 use pinhole::geometry::bounds::Bounds;
 
-/// Of each flag, because clap puts whatever follows below a heading that is set once.
-const HEADING: &str = "Camera (any of these takes the place of the scene's camera)";
+/// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
+/// is set once.
+const HEADING: &str = "Camera (any of these flags replaces the camera of the scene)";
 
 #[derive(Debug, Args)]
 pub(super) struct CameraArgs {
-    /// Which camera [default: pinhole]
+    /// Kind of the camera [default: pinhole]
     #[arg(long, help_heading = HEADING, value_name = "KIND", value_parser = kinds())]
     camera: Option<String>,
-    /// Where the camera is; without it, the camera frames the scene
+    /// Position of the camera; without it, the camera frames the scene
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     eye: Option<[f64; 3]>,
-    /// The point it looks at
+    /// Point that the camera looks at
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     look_at: Option<[f64; 3]>,
-    /// The direction it looks in, instead of --look-at [default without --eye: 0,0,-1]
+    /// Direction in which the camera looks, instead of --look-at [default without --eye: 0,0,-1]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
-    /// Which way is up [default: 0,1,0]
+    /// Direction that is up in the picture [default: 0,1,0]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
     /// Vertical field of view in degrees (pinhole, thin-lens) [default: 30]
     #[arg(long, help_heading = HEADING, value_name = "DEGREES", allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// How far the view plane is from the eye (pinhole, thin-lens), with --half-extent [default: 1]
+    /// Distance from the eye to the view plane in scene units, with --half-extent (pinhole, thin-lens) [default: 1]
     #[arg(long, help_heading = HEADING, value_name = "D", allow_hyphen_values = true)]
     distance: Option<f64>,
-    /// Half width and half height of the view plane, instead of --fov
+    /// Half width and half height of the view plane in scene units, instead of --fov
     #[arg(long, help_heading = HEADING, value_name = "HX,HY", value_parser = numbers::<2>, allow_hyphen_values = true)]
     half_extent: Option<[f64; 2]>,
     /// Radius of the lens in scene units (thin-lens)
     #[arg(long, help_heading = HEADING, value_name = "R", allow_hyphen_values = true)]
     aperture_radius: Option<f64>,
-    /// Focal length over diameter of the lens, with --focal-length, instead of --aperture-radius (thin-lens)
+    /// F-number of the lens: focal length over diameter, with --focal-length, instead of --aperture-radius (thin-lens)
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     f_stop: Option<f64>,
-    /// In scene units; it only makes --f-stop a length (thin-lens)
+    /// Focal length of the lens in scene units, used only to turn --f-stop into an aperture (thin-lens)
     #[arg(long, help_heading = HEADING, value_name = "F", allow_hyphen_values = true)]
     focal_length: Option<f64>,
-    /// How far along the view things are sharp (thin-lens) [default: as far as --look-at, or the scene's middle]
+    /// Distance along the direction of view at which things are sharp, in scene units (thin-lens) [default: that of
+    /// --look-at, or of the middle of the scene]
     #[arg(long, help_heading = HEADING, value_name = "D", allow_hyphen_values = true)]
     focus_distance: Option<f64>,
-    /// A point that is sharp, instead of --focus-distance (thin-lens)
+    /// Point that is sharp, instead of --focus-distance (thin-lens)
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     focus_on: Option<[f64; 3]>,
-    /// The whole angle that the disk spans, in degrees (fisheye) [default: 180]
+    /// Full angle of view across the disk in degrees (fisheye) [default: 180]
     #[arg(long, help_heading = HEADING, value_name = "DEGREES", allow_hyphen_values = true)]
     angle: Option<f64>,
-    /// Two pictures, for eyes so far apart, in scene units (pinhole, panorama); see --stereo
+    /// Distance between two eyes in scene units, which renders a stereo pair (pinhole, panorama); see --stereo
     #[arg(long, help_heading = HEADING, value_name = "S", allow_hyphen_values = true)]
     separation: Option<f64>,
-    /// How far away things seem to lie in the screen, with --separation [default: infinitely far]
+    /// Distance in scene units at which things appear at the depth of the screen, with --separation [default: infinite]
     #[arg(long, help_heading = HEADING, value_name = "D", allow_hyphen_values = true)]
     convergence: Option<f64>,
 }
 
 impl CameraArgs {
-    /// The camera that the flags describe, if there is any, checked as far as it can be without a scene.
+    /// Returns the camera that the flags describe, if there are any, checked as far as is possible without a scene.
     pub(super) fn parameters(&self) -> Result<Option<CameraParameters>, Failure> {
         let mut table = toml::Table::new();
         for (key, _, value) in self.keys() {
@@ -88,10 +90,10 @@ impl CameraArgs {
         let document = toml::Table::from_iter([(kind.to_owned(), toml::Value::Table(table))]);
         let parameters = CameraParameters::deserialize(toml::Value::Table(document))
             .map_err(|error| self.unknown(kind, error.message()))?;
-        // What the flags say by themselves is wrong for any scene.
+        // An error in the flags themselves shows with any scene, so these bounds are arbitrary.
         let bounds = Bounds::of_sphere(pinhole::glam::DVec3::ZERO, 1.0);
         let checked = match parameters.camera(1.0, &bounds) {
-            // How far away the focus of a camera without a place is, only the scene says.
+            // For a camera without an eye position, the distance of the focus depends on the scene.
             Err(CameraError::Range { .. } | CameraError::Length { .. })
                 if kind == CameraKind::ThinLens.name() && self.eye.is_none() =>
             {
@@ -105,7 +107,7 @@ impl CameraArgs {
         }
     }
 
-    /// Every key of a camera's table, its flag and its value. What a camera does not know, it refuses.
+    /// Returns every key of a camera table with its flag and its value. Each camera refuses keys that it does not have.
     fn keys(&self) -> [(&'static str, &'static str, Option<toml::Value>); 15] {
         [
             ("eye", "--eye", self.eye.map(list)),
@@ -126,10 +128,10 @@ impl CameraArgs {
         ]
     }
 
-    /// What can be wrong with a table of numbers: it has a key that this camera has not, or of two eyes only half.
+    /// Returns the failure for a key that this kind of camera does not have, or for a stereo camera without separation.
     fn unknown(&self, kind: &str, message: &str) -> Failure {
         if message.starts_with("missing field `separation`") {
-            return Failure::usage("--convergence needs --separation");
+            return Failure::usage("--convergence needs --separation; add --separation");
         }
         let is_named = |key: &str| {
             let key = key.split('.').next().unwrap_or_default();
@@ -138,13 +140,13 @@ impl CameraArgs {
         let given = self.keys().into_iter().filter(|(.., value)| value.is_some());
         match given.into_iter().find(|(key, ..)| is_named(key)) {
             Some((_, flag, _)) => {
-                Failure::usage(format!("{flag} does not concern the {kind} camera; drop it"))
+                Failure::usage(format!("{flag} does not apply to the {kind} camera; remove it"))
             }
             None => Failure::usage(format!("--camera {kind}: {message}")),
         }
     }
 
-    /// The error with flags for keys.
+    /// Returns the message of an error, with flags in place of keys.
     fn in_flags(&self, error: &CameraError) -> String {
         self.keys().into_iter().fold(error.to_string(), |text, (key, flag, _)| {
             let key = key.rsplit('.').next().unwrap_or_default();
@@ -157,12 +159,12 @@ fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(CameraKind::ALL.iter().map(|kind| kind.name()))
 }
 
-/// Numbers as a table has them.
+/// Converts numbers to a TOML array.
 fn list<const N: usize>(numbers: [f64; N]) -> toml::Value {
     numbers.to_vec().into()
 }
 
-/// `N` numbers with commas between them.
+/// Parses `N` numbers that are separated by commas.
 fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let wanted = || format!("write {N} numbers with commas between them, such as {}", example(N));
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();

@@ -1,4 +1,4 @@
-//! Data: files of spheres, which flags concern them, and what their spheres look like.
+//! Reads data files, and checks the flags and keys that apply to them.
 
 use std::path::Path;
 
@@ -12,45 +12,45 @@ use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options};
 use super::failure::Failure;
 use super::memory;
 
-/// What flags and a scene file say of the data.
+/// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DataOptions {
-    /// Which frame of a trajectory.
+    /// Frame of a trajectory, from 0.
     pub(super) frame: Option<usize>,
-    /// The radius of all.
+    /// Radius of all spheres.
     pub(super) radius: Option<f64>,
-    /// The colour of all.
+    /// Colour of all spheres.
     pub(super) color: Option<LinearRgb>,
 }
 
-/// Reads the name of a format on the command line.
+/// Parses the name of a format on the command line.
 pub(super) fn format_parser() -> impl TypedValueParser<Value = &'static Format> {
     let value = |format: &Format| PossibleValue::new(format.name).help(format.about);
     PossibleValuesParser::new(FORMATS.iter().map(value))
-        .try_map(|name| Format::of_name(&name).ok_or("there is no such format"))
+        .try_map(|name| Format::of_name(&name).ok_or("this is not a valid format"))
 }
 
 impl DataOptions {
-    /// How the library is to read the file.
+    /// Returns the options for the library's reader.
     fn to_read(self) -> Options {
         let mut options = Options::default();
         (options.frame, options.radius) = (self.frame, self.radius);
         options
     }
 
-    /// Refuses what does not concern the format. The keys of a scene file and the flags have the same
-    /// names, but for `prefix`.
+    /// Refuses options that do not apply to the format. The keys of a scene file have the same names as the flags, but
+    /// without the `prefix`.
     pub(super) fn check(&self, format: &Format, prefix: &str) -> Result<(), String> {
         format.check(&self.to_read()).map_err(|error| format!("{prefix}{error}"))?;
         if self.color.is_some() && format.has_colors {
             return Err(format!(
-                "{prefix}color concerns data without colors; atoms have those of their elements"
+                "{prefix}color applies only to data without colors; remove it, because atoms have the colors of their elements"
             ));
         }
         Ok(())
     }
 
-    /// The flags where they are given, else what the scene file says.
+    /// Takes these options, which flags gave, and fills in missing ones from a scene file.
     pub(super) fn or(self, file: Self) -> Self {
         Self {
             frame: self.frame.or(file.frame),
@@ -60,7 +60,7 @@ impl DataOptions {
     }
 }
 
-/// Reads the contents of the file `path`. Notes name the file.
+/// Reads spheres from the contents of the file `path`. Errors and notes get the path in front.
 pub(super) fn read(
     bytes: &[u8],
     path: &Path,
@@ -70,7 +70,7 @@ pub(super) fn read(
     let file_name = || path.display().to_string();
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
-        let what = format!("{}: to read an array of {extra} bytes takes", path.display());
+        let what = format!("{}: reading an array of {extra} bytes needs", path.display());
         memory::check_reading(&what, extra).map_err(Error::msg)?;
     }
     let mut loaded = format.read(bytes, &options.to_read()).with_context(file_name)?;
@@ -80,7 +80,7 @@ pub(super) fn read(
     Ok(loaded)
 }
 
-/// An array with a radius too many or too few is mended with a flag, so it is wrong usage.
+/// Turns an error into a failure. An array without a radius, or with two, is wrong usage, because a flag corrects it.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
     let of_array = match error.downcast_ref::<LoadError>() {
         Some(LoadError::Npy(error) | LoadError::Npz(NpzError::Spheres { error, .. })) => {
@@ -92,7 +92,7 @@ pub(super) fn as_usage(error: anyhow::Error) -> Failure {
         Some(SpheresError::NoRadius { .. }) => {
             Failure::usage(format!("{error:#} (add --radius R)"))
         }
-        Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}; drop it")),
+        Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }
 }

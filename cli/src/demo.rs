@@ -1,4 +1,4 @@
-//! `pinhole demo`: a first scene file and its picture.
+//! `pinhole demo`: writes an example scene file and renders it.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -35,12 +35,12 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether the demo's scene file is there already. One that the user has changed is never overwritten.
+/// Whether the demo's scene file exists already. A file that the user has changed is refused, never overwritten.
 fn is_there(scene_file: &Path) -> Result<bool, Failure> {
     match std::fs::read(scene_file) {
         Ok(found) if found == SCENE.as_bytes() => Ok(true),
         Ok(_) => Err(Failure::usage(format!(
-            "{SCENE_FILE}: this file exists and is not the demo's; \
+            "{SCENE_FILE}: this file exists and differs from the demo's; \
              rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
         ))),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),

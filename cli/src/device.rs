@@ -1,4 +1,4 @@
-//! What renders, as it was asked for, and opening it.
+//! Chooses and opens what renders: an adapter or the CPU reference.
 
 use std::panic::resume_unwind;
 use std::thread::{self, ScopedJoinHandle};
@@ -11,23 +11,23 @@ use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
 
-/// What renders.
+/// What renders, as the flags ask for it.
 pub(super) enum Device {
     /// The CPU reference.
     Cpu,
     /// An adapter.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
     Adapter {
-        /// Which.
+        /// The adapter that the flags ask for.
         wanted: WantedAdapter,
-        /// What finds spheres.
+        /// The acceleration structure.
         choice: AccelChoice,
-        /// If there is no adapter at all, the CPU reference.
+        /// Whether the CPU reference renders if there is no adapter.
         or_cpu: bool,
     },
 }
 
-/// An adapter that is asked for.
+/// The adapter that the flags ask for; without a name, the best one.
 #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "read by the GPU path"))]
 pub(super) struct WantedAdapter {
     name: Option<String>,
@@ -46,44 +46,44 @@ impl Device {
         match (args.backend, given) {
             (Backend::Cpu, None) => Ok(Self::Cpu),
             (Backend::Cpu, Some((flag, _))) => Err(Failure::usage(format!(
-                "{flag} and --backend cpu exclude each other; drop one"
+                "{flag} and --backend cpu exclude each other; remove one of them"
             ))),
             (backend, given) => Ok(Self::Adapter {
                 wanted: WantedAdapter::new(&args.adapter),
                 choice: choice(accel),
-                // Who asks for something that the reference has not wants an adapter.
+                // A flag that only adapters have means that the user wants an adapter.
                 or_cpu: backend == Backend::Auto && given.is_none(),
             }),
         }
     }
 }
 
-/// What is asked for, where that is left open.
+/// Returns the structure that the flag asks for, or the automatic choice.
 pub(super) fn choice(accel: Option<Structure>) -> AccelChoice {
     accel.unwrap_or(Structure::Auto).into()
 }
 
-/// What renders, ready to.
+/// What renders, opened and ready.
 pub(super) enum Opened {
     /// The CPU reference.
     Cpu,
-    /// The CPU reference, because there is no adapter.
+    /// The CPU reference, used because there is no adapter.
     #[cfg(feature = "gpu")]
     CpuInstead,
-    /// An adapter's device.
+    /// The device of an adapter.
     #[cfg(feature = "gpu")]
     Device {
-        /// The device.
+        /// The open device.
         headless: Box<Headless>,
-        /// What finds spheres.
+        /// The acceleration structure.
         choice: AccelChoice,
-        /// What is wrong with how it computes.
+        /// A warning if the quick self-test failed.
         doubt: Option<String>,
     },
 }
 
 impl Opened {
-    /// The name of the adapter, if it is one.
+    /// Returns the name of the adapter, if an adapter renders.
     pub(super) fn adapter(&self) -> Option<&str> {
         match self {
             #[cfg(feature = "gpu")]
@@ -96,7 +96,7 @@ impl Opened {
 }
 
 impl Device {
-    /// Opens it, and sees whether it computes as it should.
+    /// Opens the device and runs the quick part of its self-test.
     pub(super) fn open(&self) -> Result<Opened, Failure> {
         match self {
             Self::Cpu => Ok(Opened::Cpu),
@@ -118,7 +118,7 @@ impl Device {
         }
     }
 
-    /// Opens it while other work is done, whose failure comes first.
+    /// Opens the device while `work` is done. If both fail, the failure is that of `work`.
     pub(super) fn open_beside<T>(
         &self,
         work: impl FnOnce() -> Result<T, Failure>,
@@ -126,7 +126,7 @@ impl Device {
         thread::scope(|scope| {
             let opening = match self {
                 Self::Cpu => None,
-                // Without another thread, it is opened afterwards.
+                // If no other thread can be started, the device is opened afterwards.
                 Self::Adapter { .. } => {
                     thread::Builder::new().spawn_scoped(scope, || self.open()).ok()
                 }
@@ -147,13 +147,13 @@ impl WantedAdapter {
         Self { name: args.adapter.clone(), limits: args.limits }
     }
 
-    /// With all its limits; without a name, the best.
+    /// Asks for the adapter of this name with all its limits; without a name, for the best adapter.
     #[cfg(feature = "gpu")]
     pub(super) fn named(name: Option<String>) -> Self {
         Self { name, limits: None }
     }
 
-    /// Opens it. The error within is that there is no adapter, which some can do without.
+    /// Opens the adapter. The inner error means that there is no adapter, which is not a failure for every caller.
     #[cfg(feature = "gpu")]
     pub(super) fn open(&self) -> Result<Result<Headless, GpuError>, Failure> {
         let options = HeadlessOptions {
@@ -172,24 +172,24 @@ impl WantedAdapter {
         }
     }
 
-    /// Opens it; that there is none is a failure.
+    /// Opens the adapter; it is a failure if there is none.
     #[cfg(feature = "gpu")]
     pub(super) fn open_any(&self) -> Result<Headless, Failure> {
         self.open()?.map_err(|error| Failure::Job(error.into()))
     }
 }
 
-/// The line for an error of a device, with its name and what may help.
+/// Turns an error of a device into a failure with the name of the adapter, and with what may help.
 #[cfg(feature = "gpu")]
 pub(super) fn explained(headless: &Headless, error: &GpuError) -> Failure {
     let remedy = match error {
-        GpuError::Limit { .. } => "; --backend cpu has no such limit",
+        GpuError::Limit { .. } => "; use --backend cpu, which has no such limit",
         _ => "",
     };
     named(headless, error, remedy)
 }
 
-/// As [`explained`], where the CPU reference is no remedy.
+/// Like [`explained`], for commands that cannot use the CPU reference.
 #[cfg(feature = "gpu")]
 pub(super) fn explained_alone(headless: &Headless, error: &GpuError) -> Failure {
     named(headless, error, "")

@@ -1,4 +1,4 @@
-//! Flags that say how the picture is written; each takes the place of a scene's key.
+//! The flags for writing the picture. They take precedence over the keys of a scene file.
 
 use super::args::{EncodingArgs, Tone};
 use super::failure::Failure;
@@ -6,7 +6,7 @@ use super::picture::PictureFormat;
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::tone::ToneCurve;
 
-/// What was given, checked.
+/// The flags that were given, checked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EncodingFlags {
     bits: Option<Bits>,
@@ -26,7 +26,7 @@ impl EncodingFlags {
         let given = given.into_iter().find(|(_, is_given)| *is_given);
         if let (PictureFormat::Exr, Some((flag, _))) = (format, given) {
             return Err(Failure::usage(format!(
-                "{flag} concerns PNG; an EXR file keeps the light as it is, in 32 bits; drop it"
+                "{flag} applies only to PNG; an EXR file stores the light unchanged in 32 bits; remove {flag}"
             )));
         }
         if let Some(stops) = exposure {
@@ -42,13 +42,13 @@ impl EncodingFlags {
         })
     }
 
-    /// Flags come before what a scene says.
+    /// Applies the flags to the encoding of a scene. Flags take precedence.
     pub(super) fn over(self, scene: Encoding) -> Encoding {
         let encoding = scene
             .with_bits(self.bits.unwrap_or(scene.bits()))
             .with_transparent(self.transparent.unwrap_or(scene.transparent()))
             .with_tone(self.tone.unwrap_or(scene.tone()));
-        // Both were checked.
+        // Both exposures were checked, so this does not fail.
         encoding.with_exposure(self.exposure.unwrap_or(scene.exposure())).unwrap_or(encoding)
     }
 }

@@ -1,4 +1,4 @@
-//! Why the program ends without having done its job.
+//! Failures of the program, with their messages and exit codes.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -12,23 +12,26 @@ pub(super) const USAGE: u8 = 2;
 /// Exit code of a check that found something wrong.
 pub(super) const UNPROVEN: u8 = 3;
 
-/// Exit code of a job that a signal stopped: as shells have it for SIGINT.
+/// Exit code of a job that a signal stopped, as shells use it for SIGINT.
 pub(super) const STOPPED: u8 = 130;
 
-/// What a stopped job says.
+/// The message of a stopped job.
 pub(super) const NOTHING_WRITTEN: &str = "stopped; nothing was written";
 
-/// One line for the user, and an exit code.
+/// A failure: one line for the user, and an exit code.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The arguments cannot be what was meant.
+    /// The arguments are wrong.
     Usage(anyhow::Error),
     /// The job could not be done.
     Job(anyhow::Error),
-    /// The job was done, and what was checked is not as it must be.
+    /// The job was done, and its check found a violation.
     Unproven(anyhow::Error),
     /// The user stopped it while a device was at work.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "elsewhere the program exits"))]
+    #[cfg_attr(
+        not(feature = "gpu"),
+        expect(dead_code, reason = "without a device the program exits at once")
+    )]
     Stopped,
 }
 
@@ -37,7 +40,7 @@ impl Failure {
         Self::Usage(anyhow::Error::msg(message.into()))
     }
 
-    /// The error with all its contexts.
+    /// Returns the error with all its contexts.
     pub(super) fn message(&self) -> String {
         match self {
             Self::Usage(error) | Self::Job(error) | Self::Unproven(error) => format!("{error:#}"),
@@ -62,7 +65,7 @@ impl From<anyhow::Error> for Failure {
 }
 
 impl fmt::Display for Failure {
-    /// The line that the program ends with.
+    /// Writes the line that the program prints before it ends.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Usage(_) | Self::Job(_) | Self::Unproven(_) => {

@@ -1,4 +1,4 @@
-//! `pinhole generate`: a file of made-up spheres.
+//! `pinhole generate`: writes a file of generated spheres.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use pinhole::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
 
 pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let Some(kind) = Kind::ALL.iter().copied().find(|kind| kind.name() == args.kind) else {
-        return Err(Failure::usage(format!("{}: there is no such kind", args.kind)));
+        return Err(Failure::usage(format!("{}: this is not a valid kind", args.kind)));
     };
     let count = args.count;
     if count > MAX_COUNT {
@@ -28,13 +28,13 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
         .map_err(anyhow::Error::msg)?;
     tell(format_args!("{}: {count} spheres, {bytes} bytes", path.display()));
     threads::start()?;
-    progress::stage("making spheres");
+    progress::stage("generating spheres");
     let spheres = kind.spheres(count, args.seed).map_err(|error| Failure::Job(error.into()))?;
     progress::stage("writing");
     Ok(output::write_spheres(path, format, &spheres)?)
 }
 
-/// The names of the kinds.
+/// Returns a parser that accepts the names of the kinds.
 pub(super) fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(Kind::ALL.iter().map(|kind| kind.name()))
 }

@@ -1,4 +1,4 @@
-//! `pinhole info`.
+//! `pinhole info`: lists the adapters of the machine, and tests one.
 
 use anyhow::Context;
 use serde::Serialize;
@@ -13,14 +13,14 @@ use super::failure::Failure;
 use super::self_test::SelfTested;
 use super::speak::answer;
 
-/// What is known of this program and the machine.
+/// The report on this program and the machine.
 #[derive(Serialize)]
 struct Info {
-    /// Of the program.
+    /// Version of the program.
     version: &'static str,
-    /// The best first; `render` takes the one that is `chosen`.
+    /// The adapters, best first; `render` uses the one that is `chosen`.
     adapters: Vec<AdapterReport>,
-    /// Why none is chosen, in the words of `render`.
+    /// Why no adapter is chosen, with the message of `render`.
     problem: Option<String>,
     #[cfg(feature = "gpu")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,7 +39,7 @@ struct AdapterReport {
     features: Features,
 }
 
-/// The limits that bound pictures and scenes.
+/// The limits that bound the size of pictures and scenes.
 #[derive(Serialize)]
 struct Limits {
     max_texture_dimension_2d: u64,
@@ -52,7 +52,7 @@ struct Limits {
     max_compute_workgroup_storage_size: u64,
 }
 
-/// The optional features that bear on tracing.
+/// The optional features that are of interest for ray tracing.
 #[derive(Serialize)]
 struct Features {
     timestamp_query: bool,
@@ -69,13 +69,13 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
         return run_self_test(args);
     } else if args.adapter.is_some() {
         return Err(Failure::usage(
-            "--adapter chooses what to test; add --self-test, or drop it, as all adapters are listed",
+            "--adapter applies only to --self-test; add --self-test, or remove --adapter to list all adapters",
         ));
     }
     print(&info(), args.json)
 }
 
-/// Programs get the report beside the listing, people get it alone.
+/// Runs the self-test. JSON contains its report and the list of adapters; text contains only the report.
 #[cfg(feature = "gpu")]
 fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
     let tested = SelfTested::new(&WantedAdapter::named(args.adapter.clone()))?;
@@ -91,7 +91,7 @@ fn run_self_test(args: &InfoArgs) -> Result<(), Failure> {
 
 fn print(info: &Info, json: bool) -> Result<(), Failure> {
     let text = if json {
-        serde_json::to_string_pretty(info).context("the report")? + "\n"
+        serde_json::to_string_pretty(info).context("the report cannot be written as JSON")? + "\n"
     } else {
         readable(info)
     };
@@ -105,7 +105,7 @@ fn info() -> Info {
     use pinhole::gpu::{GpuError, adapter};
 
     let adapters = adapter::adapters();
-    // The same choice as `render` makes, also when WGPU_ADAPTER_NAME asks for another adapter.
+    // This is the choice that `render` makes, also if WGPU_ADAPTER_NAME asks for another adapter.
     let choice = adapter::index_of_choice(&adapters, None);
     let is_chosen = |index| choice == Ok(index);
     let reports = adapters.iter().enumerate().map(|(index, a)| report(a, is_chosen(index)));

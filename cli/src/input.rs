@@ -1,4 +1,4 @@
-//! From a path to a scene and a view of it.
+//! Reads the input: from a path to a scene with its camera and settings.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -23,33 +23,33 @@ use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene_file::{DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
 
-/// Everything that a render needs.
+/// Everything that a render needs from its input.
 pub(super) struct Input {
     pub(super) scene: Scene,
-    /// Of two eyes, that in the middle.
+    /// The camera; for a stereo camera, the view from the middle between the eyes.
     pub(super) camera: Box<dyn Camera>,
-    /// Left and right, if there are two.
+    /// The left and the right eye of a stereo camera.
     pub(super) eyes: Option<[Box<dyn Camera>; 2]>,
     pub(super) film: Film,
-    /// How the picture is made.
+    /// The settings for rendering.
     pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
-    /// What says how large the picture is: a flag or a file.
+    /// Where the size of the picture comes from, for messages: a flag or a file.
     pub(super) size_from: String,
-    /// What the user should know although it is no error.
+    /// Notes for the user that are not errors.
     pub(super) notes: Vec<String>,
-    /// The files that were read.
+    /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
 }
 
 impl Input {
-    /// What the camera, or the one between two eyes, sees.
+    /// Returns the view of the camera, or of the middle between two eyes.
     pub(super) fn view(&self) -> View<'_> {
         View::new(self.camera.as_ref(), self.film)
     }
 }
 
-/// What a file is.
+/// The kind of an input file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Scene,
@@ -57,7 +57,7 @@ enum Format {
 }
 
 impl Format {
-    /// The format that an extension stands for.
+    /// Returns the format for the extension of a path.
     fn of(path: &Path) -> Result<Self> {
         let extension = extension(path);
         let format = extension.as_deref().and_then(load::Format::of_extension);
@@ -65,13 +65,13 @@ impl Format {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
             (None, Some("bin")) => bail!(
-                "{}: .bin does not say what is in the file; if it is x, y, z, radius in \
+                "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
                  little-endian f32, add --format raw-f32x4",
                 path.display()
             ),
             _ => bail!(
-                "{}: the extension names no format that can be read; there are .toml (scene) and \
-                 {} (data), and .bin with --format raw-f32x4",
+                "{}: this is not the extension of a format that can be read; use .toml (scene), \
+                 {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
                 path.display(),
                 load::Format::extensions_of(|_| true)
             ),
@@ -93,12 +93,12 @@ fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
     }
 }
 
-/// What stands behind the last dot of a file's name, in small letters.
+/// Returns the extension of a file name in lower case, without the dot.
 pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
-/// A file and what flags say of it, checked as far as they can be before it is read.
+/// An input file with its flags, checked as far as is possible before the file is read.
 pub(super) struct Source {
     path: PathBuf,
     format: Format,
@@ -113,7 +113,7 @@ impl Source {
         Self::of_view(path, view)
     }
 
-    /// Of a path with flags.
+    /// Makes a source from a path and its flags.
     pub(super) fn of_view(path: &Path, args: &ViewArgs) -> Result<Self, Failure> {
         let format = match args.format {
             Some(format) => Format::Data(format),
@@ -133,12 +133,12 @@ impl Source {
         })
     }
 
-    /// The same with flags that say how it is lit.
+    /// Returns this source with light flags.
     pub(super) fn with_light(self, light: LightFlags) -> Self {
         Self { light, ..self }
     }
 
-    /// A scene file without flags.
+    /// Makes a source from a scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
         Self {
@@ -151,7 +151,7 @@ impl Source {
         }
     }
 
-    /// A file to measure.
+    /// Makes a source from a file that `bench` measures.
     #[cfg(feature = "gpu")]
     pub(super) fn of_bench(
         path: &Path,
@@ -167,13 +167,13 @@ impl Source {
         Ok(Self { format, size, options, ..Self::of_scene(path) })
     }
 
-    /// Reads the file, and the data that it names.
+    /// Reads the file, and the data files that it names.
     pub(super) fn load(&self) -> Result<Input, Failure> {
         let path = &self.path;
         progress::stage(format!("reading {}", path.display()));
         let Format::Data(format) = self.format else {
             let text = String::from_utf8(read(path)?).map_err(|_| {
-                anyhow!("{}: this is no UTF-8 text; a scene file is TOML", path.display())
+                anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", path.display())
             })?;
             return self.scene_from_text(&text);
         };
@@ -186,7 +186,10 @@ impl Source {
         let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
         let scene = scene.with_context(file_name)?;
         if scene.is_empty() {
-            notes.push(format!("{}: there are no spheres in it", path.display()));
+            notes.push(format!(
+                "{}: the file has no spheres, so the picture shows only the background",
+                path.display()
+            ));
         }
         let parameters = self.camera.unwrap_or_default();
         let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
@@ -196,7 +199,8 @@ impl Source {
         Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
-    /// Reads the text of a scene file that stands, or will stand, at the path, and its data.
+    /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of other
+    /// paths.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
         let file = SceneFile::parse(text).with_context(file_name)?;
@@ -210,7 +214,7 @@ impl Source {
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
-            DataSpheres::Array(points) => file.scene_with_array(points, color),
+            DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
         };
         let scene = scene.with_context(file_name)?;
         let (camera, eyes) = match &self.camera {
@@ -227,7 +231,7 @@ impl Source {
         Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
-    /// The image of a sky.
+    /// Reads the image of the sky.
     fn environment(&self, path: &Path) -> Result<Environment> {
         let in_scene = || format!("{}: `[sky]`", self.path.display());
         progress::stage(format!("reading {}", path.display()));
@@ -236,12 +240,12 @@ impl Source {
         read.with_context(|| path.display().to_string()).with_context(in_scene)
     }
 
-    /// A path that is relative to the scene file's folder.
+    /// Resolves a path that is relative to the folder of the scene file.
     fn beside(&self, path: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
-    /// The data of a scene file, its colour if it has none, and notes.
+    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, and notes.
     fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
         let flags = self.options;
         let Some(data) = file.data() else {
@@ -252,7 +256,7 @@ impl Source {
             ];
             return match given.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => Err(Failure::usage(format!(
-                    "{}: {flag} needs a scene with `data`, and this scene has none",
+                    "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
                 None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
@@ -263,11 +267,10 @@ impl Source {
         let extension = extension(&path);
         let Some(format) = extension.as_deref().and_then(load::Format::of_extension) else {
             let problem = if extension.as_deref() == Some("toml") {
-                anyhow!("it names another scene file")
+                anyhow!("it names another scene file; name a data file")
             } else {
                 anyhow!(
-                    "{}: the extension names no format that a scene can use; \
-                     there are {}",
+                    "{}: this is not the extension of a data format; a scene can use {}",
                     path.display(),
                     load::Format::extensions_of(|_| true)
                 )
@@ -285,7 +288,7 @@ impl Source {
         Ok((spheres, options.color.unwrap_or_else(default_color), notes))
     }
 
-    /// The film, and what its size comes from.
+    /// Returns the film, and where its size comes from.
     fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
         let Some((width, height)) = self.size else {
             return Ok((from_file, self.path.display().to_string()));
@@ -313,7 +316,7 @@ fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
 }
 
-/// `WxH`
+/// Parses a size, such as `800x600`.
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     let sides = text.split_once(['x', 'X']);
     sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
@@ -321,10 +324,10 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     )
 }
 
-/// How much is read at first of what does not say how large it is.
+/// Bytes that are read first from a file whose size is not known, such as a pipe.
 const FIRST_PIECE: u64 = 1 << 20;
 
-/// All of a file, in one piece of memory of its size.
+/// Reads a whole file. A regular file is read into memory of exactly its size.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
         bail!("{}: this is a folder; name a file", path.display());
@@ -332,20 +335,19 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     let cannot_read = || format!("{}: cannot be read", path.display());
     let mut file = std::fs::File::open(path).with_context(cannot_read)?;
     let size = file.metadata().map_or(0, |metadata| metadata.len());
-    let what = format!("{}: to read {size} bytes takes", path.display());
+    let what = format!("{}: reading {size} bytes needs", path.display());
     memory::check_reading(&what, size).map_err(Error::msg)?;
     let mut bytes = Vec::new();
-    usize::try_from(size)
-        .ok()
-        .and_then(|size| bytes.try_reserve_exact(size).ok())
-        .with_context(|| format!("{}: there is no memory for {size} bytes", path.display()))?;
-    // A pipe and a device say 0; what is behind them is weighed piece by piece.
+    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
+        || format!("{}: there is not enough memory for {size} bytes", path.display()),
+    )?;
+    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
     let mut piece = size.saturating_add(1).max(FIRST_PIECE);
     while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
         == piece
     {
         piece = bytes.len() as u64;
-        let what = format!("{}: to read on after {piece} bytes takes", path.display());
+        let what = format!("{}: reading more than {piece} bytes needs", path.display());
         memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
     }
     Ok(bytes)

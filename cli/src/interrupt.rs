@@ -1,8 +1,8 @@
-//! Ctrl-C, and what else asks the program to end: no file is left that is not complete.
+//! Handles Ctrl-C and other signals that ask the program to end. No incomplete file is left behind.
 //!
-//! Where nothing is at stake the program exits at once. While a driver is at work it is asked to stop, and a
-//! second signal exits. What is being written has no name yet and is removed; files get their names under
-//! the lock that a signal needs, so that there are all of them or none.
+//! The program normally exits at once. While a driver is at work, the first signal asks the work to stop and a second
+//! one exits. Files are written under temporary names, which are removed at a signal. They get their final names while
+//! the lock is held that the signal handler needs, so there are all of the files or none.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -26,20 +26,20 @@ static STATE: Mutex<State> = Mutex::new(State {
 
 struct State {
     phase: Phase,
-    /// There was a signal.
+    /// Whether there was a signal.
     is_requested: bool,
-    /// Files without a name. Those that have got one, or are gone, do no harm here.
+    /// Temporary files to remove. The list may include files that were renamed or removed since.
     temporaries: Vec<PathBuf>,
-    /// What is said if the program ends now.
+    /// The message if the program ends now.
     words: &'static str,
 }
 
-/// What a signal would interrupt.
+/// The work that a signal would interrupt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Nothing that minds.
+    /// Work that can be interrupted at any time.
     Free,
-    /// A driver, whose threads must not be pulled away.
+    /// Work of a driver, whose threads must not be stopped abruptly.
     Device,
 }
 
@@ -47,18 +47,19 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Listens for Ctrl-C, or whatever else the system ends programs with.
+/// Starts to listen for Ctrl-C and other signals that end programs.
 pub(super) fn install() -> Result<(), Failure> {
-    Ok(listen().context("signals cannot be listened for")?)
+    Ok(listen().context("the program cannot listen for signals such as Ctrl-C")?)
 }
 
 #[cfg(unix)]
 fn listen() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // A file that may not grow is then an error like others, and not the end.
+    // With a handler for SIGXFSZ, a file that exceeds its size limit gives an ordinary error and does not end the
+    // program.
     signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
     let mut signals = vec![SIGINT, SIGTERM];
-    // Listening would take back what `nohup` did.
+    // A handler for SIGHUP would undo what `nohup` did.
     if !ignores_hang_up() {
         signals.push(SIGHUP);
     }
@@ -72,7 +73,7 @@ fn listen() -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(on_signal)
 }
 
-/// On a thread of its own.
+/// Handles a signal, on a thread of its own.
 fn on_signal() {
     let mut state = state();
     if state.phase == Phase::Device && !state.is_requested {
@@ -84,11 +85,11 @@ fn on_signal() {
     }
     progress::close();
     tell(state.words);
-    // The lock is still held, so that no file gets a name or is created.
+    // The lock is still held, so no file is created or renamed.
     std::process::exit(STOPPED.into());
 }
 
-/// Does work with a driver, which should end soon after [`decide`] says so.
+/// Runs work with a driver. The work should end soon after [`decide`] returns `Stop`.
 #[cfg(feature = "gpu")]
 pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     state().phase = Phase::Device;
@@ -98,7 +99,7 @@ pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     if state.is_requested { Err(Failure::Stopped) } else { Ok(result) }
 }
 
-/// As [`on_device`], where a result that is there counts although the program was asked to end; says whether it was.
+/// Like [`on_device`], but also returns the result if the program was asked to end, and whether it was.
 #[cfg(feature = "gpu")]
 pub(super) fn on_device_keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     state().phase = Phase::Device;
@@ -114,13 +115,13 @@ pub(super) fn is_requested() -> bool {
     state().is_requested
 }
 
-/// Whether the work on the device should go on.
+/// Returns whether work on the device continues or stops.
 #[cfg(feature = "gpu")]
 pub(super) fn decide() -> Decision {
     if is_requested() { Decision::Stop } else { Decision::GoOn }
 }
 
-/// Creates a file that is removed if the program is stopped.
+/// Creates a temporary file that is removed if the program is stopped.
 pub(super) fn creating<F, E>(
     create: impl FnOnce() -> Result<F, E>,
     path: impl FnOnce(&F) -> PathBuf,
@@ -131,17 +132,17 @@ pub(super) fn creating<F, E>(
     Ok(file)
 }
 
-/// Gives files their names, if there are `any`; a signal waits until it is done.
+/// Gives files their final names, if there are `any`. A signal is handled only afterwards.
 pub(super) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
     let mut state = state();
     name()?;
     if any {
-        state.words = "stopped; the files were complete";
+        state.words = "stopped; all files were already complete";
     }
     Ok(())
 }
 
-/// Changes what is said if the program is stopped from now on.
+/// Changes the message if the program is stopped from now on.
 pub(super) fn words(words: &'static str) {
     state().words = words;
 }

@@ -1,4 +1,4 @@
-//! Light on the command line: flags that take the place of a scene file's keys.
+//! The light flags of the command line. They take precedence over the keys of a scene file.
 
 use clap::{Args, ValueEnum};
 
@@ -8,25 +8,26 @@ use pinhole::range::RangeError;
 use pinhole::render::{Integrator, Occlusion, Outline, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::IntegratorKind;
 
-/// Of each flag, because clap puts whatever follows below a heading that is set once.
-const HEADING: &str =
-    "Light (any of these, as any table of a scene's that is about light, gives a lit picture)";
+/// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
+/// is set once.
+pub(super) const HEADING: &str =
+    "Light (any of these flags, or a table about light in the scene, makes a lit picture)";
 
 #[derive(Debug, Args)]
 pub(super) struct LightArgs {
-    /// How light is followed [default: the scene's; studio if another flag asks for light, or primary]
+    /// How the light is computed [default: the scene's; studio if another flag asks for light; otherwise primary]
     #[arg(long, help_heading = HEADING, value_enum)]
     integrator: Option<IntegratorArg>,
-    /// Samples of each pixel, up to 16777216 [default: the scene's, or 16]
+    /// Samples per pixel, from 1 to 16777216 [default: the scene's, or 16]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     samples: Option<u32>,
-    /// Another seed gives other noise [default: the scene's, or 0]
+    /// Seed of the random numbers; another seed gives other noise [default: the scene's, or 0]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     seed: Option<u32>,
-    /// How samples around the centre of a pixel are weighted [default: the scene's, or blackman-harris]
+    /// Pixel filter, which weights the samples around the center of a pixel [default: the scene's, or blackman-harris]
     #[arg(long, help_heading = HEADING, value_enum)]
     filter: Option<FilterArg>,
-    /// Ambient occlusion, with so many rays for each sample (studio) [without a number: 4]
+    /// Ambient occlusion with this number of rays per sample, from 1 to 1024 (studio) [without a number: 4]
     #[arg(
         long,
         help_heading = HEADING,
@@ -36,21 +37,21 @@ pub(super) struct LightArgs {
         default_missing_value = "4"
     )]
     ao: Option<u32>,
-    /// Lines of so many pixels around shapes (studio)
+    /// Outlines around shapes with this width in pixels, from 0.5 to 64 (studio)
     #[arg(long, help_heading = HEADING, value_name = "PIXELS", allow_hyphen_values = true)]
     outline: Option<f32>,
-    /// Filter noise by shapes and colours
+    /// Remove noise with a filter that is guided by shapes and colors
     #[arg(long, help_heading = HEADING)]
     denoise: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum IntegratorArg {
-    /// Not at all: the color of what the ray through a pixel's center meets first
+    /// No light: the color of the first sphere that the ray through the center of a pixel hits
     Primary,
-    /// Directly from lights to surfaces: shadows, ambient occlusion, opacity, outlines
+    /// Direct light from lights to surfaces: shadows, ambient occlusion, opacity, outlines
     Studio,
-    /// As it is scattered: path tracing
+    /// Path tracing: light is followed as surfaces scatter it
     Path,
 }
 
@@ -71,7 +72,7 @@ impl From<FilterArg> for PixelFilter {
     }
 }
 
-/// What was given, checked.
+/// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LightFlags {
     integrator: Option<IntegratorKind>,
@@ -81,7 +82,7 @@ pub(super) struct LightFlags {
     ao: Option<u32>,
     outline: Option<f32>,
     denoise: bool,
-    /// The flag that asks for as many samples as it takes, unless there are `samples`.
+    /// The flag (`--time` or `--noise`) that leaves the number of samples open, unless `samples` limits it.
     open_ended_by: Option<&'static str>,
 }
 
@@ -109,18 +110,18 @@ impl LightFlags {
         Ok(Self { integrator, samples, seed, filter, ao, outline, denoise, open_ended_by: None })
     }
 
-    /// The same, for a picture that takes as many samples as it takes if there is such a flag.
+    /// Returns these flags with the flag that leaves the number of samples open, if there is one.
     pub(super) fn with_open_end(self, flag: Option<&'static str>) -> Self {
         Self { open_ended_by: flag, ..self }
     }
 
-    /// How the picture is made, of a scene that may say so as well.
+    /// Returns the integrator of the picture; `scene` is the one that the scene asks for.
     pub(super) fn integrator(&self, scene: Option<IntegratorKind>) -> IntegratorKind {
         let by_flags = self.for_light().next().map(|_| IntegratorKind::Studio);
         self.integrator.or(scene).or(by_flags).unwrap_or_default()
     }
 
-    /// The flags that were given and ask for light.
+    /// Returns the flags that were given and ask for light.
     fn for_light(&self) -> impl Iterator<Item = &'static str> {
         let given = [
             ("--samples", self.samples.is_some()),
@@ -134,13 +135,14 @@ impl LightFlags {
         given.chain(self.open_ended_by)
     }
 
-    /// Flags come before what a scene says.
+    /// Applies the flags to the settings of a scene. Flags take precedence.
     pub(super) fn over(&self, mut settings: RenderSettings) -> Result<RenderSettings, Failure> {
         if let (Integrator::Primary(_), Some(flag)) =
             (&settings.integrator, self.for_light().next())
         {
             return Err(Failure::usage(format!(
-                "{flag} concerns the integrators `studio` and `path`, and this picture is made by `primary`; drop one"
+                "{flag} applies only to the integrators `studio` and `path`, but this picture is made by `primary`; \
+                 remove {flag} or choose another --integrator"
             )));
         }
         let sampling = &mut settings.sampling;
@@ -155,7 +157,8 @@ impl LightFlags {
             Integrator::Studio(studio) => add_to_studio(studio, self.ao, self.outline),
             Integrator::Path(_) if self.ao.is_some() || self.outline.is_some() => {
                 return Err(Failure::usage(format!(
-                    "{flag} concerns the integrator `studio`, and this picture is made by `path`; drop one"
+                    "{flag} applies only to the integrator `studio`, but this picture is made by `path`; \
+                     remove {flag} or choose --integrator studio"
                 )));
             }
             Integrator::Primary(_) | Integrator::Path(_) => {}
@@ -173,7 +176,7 @@ fn add_to_studio(studio: &mut Studio, ao: Option<u32>, outline: Option<f32>) {
     }
 }
 
-/// The settings of a scene that says nothing of light.
+/// Returns the default settings of an integrator, for data files.
 pub(super) fn plain(kind: IntegratorKind) -> RenderSettings {
     match kind {
         IntegratorKind::Primary => RenderSettings::default(),

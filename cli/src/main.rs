@@ -1,10 +1,11 @@
-//! The program `pinhole`: raw arguments, then a checked job made of library types, then its run.
+//! The program `pinhole`. It parses the arguments, checks them and turns them into types of the library, and runs the
+//! job.
 //!
-//! The only place that sees clap, prints, or touches the file system.
+//! Only this crate uses clap, prints, and accesses the file system.
 
 #![allow(
     rustdoc::broken_intra_doc_links,
-    reason = "the comments of arguments are their help, not Markdown"
+    reason = "the comments of arguments are their help texts, not Markdown"
 )]
 
 use std::process::ExitCode;
@@ -67,16 +68,17 @@ fn main() -> ExitCode {
     run()
 }
 
-/// Without a desktop session, Mesa's device-select layer fails to reach a Wayland display and has
-/// libwayland print a line that starts with `error:`, for every Vulkan instance. What the layer does,
-/// putting one GPU first, the program does by itself, so it is switched off; but not for a user who has
-/// configured it.
+/// Switches off Mesa's device-select layer where it would only print errors.
+///
+/// Without a desktop session, the layer fails to reach a Wayland display, and libwayland then prints a line that starts
+/// with `error:` for every Vulkan instance. The layer puts one GPU first, which the program does by itself. The layer
+/// stays on for a user who has configured it.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the layer reads nothing but the environment")]
 fn quieten_device_select() {
     let is_set = |name| std::env::var_os(name).is_some();
     if !is_set("XDG_RUNTIME_DIR") && !is_set("MESA_VK_DEVICE_SELECT") {
-        // SAFETY: the first thing that `main` does; there is no other thread yet.
+        // SAFETY: this is the first thing that `main` does, so there is no other thread yet.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }
@@ -109,7 +111,7 @@ fn run() -> ExitCode {
     }
 }
 
-/// Prints help or version as clap has them, and an error as one line.
+/// Prints the help or the version as clap formats it, and an error on one line.
 fn explain(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     match error.kind() {

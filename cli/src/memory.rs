@@ -1,4 +1,4 @@
-//! Whether a picture or a scene fits into the machine, asked before it is begun.
+//! Checks that a picture or a scene fits into memory before work on it begins.
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
@@ -6,12 +6,13 @@ use super::failure::Failure;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
 
-/// Bytes per pixel that encoding takes beside the image itself, at most: 8 of samples and as many of a PNG made of
-/// them; or that PNG, on its way to standard output, and 12 of an array. EXR is written row by row.
+/// The most bytes per pixel that encoding needs in addition to the picture: 8 for the encoded pixels and 8 for the PNG
+/// made of them; or 8 for a PNG that waits for standard output and 12 for an array. EXR is written row by row.
 pub(super) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
-/// Refuses a picture of the CPU reference that this machine, or the control group that the program runs in,
-/// cannot hold, with so many bytes a pixel beside its layers. What an adapter takes is in its plan.
+/// Refuses a picture of the CPU reference for which the machine, or the control group that the program runs in, has not
+/// enough memory. `beside` is the number of bytes per pixel in addition to the layers. The memory that an adapter needs
+/// is in its plan.
 pub(super) fn check(
     film: &Film,
     size_from: &str,
@@ -25,13 +26,13 @@ pub(super) fn check(
     Ok(check_bytes(&what, needed, "a smaller size").map_err(anyhow::Error::msg)?)
 }
 
-/// Refuses what needs more memory than there is; `what` is a sentence up to the number of bytes.
+/// Refuses work that needs more memory than is free. `what` is the start of the sentence, up to the number of bytes.
 pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), String> {
     if let Some(available) = available()
         && needed > available
     {
         return Err(format!(
-            "{what} {} of memory, and {} are free; choose {instead}",
+            "{what} {} of memory, but only {} are free; choose {instead}",
             readable(needed),
             readable(available)
         ));
@@ -39,20 +40,20 @@ pub(super) fn check_bytes(what: &str, needed: u64, instead: &str) -> Result<(), 
     Ok(())
 }
 
-/// Arrays up to this many bytes are read without asking for the machine's memory, which takes time.
+/// Files of at most this many bytes are read without a check of the free memory, which takes time.
 const SMALL: u64 = 1 << 24;
 
-/// Refuses an array of so many bytes that this machine cannot hold together with the spheres that are made of
-/// it; `what` is a sentence up to the number of bytes.
+/// Refuses a file of `size` bytes if there is not enough memory for it and for its spheres. `what` is the start of the
+/// sentence, up to the number of bytes.
 pub(super) fn check_reading(what: &str, size: u64) -> Result<(), String> {
     if size <= SMALL {
         return Ok(());
     }
-    // Of three numbers, four are made.
+    // Three numbers of an array become four numbers of a sphere.
     check_bytes(what, size.saturating_mul(7) / 3, "a smaller file")
 }
 
-/// Bytes that are free for this program; `None` is not known, and then the allocation itself decides.
+/// Returns the bytes that are free for this program; `None` if that is not known, so that only the allocation can fail.
 pub(super) fn available() -> Option<u64> {
     let what = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(what);
@@ -65,7 +66,7 @@ pub(super) fn available() -> Option<u64> {
     }
 }
 
-/// Bytes as people read them.
+/// Formats a number of bytes in MiB or GiB.
 pub(super) fn readable(bytes: u64) -> String {
     const MIB: f64 = (1 << 20) as f64;
     let mib = bytes as f64 / MIB;

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Writes files so that they appear complete or not at all.
 
 use std::collections::HashSet;
 use std::fs::Permissions;
@@ -13,20 +13,23 @@ use super::input::extension;
 use super::interrupt;
 use pinhole::write::{npy, raw};
 
-/// Refuses one file for two outputs.
+/// Refuses to use one file for two outputs.
 pub(super) fn check_distinct<'a>(
     outputs: impl Iterator<Item = &'a PathBuf>,
 ) -> Result<(), Failure> {
     let mut seen = HashSet::new();
     for path in outputs {
         if !seen.insert(real(path)) {
-            return Err(Failure::usage(format!("{}: two outputs are this file", path.display())));
+            return Err(Failure::usage(format!(
+                "{}: two outputs have this file; give each output a file of its own",
+                path.display()
+            )));
         }
     }
     Ok(())
 }
 
-/// Refuses to overwrite what was read.
+/// Refuses to overwrite an input.
 pub(super) fn spare<'a>(
     mut outputs: impl Iterator<Item = &'a PathBuf>,
     inputs: &[PathBuf],
@@ -35,20 +38,20 @@ pub(super) fn spare<'a>(
     match outputs.find(|path| inputs.contains(&real(path))) {
         None => Ok(()),
         Some(path) => Err(Failure::usage(format!(
-            "{}: this output is an input as well; give it another name",
+            "{}: this output is also an input; give it another name",
             path.display()
         ))),
     }
 }
 
-/// A folder that will be made if it is not there.
+/// A folder for output, which is created if it does not exist.
 #[derive(Debug)]
 pub(super) struct NewFolder(PathBuf);
 
 impl NewFolder {
-    /// Refuses what is no folder and cannot become one, and one in which `file` cannot be written.
+    /// Refuses a path that is not a folder and cannot become one, and a folder in which `file` cannot be written.
     pub(super) fn new(path: &Path, file: &str) -> Result<Self, Failure> {
-        // Without a separator at the end.
+        // This removes a separator at the end.
         let path: PathBuf = path.components().collect();
         if path.is_dir() {
             check_place(&path.join(file))?;
@@ -63,7 +66,7 @@ impl NewFolder {
         Ok(Self(path))
     }
 
-    /// Makes it while files are written into it; if they are not, it is as it was.
+    /// Creates the folder if needed and calls `write`. If `write` fails, a folder that was created is removed again.
     pub(super) fn with<T>(&self, write: impl FnOnce() -> Result<T>) -> Result<T> {
         let is_new = !self.0.is_dir();
         if is_new {
@@ -72,14 +75,14 @@ impl NewFolder {
         }
         write().inspect_err(|_| {
             if is_new {
-                // What holds something stays.
+                // This fails if the folder is not empty, and then the folder stays.
                 let _ = std::fs::remove_dir(&self.0);
             }
         })
     }
 }
 
-/// As what spheres are written.
+/// A format for writing spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SpheresFormat {
     Npy,
@@ -87,14 +90,14 @@ pub(super) enum SpheresFormat {
 }
 
 impl SpheresFormat {
-    /// The format that an extension stands for, if the file can be written.
+    /// Returns the format for the extension of a path, and checks that the file can be written.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let format = match extension(path).as_deref() {
             Some("npy") => Self::Npy,
             Some("bin") => Self::RawF32x4,
             _ => {
                 return Err(Failure::usage(format!(
-                    "{}: spheres are written as .npy or .bin; change its extension",
+                    "{}: spheres are written as .npy or .bin; change the extension",
                     path.display()
                 )));
             }
@@ -117,7 +120,7 @@ pub(super) fn write_spheres(
     name_all(vec![(&path.to_path_buf(), file)])
 }
 
-/// A file beside the one that it will become. It is removed if the program is stopped.
+/// Creates a temporary file in the folder of the final file. It is removed if the program is stopped.
 fn temporary(path: &Path) -> Result<NamedTempFile> {
     interrupt::creating(|| temporary_in_folder(path), |file| file.path().to_path_buf())
 }
@@ -125,7 +128,7 @@ fn temporary(path: &Path) -> Result<NamedTempFile> {
 fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");
-    // As any new file: what the umask leaves of this.
+    // The umask applies to these permissions, as for any new file.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     builder
@@ -134,7 +137,7 @@ fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
         .with_context(|| format!("{}: cannot be written", path.display()))
 }
 
-/// The reason without the temporary file's name, which means nothing to the user.
+/// Returns the error without the name of the temporary file, which means nothing to the user.
 fn without_name(error: &io::Error) -> anyhow::Error {
     let text = error.to_string();
     let reason = text.split_once(" at path ").map_or(&*text, |(reason, _)| reason);
@@ -159,7 +162,7 @@ pub(super) fn unnamed_with(
     Ok(file)
 }
 
-/// Gives complete files their names. If one cannot have its name, those that were new are removed again.
+/// Gives complete files their final names. If one of them fails, those that did not exist before are removed again.
 pub(super) fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let any = !files.is_empty();
     interrupt::all_or_nothing(any, || name_each(files))
@@ -171,7 +174,7 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
         let existed = path.exists();
         if let Err(error) = file.persist(real(path)) {
             for path in new {
-                // What cannot be removed either is still a complete file.
+                // A file that cannot be removed is still a complete file.
                 let _ = std::fs::remove_file(path);
             }
             return Err(error.error)
@@ -184,13 +187,13 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     Ok(())
 }
 
-/// One spelling for all that a file can be called, whether it is there or not. What a link points to is
-/// replaced, not the link.
+/// Returns the canonical path of a file, whether it exists or not. For a link it is the path of the target, because the
+/// target is replaced and not the link.
 fn real(path: &Path) -> PathBuf {
     if let Ok(target) = path.canonicalize() {
         return target;
     }
-    // A link to a file that is yet to be made.
+    // The path may be a link to a file that does not exist yet.
     let linked = path.read_link().map(|link| folder(path).join(link));
     let path = linked.as_deref().unwrap_or(path);
     let folder = folder(path);
@@ -198,7 +201,8 @@ fn real(path: &Path) -> PathBuf {
     path.file_name().map_or_else(|| path.to_path_buf(), |name| folder.join(name))
 }
 
-/// Refuses folders, and files in folders that are not there or cannot be written.
+/// Refuses a path at which no file can be written: a folder, or a file in a folder that does not exist or is not
+/// writable.
 pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
     let ends_with_separator = path
         .as_os_str()
@@ -210,7 +214,7 @@ pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
     }
     if path.metadata().is_ok_and(|old| !old.is_file()) {
         return Err(Failure::usage(format!(
-            "{}: this is no regular file, and would be replaced by one; choose another name",
+            "{}: this is not a regular file and would be replaced by one; choose another name",
             path.display()
         )));
     }
@@ -222,7 +226,7 @@ pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
             folder.display()
         )));
     }
-    // Better now than after the work.
+    // A folder that cannot be written should be noticed before the work, not after it.
     temporary(path).map(drop)?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What `render` and `demo` write: a picture, and layers beside it.
+//! The outputs of `render` and `demo`: a picture, and data layers in addition.
 
 use std::path::{Path, PathBuf};
 
@@ -15,26 +15,26 @@ use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
 use pinhole::write::{exr, npy, png};
 
-/// As what a picture is written.
+/// A format for writing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PictureFormat {
     Png,
     Exr,
 }
 
-/// Where the results go, checked before any work is done.
+/// The outputs of a render, checked before any work is done.
 #[derive(Debug)]
 pub(super) struct Outputs {
     format: PictureFormat,
-    /// `None` is standard output.
+    /// Path of the picture; `None` is standard output.
     picture: Option<PathBuf>,
-    /// Layers in the picture's own file.
+    /// Layers in the file of the picture.
     inside: LayerSet,
     layers: Vec<(Layer, PathBuf)>,
 }
 
 impl Outputs {
-    /// Checks what the user typed: extensions, folders, layers, and that no file is named twice.
+    /// Checks the outputs that the user named: extensions, folders, layers, and that no file is named twice.
     pub(super) fn new(picture: &Path, layers: &[String]) -> Result<Self, Failure> {
         let is_file = picture != Path::new("-");
         let format = if is_file { format_of(picture)? } else { PictureFormat::Png };
@@ -52,7 +52,7 @@ impl Outputs {
                 }
                 (layer, None) => {
                     return Err(Failure::usage(format!(
-                        "--layer {text}: a PNG has no room for layers; write LAYER=FILE.npy, such as \
+                        "--layer {text}: a PNG cannot hold layers; write LAYER=FILE.npy, such as \
                          {layer}={layer}.npy, or give -o a name that ends with .exr"
                     )));
                 }
@@ -70,19 +70,19 @@ impl Outputs {
         self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
     }
 
-    /// Refuses to overwrite what was read.
+    /// Refuses to overwrite an input.
     pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
         spare(self.paths(), inputs)
     }
 
-    /// The layers to render.
+    /// Returns the layers to render.
     pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
         let alpha = encoding.transparent().then_some(Layer::Alpha);
         self.layers.iter().map(|(layer, _)| *layer).chain(self.inside.iter()).chain(alpha).collect()
     }
 
-    /// Encodes and writes everything, and `text` to a file if there is one; files get their names once
-    /// all of them are complete. `adapter` is what rendered.
+    /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them are
+    /// complete. `adapter` is the name of the adapter that rendered.
     pub(super) fn write(
         &self,
         image: &Image,
@@ -102,15 +102,13 @@ impl Outputs {
         };
         name_all(files)?;
         if let Some(picture) = for_standard_output {
-            interrupt::words(
-                "stopped; what was written to standard output is not the whole picture",
-            );
+            interrupt::words("stopped; the picture on standard output is not complete");
             answer(&picture).context("standard output: cannot be written")?;
         }
         Ok(())
     }
 
-    /// Files that have no names yet.
+    /// Writes the files under temporary names.
     fn files(
         &self,
         image: &Image,
@@ -140,11 +138,11 @@ impl Outputs {
         Ok(files)
     }
 
-    /// Outputs for the left and for the right eye, beside those that were named.
+    /// Returns the outputs for the left and the right eye, whose names are made from those that the user gave.
     pub(super) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
         let Some(picture) = &self.picture else {
             return Err(Failure::usage(
-                "--stereo two-files: standard output takes one picture; name a file",
+                "--stereo two-files: standard output can take only one picture; name a file",
             ));
         };
         let outputs = ["left", "right"].map(|eye| Self {
@@ -159,7 +157,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// As [`Outputs::write`], for both eyes.
+    /// Writes all outputs of both eyes, as [`Outputs::write`] does for one picture.
     pub(super) fn write_both(
         outputs: &[Self; 2],
         images: &[Image],
@@ -175,7 +173,7 @@ impl Outputs {
     }
 }
 
-/// NAME-left.png of NAME.png.
+/// Adds the eye to a file name: NAME.png becomes NAME-left.png.
 fn with_eye(path: &Path, eye: &str) -> PathBuf {
     let [stem, extension] = [path.file_stem(), path.extension()].map(Option::unwrap_or_default);
     let mut name = stem.to_os_string();
@@ -184,14 +182,14 @@ fn with_eye(path: &Path, eye: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// The format that a picture's extension stands for, if the file can be written.
+/// Returns the format for the extension of a picture, and checks that the file can be written.
 fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
     let format = match extension(path).as_deref() {
         Some("png") => PictureFormat::Png,
         Some("exr") => PictureFormat::Exr,
         _ => {
             return Err(Failure::usage(format!(
-                "{}: a picture is written as .png or .exr; change its extension",
+                "{}: a picture is written as .png or .exr; change the extension",
                 path.display()
             )));
         }
@@ -200,20 +198,20 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
     Ok(format)
 }
 
-/// `LAYER`, or `LAYER=FILE.npy`
+/// Parses `LAYER` or `LAYER=FILE.npy`.
 fn parse_layer(text: &str) -> Result<(Layer, Option<PathBuf>), Failure> {
     let (name, path) = match text.split_once('=') {
         Some((name, path)) => (name, Some(Path::new(path))),
         None => (text, None),
     };
     if path == Some(Path::new("")) {
-        return Err(Failure::usage(format!("--layer {text}: name a file behind the =")));
+        return Err(Failure::usage(format!("--layer {text}: name a file after the =")));
     }
     let layer = name.parse().map_err(|error| Failure::usage(format!("--layer {text}: {error}")))?;
     if let Some(path) = path {
         if extension(path).as_deref() != Some("npy") {
             return Err(Failure::usage(format!(
-                "{}: this output is written as .npy; change its extension",
+                "{}: a layer is written as .npy; change the extension",
                 path.display()
             )));
         }

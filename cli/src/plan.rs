@@ -1,4 +1,4 @@
-//! `pinhole plan`: what a render would take, and whether it fits. Nothing is allocated on the device.
+//! `pinhole plan`: shows how much memory a render would need, and whether it fits. Nothing is allocated on the device.
 
 use anyhow::Context;
 use serde::Serialize;
@@ -42,7 +42,7 @@ struct Report {
 #[derive(Serialize)]
 struct SceneReport {
     spheres: usize,
-    /// In the world.
+    /// Smallest coordinates of the scene in world space.
     min: Option<[f64; 3]>,
     max: Option<[f64; 3]>,
     radius_min: f32,
@@ -75,7 +75,7 @@ struct BufferReport {
     bindings: u64,
 }
 
-/// Those that bound scenes and pictures.
+/// The limits that bound the size of scenes and pictures.
 #[derive(Serialize)]
 struct LimitsReport {
     max_storage_buffer_binding_size: u64,
@@ -97,7 +97,7 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
-    // As `render` has it.
+    // `render` adds this layer too.
     let alpha = input.encoding.transparent().then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
     let headless = adapter.open_any()?;
@@ -111,7 +111,8 @@ pub(super) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let problem = verdict.as_ref().err().map(Failure::message);
     let report = Report::new(&input, plan, &headless, available, problem);
     let text = if args.json {
-        serde_json::to_string_pretty(&report).context("the report")? + "\n"
+        serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")?
+            + "\n"
     } else {
         report.readable()
     };
@@ -185,7 +186,7 @@ impl Report {
         let PictureReport { width, height, tile_width, tile_height, tiles, .. } = picture;
         text += &format!(
             "picture: {width}x{height}; tiles: {tiles} of at most {tile_width}x{tile_height}\n\
-             submissions: they adapt to 60 ms; at least {}\n\nbuffers, at most\n",
+             submissions: at least {}; their size adapts to 60 ms each\n\nbuffers, at most\n",
             picture.submissions_at_least
         );
         let rows: Vec<_> = self.buffers.iter().map(BufferReport::row).collect();
@@ -196,7 +197,7 @@ impl Report {
         text += &format!("\ndevice: {}{per_sphere}\n", in_words(self.device_bytes));
         let available = self.host_bytes_available.map_or("not known".to_owned(), in_words);
         text += &format!(
-            "host: {} for {}, beside the scene; free: {available}\n",
+            "host: {} for {}, in addition to the scene; free: {available}\n",
             in_words(self.host_bytes),
             self.host_peak
         );
@@ -225,6 +226,7 @@ impl BufferReport {
     }
 }
 
+/// Formats a number of bytes exactly and in MiB or GiB.
 fn in_words(bytes: u64) -> String {
     format!("{bytes} bytes ({})", memory::readable(bytes))
 }

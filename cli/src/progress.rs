@@ -1,6 +1,7 @@
-//! What the program is doing, for people: one line on a terminal's standard error, gone at the end.
+//! Shows the progress of the program on one line of standard error, if that is a terminal. The line is removed at the
+//! end.
 //!
-//! There is one for the whole program, so that whatever is told can move it out of the way.
+//! There is one line for the whole program, so that every message can hide it while it is printed.
 
 use std::borrow::Cow;
 use std::io::IsTerminal;
@@ -9,12 +10,12 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// What is shown.
+/// The progress line of the program.
 static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, is_closed: false });
 
 struct Line {
     bar: Option<ProgressBar>,
-    /// Of a bar; a stage without an end has none.
+    /// Number of steps of a bar; `None` for a stage whose length is not known.
     total: Option<u64>,
     is_closed: bool,
 }
@@ -28,20 +29,20 @@ impl Line {
         if let Some(old) = self.bar.take() {
             old.finish_and_clear();
         }
-        // A template that is wrong is no reason to fail.
+        // A wrong template is not a reason to fail.
         let style = ProgressStyle::with_template(template);
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
         self.total = total;
         self.bar.insert(bar)
     }
 
-    /// Whether there is somebody to show it to.
+    /// Whether the line is shown, which needs a terminal.
     fn is_seen(&self) -> bool {
         !self.is_closed && std::io::stderr().is_terminal()
     }
 }
 
-/// Shows a stage whose end is not known.
+/// Shows a stage whose length is not known.
 pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() {
@@ -51,23 +52,23 @@ pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     }
 }
 
-/// Whether there is somebody to show progress to.
+/// Whether progress is shown, which needs a terminal.
 #[cfg(feature = "gpu")]
 pub(super) fn is_seen() -> bool {
     line().is_seen()
 }
 
-/// Into how many steps a bar is divided.
+/// Number of steps of a bar.
 #[cfg(feature = "gpu")]
 const STEPS: u64 = 10_000;
 
-/// Shows how much is traced, from 0 to 1.
+/// Shows the fraction of the picture that is traced, from 0 to 1.
 #[cfg(feature = "gpu")]
 pub(super) fn tracing(part: f64) {
     show_part(part, "tracing [{bar:40}] {percent}%, {eta} left", None);
 }
 
-/// Shows how far a lit picture is, from 0 to 1, and what else there is to say.
+/// Shows the fraction of a lit picture that is done, from 0 to 1, with a message.
 #[cfg(feature = "gpu")]
 pub(super) fn rendering(part: f64, message: String) {
     let template = "rendering [{bar:20}] {percent}%, {eta} left; {wide_msg}";
@@ -91,7 +92,7 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
     }
 }
 
-/// Writes while the line is out of the way.
+/// Runs `write` while the line is hidden.
 pub(super) fn beside<T>(write: impl FnOnce() -> T) -> T {
     let bar = line().bar.clone();
     match bar {
@@ -100,7 +101,7 @@ pub(super) fn beside<T>(write: impl FnOnce() -> T) -> T {
     }
 }
 
-/// Takes the line away.
+/// Removes the line.
 pub(super) fn clear() {
     let mut line = line();
     line.total = None;
@@ -109,7 +110,7 @@ pub(super) fn clear() {
     }
 }
 
-/// Takes the line away for good.
+/// Removes the line, and shows no more progress.
 pub(super) fn close() {
     clear();
     line().is_closed = true;

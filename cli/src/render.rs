@@ -1,4 +1,4 @@
-//! `pinhole render`.
+//! `pinhole render`: renders a scene file or a data file.
 
 use anyhow::Context;
 
@@ -31,7 +31,7 @@ use pinhole::cpu;
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
 
-/// A render, checked as far as it can be before the input is read.
+/// A render job, checked as far as is possible before the input is read.
 struct Job {
     source: Source,
     outputs: Outputs,
@@ -60,7 +60,7 @@ impl Job {
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let job = Job::new(args)?;
     threads::start()?;
-    // Loading a driver and reading a file leave each other half of the time.
+    // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.spare(&input.files)?;
     for note in &input.notes {
@@ -78,7 +78,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
         return Err(Failure::usage(
-            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+            "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ));
     }
     let adapter = opened.adapter();
@@ -90,14 +90,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let image = match render_views(&input, &job.stop_rule, &views, layers, &opened)? {
         Views::One(image) => image,
-        Views::Two([left, right]) => {
-            Image::side_by_side([&left, &right]).context("both eyes in one picture")?
-        }
+        Views::Two([left, right]) => Image::side_by_side([&left, &right])
+            .context("the pictures of both eyes cannot be joined")?,
     };
     Ok(job.outputs.write(&image, &encoding, adapter, None)?)
 }
 
-/// Renders what the camera, or the one between two eyes, sees.
+/// Renders the view of the camera, or of the middle between two eyes.
 pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result<Image, Failure> {
     let view = Views::One(input.view());
     match render_views(input, &StopRule::default(), &view, layers, opened)? {
@@ -105,7 +104,7 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
     }
 }
 
-/// Renders on the device, and says so if that is not what the user would expect.
+/// Renders on the device, and tells the user if it is not the expected one.
 fn render_views(
     input: &Input,
     stop_rule: &StopRule,
@@ -120,7 +119,7 @@ fn render_views(
             check_on_cpu(input, stop_rule, views, layers)?;
             tell(
                 "note: no Vulkan, Metal or DX12 adapter was found; \
-                 rendering on the CPU reference, which is slower",
+                 rendering on the CPU reference, which is slower; `pinhole info` says what to install",
             );
             on_cpu(input, stop_rule, views, layers)
         }
@@ -132,7 +131,7 @@ fn render_views(
     }
 }
 
-/// Refuses what the CPU reference has not, and what does not fit.
+/// Refuses flags that the CPU reference does not support, and pictures that do not fit into memory.
 fn check_on_cpu(
     input: &Input,
     stop_rule: &StopRule,
@@ -155,7 +154,7 @@ fn on_cpu(
     progress::stage("rendering on the CPU reference");
     let Input { scene, settings, .. } = input;
     let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
-    Ok(images.context("the CPU reference")?)
+    Ok(images.context("the CPU reference cannot render this picture")?)
 }
 
 #[cfg(feature = "gpu")]
@@ -202,7 +201,7 @@ fn on_gpu(
     Ok(pictures.map(|(picture, _)| picture.image))
 }
 
-/// What the pictures of an input will take.
+/// Plans the memory for the pictures of an input.
 #[cfg(feature = "gpu")]
 pub(super) fn plan(
     headless: &Headless,

@@ -1,4 +1,4 @@
-//! The self-test of an adapter: for `pinhole info`, and the quick part before a render.
+//! The self-test of an adapter: the full test for `pinhole info` and `verify`, and a quick part before a render.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ use pinhole::gpu::{
     GpuError, Headless, PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty,
 };
 
-/// What was found of an adapter.
+/// The results of the self-test of an adapter.
 #[derive(Serialize)]
 pub(super) struct SelfTested {
     adapter: AdapterReport,
     passed: bool,
     properties: Vec<PropertyReport>,
-    /// What is wrong with it.
+    /// The first property that failed.
     #[serde(skip)]
     failure: Option<String>,
 }
@@ -34,7 +34,7 @@ struct PropertyReport {
 }
 
 impl SelfTested {
-    /// Tests all of it.
+    /// Opens an adapter and runs the full test.
     pub(super) fn new(wanted: &WantedAdapter) -> Result<Self, Failure> {
         let headless = wanted.open_any()?;
         let report = test(&headless)?;
@@ -55,13 +55,13 @@ impl SelfTested {
         text
     }
 
-    /// A failure, if it lacks a property.
+    /// Returns a failure if a property failed.
     pub(super) fn verdict(&self) -> Result<(), Failure> {
         unproven(self.failure.as_deref())
     }
 }
 
-/// Tests all of an adapter that is open; a failure, if it lacks a property.
+/// Runs the full test on an open adapter, and returns a failure if a property failed.
 pub(super) fn check(headless: &Headless) -> Result<(), Failure> {
     let report = test(headless)?;
     unproven(failure(&headless.adapter_info().name, &report).as_deref())
@@ -94,13 +94,13 @@ impl PropertyReport {
     }
 }
 
-/// The first thing that an adapter gets wrong.
+/// Returns a message about the first property that failed.
 fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
     let failure = report.first_failure()?;
     Some(format!("{adapter} fails the self-test ({failure})"))
 }
 
-/// Tests the little that takes no time; gives the warning for a device whose pictures may be wrong.
+/// Runs the quick part of the test. Returns a warning if the pictures of the adapter may be wrong.
 pub(super) fn doubt(headless: &Headless) -> Option<String> {
     warning(&headless.adapter_info().name, headless.self_test(SelfTestExtent::Quick))
 }
@@ -108,8 +108,8 @@ pub(super) fn doubt(headless: &Headless) -> Option<String> {
 fn warning(adapter: &str, tested: Result<SelfTestReport, GpuError>) -> Option<String> {
     let failure = match tested {
         Ok(report) => failure(adapter, &report)?,
-        // The render may succeed all the same, or says it again.
-        Err(error) => format!("{adapter} cannot do the self-test ({error})"),
+        // The render may still succeed; if not, it reports the error again.
+        Err(error) => format!("{adapter} cannot run the self-test ({error})"),
     };
     Some(format!("warning: {failure}; check its pictures with `pinhole verify`"))
 }
@@ -176,6 +176,6 @@ mod tests {
             "warning: some fails the self-test (fence: the words); check its pictures with `pinhole verify`"
         );
         let lost = GpuError::DeviceLost { message: "gone".to_owned() };
-        assert!(warning("some", Err(lost)).unwrap().contains("cannot do the self-test"));
+        assert!(warning("some", Err(lost)).unwrap().contains("cannot run the self-test"));
     }
 }

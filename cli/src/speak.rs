@@ -1,4 +1,4 @@
-//! Words for the user. That nobody listens is no reason to fail.
+//! Prints messages for the user. A message that cannot be printed is not an error.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::progress;
 use pinhole::text::one_line;
 
-/// One line on standard error, with nothing in it that a terminal would obey.
+/// Prints one line on standard error, with control characters escaped.
 pub(super) fn tell(line: impl fmt::Display) {
     let line = one_line(&line.to_string());
     progress::beside(|| {
@@ -14,16 +14,16 @@ pub(super) fn tell(line: impl fmt::Display) {
     });
 }
 
-/// Text of several lines on standard error.
+/// Prints a text of several lines on standard error.
 pub(super) fn tell_all(text: &str) {
     let _ = write!(io::stderr().lock(), "{text}");
 }
 
-/// Text on standard output, which was asked for.
+/// Prints the result on standard output.
 pub(super) fn answer(bytes: &[u8]) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        // The reader has seen enough.
+        // The reader has closed the pipe because it needs no more.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => result,
     }

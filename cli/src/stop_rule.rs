@@ -1,4 +1,4 @@
-//! How long a picture is worked on: for a time, until little noise is left, or until a signal.
+//! When rendering stops: after a time, at a level of noise, or at a signal.
 
 #[cfg(feature = "gpu")]
 use std::cell::Cell;
@@ -9,30 +9,27 @@ use std::time::Instant;
 use clap::Args;
 
 use super::failure::Failure;
+use super::light::HEADING;
 #[cfg(feature = "gpu")]
 use super::{interrupt, progress, speak::tell};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{Decision, Progress};
 
-/// As of [`super::light::LightArgs`].
-const HEADING: &str =
-    "Light (any of these, as any table of a scene's that is about light, gives a lit picture)";
-
 #[derive(Debug, Args)]
 pub(super) struct StopArgs {
-    /// Take samples for so long, such as 20s or 1.5m, up to --samples
+    /// Take samples for this time, such as 20s, 1.5m or 2h, but at most --samples
     #[arg(long, help_heading = HEADING, value_name = "TIME")]
     time: Option<String>,
-    /// Take samples until the noise is at most this part of the light, such as 0.01, up to --samples
+    /// Take samples until the noise is at most this fraction of the light, such as 0.01, but at most --samples
     #[arg(long, help_heading = HEADING, value_name = "PART", allow_hyphen_values = true)]
     noise: Option<f64>,
-    /// On Ctrl-C, write what the samples of a lit picture give so far; with --time, wait until every pixel has one. A
-    /// second Ctrl-C writes nothing
+    /// On Ctrl-C, write the lit picture from the samples taken so far. With --time, also wait until every pixel has a
+    /// sample. A second Ctrl-C ends without a picture
     #[arg(long)]
     keep_partial: bool,
 }
 
-/// What was given, checked.
+/// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StopRule {
     time: Option<Duration>,
@@ -40,7 +37,7 @@ pub(super) struct StopRule {
     keep_partial: bool,
 }
 
-/// With fewer samples, little noise may be luck.
+/// Samples that a picture needs before its noise counts. With fewer samples, the estimate may be low by chance.
 #[cfg(feature = "gpu")]
 const LEAST_SAMPLES: u32 = 16;
 
@@ -58,19 +55,19 @@ impl StopRule {
         Ok(Self { time, noise, keep_partial })
     }
 
-    /// The flag from which the number of samples follows.
+    /// Returns the flag that leaves the number of samples open, if there is one.
     pub(super) fn open_end(&self) -> Option<&'static str> {
         let by_noise = self.noise.map(|_| "--noise");
         self.time.map(|_| "--time").or(by_noise)
     }
 
-    /// Whether a signal leaves the picture as it is.
+    /// Whether the picture is written after a signal.
     #[cfg(feature = "gpu")]
     pub(super) fn keeps_partial(&self) -> bool {
         self.keep_partial
     }
 
-    /// Refuses what the CPU reference has not.
+    /// Refuses flags that the CPU reference does not support.
     pub(super) fn check_on_cpu(&self) -> Result<(), Failure> {
         let given = [
             ("--time", self.time.is_some()),
@@ -79,25 +76,25 @@ impl StopRule {
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((flag, _)) => Err(Failure::usage(format!(
-                "{flag} needs an adapter; the CPU reference finishes pixel after pixel, with --samples"
+                "{flag} needs an adapter, because the CPU reference completes one pixel after the other; use --samples instead"
             ))),
             None => Ok(()),
         }
     }
 
-    /// What a picture without light has no use for.
+    /// Refuses flags that do not apply to a picture without light.
     pub(super) fn check_without_light(&self) -> Result<(), Failure> {
         if self.keep_partial {
             return Err(Failure::usage(
-                "--keep-partial concerns lit pictures, and this one has one sample a pixel; drop it, \
-                 or ask for light, such as with --integrator studio",
+                "--keep-partial applies only to lit pictures, but this one has one sample per pixel; remove it, \
+                 or ask for light, for example with --integrator studio",
             ));
         }
         Ok(())
     }
 }
 
-/// A number of seconds, minutes or hours.
+/// Parses a time in seconds, minutes or hours.
 fn parse_time(text: &str) -> Result<Duration, Failure> {
     let wrong = || {
         Failure::usage(format!(
@@ -116,25 +113,25 @@ fn parse_time(text: &str) -> Result<Duration, Failure> {
     if time.is_zero() { Err(wrong()) } else { Ok(time) }
 }
 
-/// The rule for one picture of several.
+/// Applies the rule to one of several pictures while it is rendered.
 #[cfg(feature = "gpu")]
 pub(super) struct Watching {
     stop_rule: StopRule,
     time: Option<Duration>,
-    /// Of a lit picture; others have no noise.
+    /// Whether the noise is measured, which only lit pictures have.
     measures_noise: bool,
     is_lit: bool,
     pixels: u64,
     started: Instant,
-    /// Whether the user knows that the first sample is waited for.
+    /// Whether the user was told that the program waits for the first sample.
     has_said: Cell<bool>,
-    /// If the time was up before every pixel had a sample: about which part of them had.
+    /// The approximate fraction of the pixels that had a sample when the time was up, if it was less than 1.
     too_short: Cell<Option<f64>>,
 }
 
 #[cfg(feature = "gpu")]
 impl Watching {
-    /// From now on; all pictures share the time.
+    /// Starts the time of one picture. All `pictures` share the time equally.
     pub(super) fn new(stop_rule: StopRule, pictures: usize, pixels: u64, is_lit: bool) -> Self {
         let time = stop_rule.time.map(|time| time / u32::try_from(pictures).unwrap_or(1));
         let measures_noise = is_lit && (stop_rule.noise.is_some() || progress::is_seen());
@@ -150,7 +147,7 @@ impl Watching {
         }
     }
 
-    /// Shows how far it is, and decides how it goes on.
+    /// Shows the progress, and decides whether rendering continues.
     pub(super) fn decide(&self, progress: &Progress) -> Decision {
         let elapsed = self.started.elapsed();
         self.show(progress, elapsed);
@@ -165,7 +162,7 @@ impl Watching {
         }
         if (is_interrupted || is_late) && !has_any {
             if !self.stop_rule.keep_partial {
-                // Of one sample of every pixel.
+                // As a fraction of one sample for every pixel.
                 self.too_short.set(Some(progress.part * f64::from(progress.total)));
                 return Decision::Stop;
             }
@@ -183,28 +180,29 @@ impl Watching {
         }
     }
 
-    /// What to say if the time was too short for a sample of every pixel.
+    /// Returns the failure if the time was too short for one sample of every pixel.
     pub(super) fn too_short(&self) -> Option<Failure> {
         let (part, time) = (self.too_short.get()?, self.time?.as_secs_f64());
         Some(Failure::Job(anyhow::anyhow!(
-            "--time: after {time:.3} s {:.0} % of the pixels have a sample, and a picture needs one of each; \
+            "--time: after {time:.3} s only {:.0} % of the pixels have a sample, but a picture needs one for each; \
              nothing was written; give more time or a smaller --size, or wait for it with --keep-partial",
             (100.0 * part).clamp(0.0, 99.0)
         )))
     }
 
-    /// A picture needs one sample of every pixel; says once that it is still waited for.
+    /// Tells the user once that the program waits until every pixel has a sample, because a picture needs one.
     fn say_first_sample(&self, is_interrupted: bool) {
         if self.has_said.replace(true) {
             return;
         }
         if is_interrupted {
             tell(
-                "note: stopping once every pixel has its first sample; Ctrl-C once more ends without a picture",
+                "note: stopping when every pixel has its first sample; press Ctrl-C again to end without a picture",
             );
         } else {
             tell(
-                "note: the time is up; the picture is written once every pixel has its first sample",
+                "note: the time is up; the picture will be written when every pixel has its first sample; \
+                 press Ctrl-C twice to end without a picture",
             );
         }
     }
@@ -231,14 +229,14 @@ impl Watching {
             format!(" of {}", progress.total)
         };
         let message = format!(
-            "{}{of_total} samples{noise}, {:.1} million a second",
+            "{}{of_total} samples{noise}, {:.1} million per second",
             progress.samples,
             taken / seconds.max(1e-3) / 1e6
         );
         progress::rendering(part, message);
     }
 
-    /// What to say of a picture that is done.
+    /// Returns a line about a picture that stopped early or has more noise than wanted.
     pub(super) fn verdict(
         &self,
         samples: u32,
@@ -247,12 +245,12 @@ impl Watching {
         is_stopped: bool,
     ) -> Option<String> {
         if is_stopped && samples < total {
-            return Some(format!("stopped; the picture has {samples} samples a pixel"));
+            return Some(format!("stopped; the picture has {samples} samples per pixel"));
         }
         let wanted = self.stop_rule.noise?;
         let left = noise.filter(|noise| *noise > wanted)?;
         Some(format!(
-            "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}"
+            "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}; allow more --samples or --time"
         ))
     }
 }

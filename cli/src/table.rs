@@ -1,6 +1,6 @@
-//! Tables for people: the first column to the left, numbers to the right.
+//! Formats tables as text, with the first column aligned left and the others right.
 
-/// Rows under a heading, indented by two spaces.
+/// Formats rows under a heading, indented by two spaces.
 pub(super) fn table<const N: usize>(heading: [&str; N], rows: &[[String; N]]) -> String {
     let heading = heading.map(str::to_owned);
     let all = || std::iter::once(&heading).chain(rows);

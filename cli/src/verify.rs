@@ -1,4 +1,4 @@
-//! `pinhole verify`: renders on an adapter, or reads what one rendered, and decides whether it is legal.
+//! `pinhole verify`: checks whether a picture is legal that an adapter renders now, or that was recorded before.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
     };
     progress::stage("checking");
-    let checker = Checker::new(&run.scene).context("the checker")?;
+    let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
     drop(checker);
     let report = Report::new(&run, &certificate, paths.as_ref());
@@ -35,7 +35,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     paths.as_ref().map_or(Ok(()), verdict_of_paths)
 }
 
-/// What somebody saved.
+/// Reads a saved recording.
 fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.spare(&[path.to_path_buf()])?;
@@ -74,7 +74,7 @@ fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
     }
 }
 
-/// A recording, where its results go, and what was found of its paths if it has any.
+/// A recording, the outputs of the check, and the certificate of its light paths if they were checked.
 type Recorded = (Run, VerifyOutputs, Option<PathCertificate>);
 
 #[cfg(not(feature = "gpu"))]
@@ -83,7 +83,7 @@ mod recorded {
 
     pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<Recorded, Failure> {
         Err(Failure::usage(
-            "this program was built without the feature `gpu`; it has only `pinhole verify --replay RUN`",
+            "this program was built without the feature `gpu`, so it can only check recordings: `pinhole verify --replay RUN`",
         ))
     }
 }
@@ -103,7 +103,7 @@ mod recorded {
     use pinhole::render::Integrator;
     use pinhole::verify::run_file::Provenance;
 
-    /// What an adapter makes of a scene now.
+    /// Renders a scene on an adapter and records it.
     pub(super) fn recorded(path: &Path, args: &VerifyArgs) -> Result<Recorded, Failure> {
         let source = Source::of_view(path, &args.view)?;
         let outputs = VerifyOutputs::new(args)?;
@@ -115,20 +115,28 @@ mod recorded {
             tell(format_args!("note: {note}"));
         }
         if input.eyes.is_some() {
-            tell("note: the camera has two eyes; what is checked is the picture from between them");
+            tell(
+                "note: the camera has two eyes; only the view from the middle between them is checked",
+            );
         }
         let is_lit = !input.settings.integrator.is_primary();
         let has_paths = matches!(input.settings.integrator, Integrator::Path(_));
         if !has_paths && args.paths.is_some() {
-            return Err(Failure::usage("--paths needs a scene whose integrator is `path`"));
+            return Err(Failure::usage(
+                "--paths needs a scene with the integrator `path`; remove --paths",
+            ));
         }
         if is_lit && !has_paths {
             tell(
-                "note: the scene asks for light; what is checked is its picture without, by one ray a pixel",
+                "note: the scene asks for light, but its picture without light is checked, with one ray per pixel; \
+                 to check light as well, use a scene with the integrator `path`",
             );
         }
         if has_paths && args.save.is_some() {
-            tell("note: what --save keeps is the picture by one ray a pixel, and no paths");
+            tell(
+                "note: --save stores the picture with one ray per pixel, but no light paths; to check those again, \
+                 run `verify` on the scene again",
+            );
         }
         let headless = wanted.open_any()?;
         self_test::check(&headless)?;

@@ -1,4 +1,4 @@
-//! The files of `pinhole verify`: all of them, or none.
+//! Writes the files of `pinhole verify`: all of them, or none.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,16 +16,16 @@ use super::verify_report::Report;
 use pinhole::verify::Certificate;
 use pinhole::verify::run_file::{self, Run};
 
-/// The page in the folder of a report.
+/// File name of the page in the folder of a report.
 const PAGE: &str = "report.html";
 
-/// Where the results go, checked before any work is done.
+/// The outputs of a check, checked before any work is done.
 pub(super) struct VerifyOutputs {
     json: Option<PathBuf>,
     save: Option<PathBuf>,
     folder: Option<NewFolder>,
     page: Option<PathBuf>,
-    /// A run file that holds what is judged.
+    /// The run file that holds the checked recording, if there is one.
     run: Option<PathBuf>,
 }
 
@@ -43,7 +43,7 @@ impl VerifyOutputs {
             run: args.replay.clone().or(args.save.clone()),
         };
         check_distinct(outputs.paths())?;
-        // A folder that is yet to be made has a name as well.
+        // The name of a folder that does not exist yet must also differ from the others.
         check_distinct(args.json.iter().chain(&args.save).chain(&args.report))?;
         Ok(outputs)
     }
@@ -52,12 +52,12 @@ impl VerifyOutputs {
         self.json.iter().chain(&self.save).chain(&self.page)
     }
 
-    /// Refuses to overwrite what was read.
+    /// Refuses to overwrite an input.
     pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
         spare(self.paths(), inputs)
     }
 
-    /// Encodes and writes everything.
+    /// Encodes and writes all outputs.
     pub(super) fn write(
         &self,
         run: &Run,
@@ -74,7 +74,9 @@ impl VerifyOutputs {
         let mut files = Vec::new();
         if let Some(path) = &self.json {
             progress::stage("writing");
-            let json = serde_json::to_string_pretty(report).context("the report")? + "\n";
+            let json = serde_json::to_string_pretty(report)
+                .context("the report cannot be written as JSON")?
+                + "\n";
             files.push((path, unnamed(path, json.as_bytes())?));
         }
         if let Some(path) = &self.page {

@@ -1,4 +1,4 @@
-//! The page of `pinhole verify --report`: one file that needs no other. Everything foreign is escaped.
+//! Makes the page of `pinhole verify --report`: one file that needs no other files. All inserted text is escaped.
 
 use std::fmt::Display;
 
@@ -14,66 +14,66 @@ use super::verify_report::{Listed, Report};
 use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, Verdict, Violation};
 
-/// So many violations are enlarged.
+/// The largest number of violations that are shown enlarged.
 const ENLARGED: usize = 12;
 
-/// How many colours a scale is drawn with.
+/// Number of intervals of the colour scale.
 const STOPS: u32 = 12;
 
-/// Side of an enlarged pixel.
+/// Width and height of an enlarged pixel in CSS pixels.
 const ZOOM: u32 = 11;
 
-/// A row of the table, and of the legend.
+/// A row of the table, which also is an entry of the legend.
 #[derive(Serialize)]
 struct Row {
     name: &'static str,
     meaning: &'static str,
     color: String,
-    /// All that the pictures have for it.
+    /// CSS background that shows all colours of this verdict in the pictures.
     swatch: String,
     count: String,
     percent: String,
-    /// Of the bar.
+    /// Width of this row's part of the bar, in percent.
     width: f64,
 }
 
-/// An enlarged violation.
+/// A violation that is shown enlarged.
 #[derive(Serialize)]
 struct Enlarged {
     number: usize,
     listed: Listed,
     color: String,
     mask: String,
-    /// In CSS pixels.
+    /// Width of the enlarged part in CSS pixels.
     width: u32,
     height: u32,
     zoom: u32,
-    /// Of the pixel, in CSS pixels.
+    /// Offset of the pixel in the enlarged part, in CSS pixels.
     left: u32,
     top: u32,
-    /// Of the pixel in the whole picture, in percent.
+    /// Position of the pixel in the whole picture, in percent.
     x: f64,
     y: f64,
 }
 
-/// How large the pictures are on a screen.
+/// The size of the pictures on a screen.
 #[derive(Debug, PartialEq, Serialize)]
 struct PictureSize {
-    /// In CSS pixels, if there is so much room; of one that has a row for itself, `wide`.
+    /// Width in CSS pixels, if there is enough room. A picture with a row for itself has the width `wide`.
     width: f64,
     wide: f64,
-    /// Width over height.
+    /// Aspect ratio: width over height.
     aspect: f64,
     stretched: bool,
-    /// Whether pixels are seen as squares.
+    /// Whether pixels are shown as sharp squares.
     sharp: bool,
 }
 
 impl PictureSize {
     fn new([width, height]: [u32; 2]) -> Self {
-        /// A frame is at most so many times as long as wide.
+        /// Largest ratio of the sides of a frame.
         const LONGEST: f64 = 8.0;
-        /// In CSS pixels.
+        /// Largest height in CSS pixels.
         const HEIGHT: f64 = 860.0;
         const LARGEST_PIXEL: f64 = 32.0;
         let film = f64::from(width) / f64::from(height);
@@ -91,13 +91,13 @@ impl PictureSize {
     }
 }
 
-/// What the template puts in.
+/// The values that the template inserts.
 #[derive(Serialize)]
 struct Page<'a> {
     report: &'a Report,
-    /// Of the program that checks.
+    /// Version of the program that checks.
     program: &'static str,
-    /// The file that holds what was judged, if there is one.
+    /// The run file that holds the checked recording, if there is one.
     run_file: Option<String>,
     pixels: String,
     spheres: String,
@@ -105,24 +105,24 @@ struct Page<'a> {
     rows: Vec<Row>,
     worst_depth: String,
     worst_normal: String,
-    /// In how many pixels `render` makes another picture, if that is known.
+    /// Number of pixels in which `render` gives other values than the recording, if that is known.
     rendered_otherwise: Option<String>,
-    /// Width and height of the pictures, and how many pixels along an axis are one of theirs.
+    /// Width and height of the pictures in the page. One of their pixels stands for `step` × `step` pixels.
     shown: [u32; 2],
     step: u32,
     frame: PictureSize,
     color: String,
     depth: String,
-    /// `None` if no pixel was judged.
+    /// Picture of the verdicts; `None` if no pixel was judged.
     mask: Option<String>,
     miss: String,
     scale: String,
-    /// `None` if no sphere is hit.
+    /// Labels of the depth scale; `None` if no sphere is hit.
     ticks: Option<Vec<String>>,
     violations: Vec<Enlarged>,
 }
 
-/// The page. `run_file` holds what was judged, if there is such a file.
+/// Makes the page. `run_file` is the file that holds the checked recording, if there is one.
 pub(super) fn page(
     run: &Run,
     certificate: &Certificate,
@@ -162,10 +162,13 @@ pub(super) fn page(
     };
     let mut environment = Environment::new();
     let template = include_str!("verify_page.html");
-    // The name says that what is put in is escaped.
-    environment.add_template("page.html", template).context("the page of the report")?;
-    let template = environment.get_template("page.html").context("the page of the report")?;
-    template.render(Value::from(Serde(page))).context("the page of the report")
+    // The extension .html makes the template engine escape all inserted text.
+    environment
+        .add_template("page.html", template)
+        .context("the page of the report cannot be made")?;
+    let template =
+        environment.get_template("page.html").context("the page of the report cannot be made")?;
+    template.render(Value::from(Serde(page))).context("the page of the report cannot be made")
 }
 
 fn rows(certificate: &Certificate) -> Vec<Row> {
@@ -221,13 +224,13 @@ fn enlarged(
     })
 }
 
-/// Stops of a CSS gradient, from near to far.
+/// Returns the stops of a CSS gradient, from near to far.
 fn scale() -> String {
     let stops = (0..=STOPS).map(|stop| css(depth_color(f64::from(stop) / f64::from(STOPS))));
     stops.collect::<Vec<_>>().join(", ")
 }
 
-/// Five depths along the scale, or the only one.
+/// Returns the labels of the scale: five depths, or one if all depths are equal.
 fn ticks([least, greatest]: [f32; 2]) -> Vec<String> {
     if least >= greatest {
         return vec![significant(least.into())];
@@ -236,11 +239,11 @@ fn ticks([least, greatest]: [f32; 2]) -> Vec<String> {
     (0..5).map(|i| significant(least + (greatest - least) * f64::from(i) / 4.0)).collect()
 }
 
-/// With five digits.
+/// Formats a number with five significant digits.
 fn significant(value: f64) -> String {
     let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
     if (-4.0..6.0).contains(&exponent) {
-        // Between 0 and 8.
+        // The result is between 0 and 8.
         let decimals = (4.0 - exponent).max(0.0) as usize;
         format!("{value:.decimals$}")
     } else {
@@ -248,13 +251,13 @@ fn significant(value: f64) -> String {
     }
 }
 
-/// Digits in groups of three.
+/// Formats a number with its digits in groups of three.
 fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            // A space that neither grows nor breaks.
+            // A narrow no-break space.
             text.push('\u{202f}');
         }
         text.push(digit);
@@ -267,7 +270,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_of_any_shape_have_room() {
+    fn pictures_of_any_shape_fit() {
         let frame = |size| {
             let PictureSize { width, aspect, stretched, sharp, .. } = PictureSize::new(size);
             (width, width / aspect, stretched, sharp)

@@ -1,4 +1,4 @@
-//! `pinhole verify` of a scene whose light is followed along paths: some samples of every pixel, stage by stage.
+//! `pinhole verify` of a scene with path tracing: checks some samples of every pixel, stage by stage.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub(super) struct PathReport {
     violation_count: u64,
     violations: Vec<Listed>,
     legal: bool,
-    /// The certificate's own line.
+    /// The certificate as one line of text.
     #[serde(skip)]
     pub(super) line: String,
 }
@@ -93,7 +93,7 @@ mod recorded {
     use pinhole::image::LayerSet;
     use pinhole::verify::Checker;
 
-    /// Follows so many samples on an adapter, one after the other, and judges them.
+    /// Records this number of samples on an adapter, one after the other, and checks them.
     pub(crate) fn certify(
         headless: &Headless,
         input: &Input,
@@ -110,7 +110,7 @@ mod recorded {
                 Ok(buffers) => buffers,
                 Err(error) => return Ok(Err(error)),
             };
-            let checker = Checker::new(scene).context("the checker")?;
+            let checker = Checker::new(scene).context("the checker cannot be prepared")?;
             let mut certificate = PathCertificate::default();
             for sample in 0..samples {
                 progress::stage(format!("following paths: sample {sample}"));

@@ -1,4 +1,4 @@
-//! Pictures of a recording for its report: colour, depth, verdicts, and what is around a violation.
+//! Draws the pictures of a report: colours, depths and verdicts of a recording, and the pixels around a violation.
 
 use anyhow::Result;
 
@@ -9,19 +9,20 @@ use pinhole::verify::{Certificate, Verdict};
 use pinhole::write::png;
 use rayon::prelude::*;
 
-/// Pictures that are shown have no longer side than this.
+/// Longest side of a picture in the report, in pixels.
 const LONGEST: u32 = 2048;
 
-/// How many pixels around a violation are shown along an axis.
+/// Width and height of the part of the picture that is shown around a violation, in pixels.
 const CROP: u32 = 16;
 
-/// Misses in the picture of depths.
+/// Colour of misses in the picture of depths.
 pub(super) const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
 
-/// Where a sphere is hit and that is the one legal answer.
+/// Colour of pixels in which the hit of a sphere is the only legal answer.
 pub(super) const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
-/// Cold is legal, warm is not; all differ for eyes without red or green, and in grey (after Okabe and Ito).
+/// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in greyscale
+/// and for people with red-green colour blindness (after Okabe and Ito).
 pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     match verdict {
         Verdict::Decided => [0xe4, 0xeb, 0xef],
@@ -31,12 +32,12 @@ pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     }
 }
 
-/// `#rrggbb`
+/// Formats a colour as `#rrggbb`.
 pub(super) fn css([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A part of the film, and how many of its pixels along an axis are one that is shown.
+/// A part of the film, drawn at a reduced size: `step` × `step` pixels of the film become one pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Window {
     pub(super) first: [u32; 2],
@@ -45,13 +46,13 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// All of it, made smaller if it is large.
+    /// Makes a window of the whole film, reduced in size if it is large.
     pub(super) fn whole(size: [u32; 2]) -> Self {
         let step = size[0].max(size[1]).div_ceil(LONGEST);
         Self { first: [0, 0], size, step }
     }
 
-    /// What is around a pixel.
+    /// Makes a window of the pixels around a pixel.
     pub(super) fn around(pixel: [u32; 2], film: [u32; 2]) -> Self {
         let size = film.map(|side| side.min(CROP));
         let first = |axis: usize| {
@@ -60,7 +61,7 @@ impl Window {
         Self { first: [first(0), first(1)], size, step: 1 }
     }
 
-    /// Width and height of what is shown.
+    /// Returns the width and height of the drawn picture.
     pub(super) fn shown(&self) -> [u32; 2] {
         self.size.map(|side| side.div_ceil(self.step))
     }
@@ -71,7 +72,7 @@ pub(super) struct Pictures<'a> {
     run: &'a Run,
     verdicts: &'a [Verdict],
     width: usize,
-    /// The least and the greatest depth.
+    /// The smallest and the largest depth, if any sphere is hit.
     pub(super) depths: Option<[f32; 2]>,
 }
 
@@ -80,7 +81,7 @@ impl<'a> Pictures<'a> {
         let verdicts = &certificate.verdicts[..];
         let width = run.recording.film.width() as usize;
         let mut pictures = Self { run, verdicts, width, depths: None };
-        // A depth that is wrong must not spoil the scale.
+        // Wrong depths are left out, because they would spoil the scale.
         let is_wrong = |i: usize| verdicts.get(i) == Some(&Verdict::Violation);
         let depths = pictures.depth().iter().enumerate();
         let depths = depths.filter(|(i, depth)| depth.is_finite() && !is_wrong(*i));
@@ -95,7 +96,7 @@ impl<'a> Pictures<'a> {
         self.run.recording.image.depth().unwrap_or_default()
     }
 
-    /// The mean of the colours.
+    /// Draws the mean colour of each block of pixels.
     pub(super) fn color(&self, window: Window) -> Result<String> {
         let color = self.run.recording.image.color();
         encoded(window, |pixels| {
@@ -109,7 +110,7 @@ impl<'a> Pictures<'a> {
         })
     }
 
-    /// The least of the depths.
+    /// Draws the smallest depth of each block of pixels.
     pub(super) fn depth_colors(&self, window: Window) -> Result<String> {
         let depth = self.depth();
         let [least, greatest] = self.depths.unwrap_or([0.0; 2]);
@@ -126,7 +127,7 @@ impl<'a> Pictures<'a> {
         })
     }
 
-    /// The worst of the verdicts, so that none is lost where the picture is made smaller.
+    /// Draws the worst verdict of each block of pixels, so that no violation is lost where the size is reduced.
     pub(super) fn mask(&self, window: Window) -> Result<String> {
         let pixels = &self.run.recording.pixels;
         encoded(window, |block| {
@@ -144,13 +145,13 @@ impl<'a> Pictures<'a> {
     }
 }
 
-/// Near is bright: 0 is the nearest, 1 the farthest.
+/// Returns the colour of a depth from 0 (nearest, bright) to 1 (farthest, dark).
 pub(super) fn depth_color(part: f64) -> [u8; 3] {
     let color = colorous::VIRIDIS.eval_continuous(1.0 - part.clamp(0.0, 1.0));
     [color.r, color.g, color.b]
 }
 
-/// The pixels that become one.
+/// The pixels of the film that become one pixel.
 struct Block {
     columns: std::ops::Range<u32>,
     rows: std::ops::Range<u32>,
@@ -164,7 +165,7 @@ impl Block {
     }
 }
 
-/// A data URI of a PNG.
+/// Draws a window with a colour for each block, as the data URI of a PNG.
 fn encoded(window: Window, color: impl Fn(Block) -> [u8; 3] + Sync + Send) -> Result<String> {
     let Window { first, size, step } = window;
     let [width, height] = window.shown();
@@ -173,7 +174,7 @@ fn encoded(window: Window, color: impl Fn(Block) -> [u8; 3] + Sync + Send) -> Re
         first[axis] + start..first[axis] + (start + step).min(size[axis])
     };
     let row = |j: usize| -> Vec<[u8; 3]> {
-        // Sides are u32.
+        // The height is a u32, so its rows are too.
         let rows = range(1, j as u32);
         (0..width).map(|i| color(Block { columns: range(0, i), rows: rows.clone() })).collect()
     };
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_around_a_pixel_stays_within_the_film() {
+    fn a_window_around_a_pixel_stays_within_the_film() {
         let window = |pixel, film| {
             let Window { first, size, .. } = Window::around(pixel, film);
             (first, size)

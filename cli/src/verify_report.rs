@@ -1,4 +1,4 @@
-//! What `pinhole verify` found, as JSON and as a table.
+//! The report of `pinhole verify`, as JSON and as text.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use pinhole::text::one_line;
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{Certificate, PathCertificate, Verdict, Violation};
 
-/// At most so many violations are in the JSON document.
+/// The largest number of violations in the JSON document.
 pub(super) const LISTED: usize = 100;
 
 /// The JSON document.
@@ -24,16 +24,16 @@ pub(super) struct Report {
     pub(super) decided_fraction: f64,
     pub(super) worst_depth: f64,
     pub(super) worst_normal: f64,
-    /// In how many pixels `render` makes another picture; none if that is not known.
+    /// Number of pixels in which `render` gives other values than the recording; `None` if that is not known.
     pub(super) rendered_otherwise: Option<usize>,
     pub(super) upload: Option<String>,
     pub(super) violations: Vec<Listed>,
-    /// Of a scene whose light is followed along paths.
+    /// The check of the light paths, for a scene with the integrator `path`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) paths: Option<PathReport>,
     pub(super) legal: bool,
     pub(super) command: String,
-    /// The certificate's own table.
+    /// The certificate as a table of text.
     #[serde(skip)]
     table: String,
 }
@@ -61,7 +61,7 @@ pub(super) struct Picture {
     pub(super) structure: String,
 }
 
-/// A violation in words.
+/// A violation with its message.
 #[derive(Serialize)]
 pub(super) struct Listed {
     pub(super) pixel: [u32; 2],
@@ -112,7 +112,7 @@ impl Report {
         }
     }
 
-    /// The verdict in a line.
+    /// Returns the verdict on one line.
     pub(super) fn verdict(&self) -> String {
         match (self.legal, &self.upload, self.count(Verdict::Violation)) {
             (true, ..) if self.paths.is_some() => {
@@ -123,9 +123,9 @@ impl Report {
                 "legal: every pixel is as a conforming device may have made it".to_owned()
             }
             (false, Some(_), _) => {
-                "NOT legal: the device was not given what was asked for".to_owned()
+                "NOT legal: the data on the device are not those of this scene and view".to_owned()
             }
-            (false, None, 0) => "NOT legal: paths".to_owned(),
+            (false, None, 0) => "NOT legal: violations in the light paths".to_owned(),
             (false, None, 1) => "NOT legal: 1 violation".to_owned(),
             (false, None, count) => format!("NOT legal: {count} violations"),
         }
@@ -135,7 +135,7 @@ impl Report {
         self.counts.get(verdict.name()).copied().unwrap_or_default()
     }
 
-    /// For people. What a run file says of itself is on lines of its own.
+    /// Returns the report as text. Each entry that comes from a run file has a line of its own.
     pub(super) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
@@ -152,7 +152,7 @@ impl Report {
     }
 }
 
-/// What was typed, as a shell would take it.
+/// Returns the command line of this program, quoted for a shell.
 #[cfg(feature = "gpu")]
 pub(super) fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| {

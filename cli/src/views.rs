@@ -1,11 +1,11 @@
-//! One picture, or one for each eye.
+//! Values for one picture, or for the two pictures of a stereo camera.
 
 use super::input::Input;
 use super::memory;
 use pinhole::camera::View;
 use pinhole::image::LayerSet;
 
-/// Something for one picture, or for the left eye's and the right eye's.
+/// A value for one picture, or two values for the left and the right eye.
 pub(super) enum Views<T> {
     One(T),
     Two([T; 2]),
@@ -23,7 +23,7 @@ impl<T> Views<T> {
         self.as_slice().len()
     }
 
-    /// All that `f` makes of them.
+    /// Applies `f` to each value.
     #[cfg(feature = "gpu")]
     pub(super) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Views<U> {
         match self {
@@ -32,7 +32,7 @@ impl<T> Views<T> {
         }
     }
 
-    /// The first error, or all that `f` makes of them.
+    /// Applies `f` to each value, and returns the first error if there is one.
     pub(super) fn try_each<U, E>(
         &self,
         mut f: impl FnMut(&T) -> Result<U, E>,
@@ -55,12 +55,12 @@ impl<'a> Views<View<'a>> {
         }
     }
 
-    /// How many bytes a pixel are needed beside the layers of one picture.
+    /// Returns the bytes per pixel that are needed in addition to the layers of one picture.
     pub(super) fn bytes_beside(&self, layers: LayerSet) -> u64 {
         let encoding = memory::ENCODING_BYTES_PER_PIXEL;
         match self {
             Self::One(_) => encoding,
-            // The other picture, and both in one.
+            // The other picture, and a picture of twice the width that joins both.
             Self::Two(_) => 3 * layers.bytes_per_pixel() + 2 * encoding,
         }
     }

@@ -1,4 +1,4 @@
-//! A scene on a device, in the structures that suit it, and work with it.
+//! Builds the acceleration structures of a scene, and runs work with them on a device.
 
 use super::failure::Failure;
 use super::speak::tell;
@@ -7,9 +7,9 @@ use pinhole::accel::{AccelChoice, Structure};
 use pinhole::gpu::{GpuError, Headless, RenderPlan, Retry, Structures, with_retries};
 use pinhole::scene::Scene;
 
-/// Builds what `plan` says of a choice, as long as it fits, and does some work with it. Where rays take too many steps
-/// in the structures, and the choice was free, it is done once more with others, and said. The result comes with the
-/// structure in which it was done; the errors within are the device's.
+/// Builds the structures that `plan` gives for a choice, if they fit, and runs `work` with them. If rays take too many
+/// steps in the structures and the choice was automatic, tells the user and tries again with others. Returns the result
+/// of `work` and the structure that was used. The inner errors are those of the device.
 pub(super) fn with_structures<T>(
     headless: &Headless,
     scene: &Scene,
@@ -23,8 +23,8 @@ pub(super) fn with_structures<T>(
     };
     let retrying = |Retry { failed, next }| {
         tell(format_args!(
-            "note: rays take more steps in the {} than this device may loop for; \
-             trying the structure `{next}`, which takes longer",
+            "note: rays take more steps in the {} than this device allows; trying the structure `{next}`, \
+             which takes longer; to use it at once, add --accel {next}",
             failed.name()
         ));
     };

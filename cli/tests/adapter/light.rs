@@ -1,4 +1,4 @@
-//! Lit pictures of the program on an adapter: when to stop, signals, plans.
+//! Tests of lit pictures on an adapter: stop rules, signals and plans.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -8,6 +8,7 @@ use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
+use crate::program::{command_on, succeed};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -15,8 +16,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::the_same_job_gives_the_same_bytes", same_bytes),
         trial("light::noise_decides_how_many_samples_there_are", noise),
         trial("light::a_time_gives_at_least_one_sample", time),
-        trial("light::a_signal_leaves_what_there_is_if_that_is_asked_for", signal),
-        trial("light::a_plan_knows_of_light", plan),
+        trial("light::a_signal_keeps_the_partial_picture_if_asked", signal),
+        trial("light::a_plan_includes_the_buffers_of_light", plan),
         trial("light::shadows_follow_the_choice_of_structure", shadows),
     ]
 }
@@ -30,19 +31,11 @@ fn folder() -> TempDir {
     folder
 }
 
-fn command(folder: &Path, headless: &Headless, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command.current_dir(folder).args(arguments.split(' '));
-    command.args(["--adapter", &headless.adapter_info().name]);
-    command
-}
-
-/// What it says on standard error.
+/// Runs the program and returns its standard error.
+#[track_caller]
 fn run(folder: &Path, headless: &Headless, arguments: &str) -> String {
-    let output = command(folder, headless, arguments).output().unwrap();
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{arguments}: {stderr}");
-    stderr
+    let output = succeed(&mut command_on(headless, folder, arguments));
+    String::from_utf8(output.stderr).unwrap()
 }
 
 /// The number of samples, which all pixels share.
@@ -97,7 +90,7 @@ fn time(headless: &'static Headless) {
     // Too short for a sample of every pixel.
     std::fs::remove_file(folder.path().join("out.png")).unwrap();
     let flags = "render scene.toml -o out.png --integrator path --size 4000x3000 --time 0.02s";
-    let output = command(folder.path(), headless, flags).output().unwrap();
+    let output = command_on(headless, folder.path(), flags).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
     let words = "nothing was written; give more time or a smaller --size, or wait for it with --keep-partial\n";
@@ -107,7 +100,7 @@ fn time(headless: &'static Headless) {
 
 fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration) -> Output {
     let flags = format!("render scene.toml -o out.png --layer samples=s.npy {flags}");
-    let mut command = command(folder, headless, &flags);
+    let mut command = command_on(headless, folder, &flags);
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(after);
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
@@ -131,7 +124,7 @@ fn signal(headless: &'static Headless) {
         let said = String::from_utf8(output.stderr).unwrap();
         if output.status.code() == Some(0) {
             let count = samples(folder.path());
-            assert_eq!(said, format!("stopped; the picture has {count} samples a pixel\n"));
+            assert_eq!(said, format!("stopped; the picture has {count} samples per pixel\n"));
             assert!((1..10_000_000).contains(&count));
             assert!(image::open(folder.path().join("out.png")).is_ok());
             return;
@@ -145,10 +138,8 @@ fn signal(headless: &'static Headless) {
 fn plan(headless: &'static Headless) {
     let folder = folder();
     let plan = |flags: &str| {
-        let output =
-            command(folder.path(), headless, &format!("plan scene.toml --json {flags}")).output();
-        let output = output.unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let flags = format!("plan scene.toml --json {flags}");
+        let output = succeed(&mut command_on(headless, &folder, &flags));
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let paths =
             report["buffers"].as_array().unwrap().iter().find(|buffer| buffer["name"] == "paths");
@@ -159,12 +150,12 @@ fn plan(headless: &'static Headless) {
     assert!(state.is_some_and(|bytes| bytes > 0 && bytes % (16 * 64 * 48) == 0), "{state:?}");
     std::fs::write(folder.path().join("scene.toml"), SCENE.replace("[ground]\n", "")).unwrap();
     assert_eq!(plan("--size 64x48"), None);
-    // A path keeps nine vectors, and a studio ten.
+    // The state of a path has nine vectors, and that of a studio sample ten.
     let path = plan("--size 64x48 --integrator path");
     assert_eq!(path, state.map(|bytes| bytes / 10 * 9));
 }
 
-/// Of 80 spheres every other casts no shadow in a studio.
+/// Every second of 80 spheres casts no shadow in a studio.
 fn shadows(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     let mut scene =
@@ -177,7 +168,7 @@ fn shadows(headless: &'static Headless) {
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let counts = |flags: &str| {
         let flags = format!("plan scene.toml --json {flags}");
-        let output = command(folder.path(), headless, &flags).output().unwrap();
+        let output = command_on(headless, &folder, &flags).output().unwrap();
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let names: Vec<_> = report["buffers"]
             .as_array()

@@ -1,12 +1,13 @@
-//! The program on an adapter, run as a user runs it; Mesa's lavapipe is enough.
+//! Tests of the program on an adapter, run as a user runs it. Mesa's software driver lavapipe is enough.
 //!
-//! No adapter is a failure. If `PINHOLE_NO_GPU_TESTS=1`, every test here counts as ignored.
+//! The tests fail if there is no adapter. With `PINHOLE_NO_GPU_TESTS=1`, every test here is ignored.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
 #[path = "../../../tests/support/harness.rs"]
 mod harness;
 mod light;
 mod plan;
+mod program;
 mod render;
 mod verify;
 #[path = "../../../tests/support/view.rs"]

@@ -1,12 +1,12 @@
-//! The program on an adapter: plans, measurements, and being stopped.
+//! Tests of plans, measurements and signals on an adapter.
 
-use std::path::Path;
 use std::process::{Command, Output};
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
+use crate::program::{command, succeed};
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -22,21 +22,13 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-fn program(folder: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command.current_dir(folder).args(arguments.split(' '));
-    command
-}
-
 fn run(folder: &TempDir, arguments: &str) -> Output {
-    program(folder.path(), arguments).output().unwrap()
+    command(folder, arguments).output().unwrap()
 }
 
 #[track_caller]
 fn stdout(folder: &TempDir, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments}: {stderr}");
+    let output = succeed(&mut command(folder, arguments));
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -65,7 +57,7 @@ fn printed(headless: &'static Headless) {
     assert!(buffers.iter().any(|buffer| buffer["name"] == "depth read-back"));
 }
 
-/// What is free changes from run to run.
+/// Replaces the free bytes in a message, which change from run to run.
 fn without_free_bytes(stderr: &[u8]) -> String {
     let line = String::from_utf8(stderr.to_vec()).unwrap();
     let (start, rest) = line.split_once(", but ").unwrap();
@@ -125,12 +117,12 @@ fn bench(headless: &'static Headless) {
     assert!(text.contains("list: list") && text.contains("any Mrays/s"), "{text}");
 }
 
-/// 30,000 spheres for each of 16 million rays. The eye is among them, so that no ray is done at once.
+/// Every one of 16 million rays tests 30,000 spheres. The eye is among the spheres, so that no ray ends early.
 fn stopped(_: &'static Headless) {
     let folder = folder_with(30_000);
     let render = "render a.npy -o out.png --backend gpu --accel list --size 4000x4000 --eye 0.5,0.5,0.5 --direction 0,0,-1";
     for delay in [100, 300, 1000] {
-        let mut command = program(folder.path(), render);
+        let mut command = command(&folder, render);
         let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(delay));
         let id = child.id().to_string();

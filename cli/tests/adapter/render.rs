@@ -1,14 +1,13 @@
-//! The program on an adapter, as a user runs it: what it writes is what the library renders.
+//! Tests that the program writes what the library renders, on an adapter.
 
 use std::io::Cursor;
-use std::path::Path;
-use std::process::Command;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use pinhole::image::color;
 use pinhole::{Encoding, LayerSet, write};
 
+use crate::program::{command, command_on, succeed};
 use crate::trial;
 use crate::view::View;
 
@@ -22,21 +21,9 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// Runs `pinhole` in a folder; gives its standard output.
-fn run(folder: &Path, arguments: &[&str]) -> Vec<u8> {
-    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {stderr}");
-    output.stdout
-}
-
 fn demo(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
-    run(folder.path(), &["demo", "--backend", "gpu"]);
+    succeed(&mut command(&folder, "demo --backend gpu"));
     let view = View::three_spheres();
     let expected =
         headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
@@ -52,11 +39,8 @@ fn layers(headless: &'static Headless) {
         include_str!("../../../examples/three-spheres-orthographic.toml"),
     )
     .unwrap();
-    let adapter = &headless.adapter_info().name;
     let arguments = "render scene.toml -o out.png --layer depth=depth.npy --layer id=id.npy";
-    let mut arguments: Vec<&str> = arguments.split(' ').collect();
-    arguments.extend(["--adapter", adapter]);
-    run(folder.path(), &arguments);
+    succeed(&mut command_on(headless, &folder, arguments));
 
     let view = View::three_spheres_orthographic();
     let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::DATA).unwrap();
@@ -74,11 +58,11 @@ fn exr(headless: &'static Headless) {
     let scene = include_str!("../../../examples/three-spheres.toml");
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let adapter = &headless.adapter_info().name;
-    let mut arguments = vec!["render", "scene.toml", "-o", "out.exr", "--adapter", adapter];
+    let mut command = command_on(headless, &folder, "render scene.toml -o out.exr");
     for layer in LayerSet::ALL.iter() {
-        arguments.extend(["--layer", layer.name()]);
+        command.args(["--layer", layer.name()]);
     }
-    run(folder.path(), &arguments);
+    succeed(&mut command);
 
     let view = View::three_spheres();
     let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
@@ -92,8 +76,8 @@ fn exr(headless: &'static Headless) {
 fn self_test(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     let name = &headless.adapter_info().name;
-    let json = run(folder.path(), &["info", "--self-test", "--json", "--adapter", name]);
-    let info: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let output = succeed(&mut command_on(headless, &folder, "info --self-test --json"));
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(!info["adapters"].as_array().unwrap().is_empty());
     let tested = &info["self_test"];
     assert_eq!(
@@ -102,7 +86,8 @@ fn self_test(headless: &'static Headless) {
     );
     let properties = tested["properties"].as_array().unwrap();
     assert_eq!(properties.len(), 9);
-    let text = String::from_utf8(run(folder.path(), &["info", "--self-test"])).unwrap();
+    let output = succeed(&mut command(&folder, "info --self-test"));
+    let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains(name), "{text}");
     for property in properties {
         assert_eq!(property["passed"], true);
@@ -116,8 +101,8 @@ fn self_test(headless: &'static Headless) {
 
 fn info(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
-    let json = run(folder.path(), &["info", "--json"]);
-    let info: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let output = succeed(&mut command(&folder, "info --json"));
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let adapters = info["adapters"].as_array().unwrap();
     let chosen: Vec<_> = adapters.iter().filter(|a| a["chosen"] == true).collect();
     assert_eq!(chosen.len(), 1);
@@ -128,6 +113,7 @@ fn info(headless: &'static Headless) {
     let limit = &chosen[0]["limits"]["max_storage_buffer_binding_size"];
     let device_limit = headless.device().limits().max_storage_buffer_binding_size;
     assert_eq!(limit.as_u64(), Some(device_limit));
-    let text = String::from_utf8(run(folder.path(), &["info"])).unwrap();
+    let output = succeed(&mut command(&folder, "info"));
+    let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains(&expected.name) && text.contains("used by `render`"), "{text}");
 }

@@ -1,17 +1,18 @@
-//! `pinhole verify` on an adapter, as a user runs it; what it saved, checked again without one.
+//! Tests of `pinhole verify` on an adapter, and of replays of its recordings without one.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use pinhole::verify::run_file;
 use tempfile::TempDir;
 
+use crate::program::command;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
-        trial("verify::a_scene_is_proved_and_proved_again", proved),
+        trial("verify::a_recording_of_a_scene_is_legal_again", proved),
         trial("verify::no_sphere_and_one_pixel", small),
         trial("verify::a_pixel_that_is_wrong_is_named", named),
         trial("verify::paths_are_proved", paths),
@@ -26,13 +27,7 @@ fn folder() -> TempDir {
     folder
 }
 
-fn command(folder: &TempDir, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command.current_dir(folder.path()).args(arguments.split(' '));
-    command
-}
-
-/// Standard output of a replay on a machine without drivers.
+/// Runs a replay as on a machine without drivers.
 #[track_caller]
 fn replayed(folder: &TempDir, arguments: &str, code: i32) -> Output {
     let mut command = command(folder, arguments);
@@ -73,7 +68,7 @@ fn proved(headless: &'static Headless) {
     assert_eq!(json["rendered_otherwise"], 0);
     let page = String::from_utf8(read("page/report.html")).unwrap();
     assert!(page.contains("with kernels that keep no rays: every pixel has the same values."));
-    // The same on every structure; the run says which.
+    // The recording is the same with every structure, and the run names the structure.
     table(&folder, "verify scene.toml --save tree --accel tree");
     let (first, second) = (read("run"), read("tree"));
     let [first, second] = [&first, &second].map(|bytes| run_file::read(bytes).unwrap());
@@ -100,7 +95,7 @@ fn named(_: &'static Headless) {
     let path = folder.path().join("run");
     let mut run = run_file::read(&std::fs::read(&path).unwrap()).unwrap();
     let pixels = &mut run.recording.pixels;
-    // The first that hits something, and is no silhouette.
+    // The first pixel that hits a sphere and is not on a silhouette.
     let hit = |i: usize, pixels: &[pinhole::verify::TracedPixel]| pixels[i].id != u32::MAX;
     let wrong = (0..pixels.len() - 80).find(|i| hit(*i, pixels) && hit(*i + 80, pixels)).unwrap();
     pixels[wrong].t *= 1.001;

@@ -1,4 +1,4 @@
-//! Arrays of spheres, and the camera on the command line.
+//! Tests of arrays of spheres, and of the camera on the command line.
 
 use crate::npy_files::{npy, zip};
 use crate::support::{Folder, SCENE, WATER, decode};
@@ -42,7 +42,7 @@ fn refused(folder: &Folder, arguments: &str, code: i32, line: &str) {
     assert_eq!(folder.files(), before, "{arguments}");
 }
 
-/// A file that is nothing but a hole takes no room on the disk, and all of the memory.
+/// A sparse file takes no space on the disk, but would take all of the memory.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_that_does_not_fit_into_memory() {
@@ -54,7 +54,7 @@ fn a_file_that_does_not_fit_into_memory() {
     let run = folder.run("render large.npy -o out.png --backend cpu");
     assert_eq!(run.code, 1, "{}", run.stderr);
     let expected =
-        "error: large.npy: to read 8796093022208 bytes takes 19114.7 GiB of memory, and ";
+        "error: large.npy: reading 8796093022208 bytes needs 19114.7 GiB of memory, but only ";
     assert!(run.stderr.starts_with(expected), "{}", run.stderr);
     assert_eq!(folder.files(), ["large.npy"]);
 }
@@ -85,7 +85,10 @@ fn the_same_spheres_in_every_format() {
     }
     assert_ne!(picture(&folder, "a.npy --color red"), expected);
     let none = folder.run("render none.npy -o none.png --backend cpu --size 24x16").succeeded();
-    assert_eq!(none.stderr, "note: none.npy: there are no spheres in it\n");
+    assert_eq!(
+        none.stderr,
+        "note: none.npy: the file has no spheres, so the picture shows only the background\n"
+    );
     let (_, _, rgb) = decode(&folder.read("none.png"));
     assert!(rgb.chunks(3).all(|rgb| rgb == [255; 3]));
     for (name, scene) in [
@@ -111,12 +114,12 @@ fn arrays_that_are_refused() {
     refused(
         "xyz.npy",
         2,
-        "xyz.npy: the array has the shape (2, 3), without radii; give one radius for all (add --radius R)",
+        "xyz.npy: the array has the shape (2, 3) without radii; give one radius for all spheres (add --radius R)",
     );
     refused(
         "a.npy --radius 1",
         2,
-        "a.npy: the array has the shape (2, 4), with radii; a radius for all has no use; drop it",
+        "a.npy: the array has the shape (2, 4) with radii; remove the radius that is given for all spheres",
     );
     for radius in ["0", "-1", "inf"] {
         let line = format!("--radius {radius}: a radius must be finite and greater than 0");
@@ -125,40 +128,41 @@ fn arrays_that_are_refused() {
     refused(
         "int.npy",
         1,
-        "int.npy: the array has the type <i4; wanted is float32 or float64, so save a.astype('float32')",
+        "int.npy: the array has the type <i4, but it must be float32 or float64; save it as a.astype('float32')",
     );
     refused(
         "cut.npy",
         1,
-        "cut.npy: (2, 4) of type <f4 takes 32 bytes, but 29 follow the header; the file is cut off",
+        "cut.npy: an array of shape (2, 4) and type <f4 takes 32 bytes, but 29 bytes follow the header; \
+         the file is cut off",
     );
     refused(
         "huge.npy",
         1,
-        "huge.npy: (1000000000000000000, 4) of type <f4 takes 16000000000000000000 bytes, \
-         but 0 follow the header; the file is cut off",
+        "huge.npy: an array of shape (1000000000000000000, 4) and type <f4 takes 16000000000000000000 bytes, \
+         but 0 bytes follow the header; the file is cut off",
     );
     refused(
         "two.npz",
         1,
-        "two.npz: it has the arrays `a`, `b`; call the one to read `spheres` or `positions`, or save it alone",
+        "two.npz: the archive has the arrays `a`, `b`; name the one to read `spheres` or `positions`, or save it alone",
     );
     refused(
         "a.bin",
         2,
-        "a.bin: .bin does not say what is in the file; if it is x, y, z, radius in little-endian f32, \
+        "a.bin: the extension .bin does not show the format; if the file has x, y, z, radius in little-endian f32, \
          add --format raw-f32x4",
     );
     refused(
         "cut.bin --format raw-f32x4",
         1,
-        "cut.bin: 20 bytes are 1 spheres of 16 bytes (x, y, z, radius in little-endian f32), \
-         and 4 bytes are left over",
+        "cut.bin: the file has 20 bytes, which are 1 × 16 + 4, but each sphere takes 16 bytes \
+         (x, y, z, radius in little-endian f32); the file is cut off or has another format",
     );
     refused(
         "a.bin --format npy",
         1,
-        "a.bin: this is no .npy file; it does not start with \\x93NUMPY",
+        "a.bin: this is not an .npy file: it does not start with \\x93NUMPY; write the file with numpy.save",
     );
     let run = folder.run("render bad.npy -o out.png --backend cpu");
     assert!(
@@ -170,24 +174,24 @@ fn arrays_that_are_refused() {
 }
 
 #[test]
-fn flags_that_do_not_concern_the_data() {
+fn flags_that_do_not_apply_to_the_data() {
     let folder = folder();
     std::fs::write(folder.path("data.toml"), "data = 'a.npy'\nframe = 2\n").unwrap();
     for (arguments, code, line) in [
         (
             "a.npy --frame 0",
             2,
-            "--frame concerns trajectories (.xyz, .extxyz, .pdb, .ent); drop it",
+            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
         ),
         (
             "water.xyz --radius 1",
             2,
-            "--radius concerns arrays of shape (n, 3) (.npy, .npz); drop it",
+            "--radius applies only to arrays of shape (n, 3) (.npy, .npz); remove it",
         ),
         (
             "water.xyz --color red",
             2,
-            "--color concerns data without colors; atoms have those of their elements",
+            "--color applies only to data without colors; remove it, because atoms have the colors of their elements",
         ),
         (
             "a.npy --color gren",
@@ -197,12 +201,12 @@ fn flags_that_do_not_concern_the_data() {
         (
             "scene.toml --radius 1",
             2,
-            "scene.toml: --radius needs a scene with `data`, and this scene has none",
+            "scene.toml: --radius applies to the `data` of a scene, but this scene has no `data`; remove --radius",
         ),
         (
             "data.toml",
             1,
-            "data.toml: `data`: frame concerns trajectories (.xyz, .extxyz, .pdb, .ent); drop it",
+            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
         ),
     ] {
         refused(&folder, arguments, code, line);
@@ -244,11 +248,11 @@ fn cameras_that_are_refused() {
         ("--fov 30 --half-extent 1,1", "`--fov` and `--half-extent` exclude each other; keep one"),
         (
             "--camera orthographic --distance 2",
-            "--distance does not concern the orthographic camera; drop it",
+            "--distance does not apply to the orthographic camera; remove it",
         ),
         (
             "--camera orthographic --fov 30",
-            "--fov does not concern the orthographic camera; drop it",
+            "--fov does not apply to the orthographic camera; remove it",
         ),
         ("--eye 0,0,5", "an `--eye` needs a `--look-at` point or a `--direction`"),
         ("--distance 2", "`--distance` needs a `--half-extent`; a field of view needs neither"),
@@ -260,7 +264,7 @@ fn cameras_that_are_refused() {
             "--camera fisheye --angle 361",
             "the `--angle` in degrees is 361.0; it must lie between 0.0 and 360.0",
         ),
-        ("--camera panorama --fov 30", "--fov does not concern the panorama camera; drop it"),
+        ("--camera panorama --fov 30", "--fov does not apply to the panorama camera; remove it"),
         (
             "--camera thin-lens --f-stop 2",
             "`--f-stop` and `--focal-length` need each other: together they give the aperture radius",
@@ -271,12 +275,12 @@ fn cameras_that_are_refused() {
         ),
         (
             "--camera thin-lens --aperture-radius 1 --separation 1",
-            "--separation does not concern the thin-lens camera; drop it",
+            "--separation does not apply to the thin-lens camera; remove it",
         ),
-        ("--convergence 3", "--convergence needs --separation"),
+        ("--convergence 3", "--convergence needs --separation; add --separation"),
         (
             "--stereo two-files",
-            "--stereo concerns two eyes, and the camera has one; give it `stereo`, or --separation",
+            "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ),
         ("--fov -5", "the vertical field of view is -5 degrees; it must lie between 0 and 180"),
     ] {

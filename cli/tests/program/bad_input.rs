@@ -1,4 +1,4 @@
-//! Bad input: one clear line that names file, place and remedy; an exit code; no output file.
+//! Tests of bad input: one line that names the file, the position and the remedy; an exit code; no output file.
 
 use crate::support::{Folder, SCENE, WATER};
 
@@ -38,7 +38,7 @@ fn files_that_cannot_be_read() {
     std::fs::write(folder.path("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
     let run = folder.run("render binary.toml -o out.png");
     assert_eq!(run.code, 1);
-    assert!(run.stderr.contains("binary.toml: this is no UTF-8 text"), "{}", run.stderr);
+    assert!(run.stderr.contains("binary.toml: this is not UTF-8 text"), "{}", run.stderr);
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn xyz_files_with_errors() {
     };
     data("", &["bad.xyz", "empty", "number of its atoms"]);
     data("4\n\nO 0 0 0\n", &["bad.xyz", "line 1", "declares 4 atoms", "ends after 1"]);
-    data("1\n\nO 0 0 0\nO 1 1 1\n", &["bad.xyz", "line 4", "declares 1 atoms"]);
+    data("1\n\nO 0 0 0\nO 1 1 1\n", &["bad.xyz", "line 4", "declares 1 atom "]);
     data("1\n\nO 0 x 0\n", &["bad.xyz", "line 3", "y coordinate", "`x`"]);
     data(
         "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n",
@@ -148,7 +148,7 @@ fn how_pictures_are_written() {
     flags("-o out.png --transparent=maybe", &["--transparent", "maybe", "true, false"]);
     for flag in ["--bits 8", "--exposure 1", "--tone none"] {
         let name = flag.split(' ').next().unwrap();
-        flags(&format!("-o out.exr {flag}"), &[name, "concerns PNG", "drop it"]);
+        flags(&format!("-o out.exr {flag}"), &[name, "applies only to PNG", "remove"]);
     }
     let scene = |text: &str, words: &[&str]| {
         let text = format!("[output]\n{text}\n");
@@ -167,8 +167,7 @@ fn how_pictures_are_written() {
     refused(&list, "render bad.toml -o out.png", 1, &["bad.toml: line 1", "a table"]);
 }
 
-/// Everything is rendered and the picture complete when a layer turns out to have no place: its name is
-/// longer than file systems allow.
+/// A layer cannot be written after everything was rendered, because its name is longer than file systems allow.
 #[test]
 fn a_failed_layer_leaves_no_picture() {
     let layer = format!("{}.npy", "a".repeat(300));
@@ -243,7 +242,7 @@ fn what_is_read_is_not_overwritten() {
     ] {
         let run = folder.run(&format!("{arguments} --backend cpu"));
         assert_eq!(run.code, 2, "{}", run.stderr);
-        assert!(run.stderr.contains("in.npy: this output is an input"), "{}", run.stderr);
+        assert!(run.stderr.contains("in.npy: this output is also an input"), "{}", run.stderr);
         assert_eq!(folder.read("in.npy"), spheres);
         assert_eq!(folder.files(), ["in.npy", "scene.toml"]);
     }
@@ -257,7 +256,7 @@ fn a_pipe_is_not_replaced_by_a_file() {
     assert!(made.unwrap().success());
     let run = folder.run("render scene.toml --backend cpu -o out.png");
     assert_eq!(run.code, 2, "{}", run.stderr);
-    assert!(run.stderr.contains("no regular file"), "{}", run.stderr);
+    assert!(run.stderr.contains("not a regular file"), "{}", run.stderr);
     assert!(!folder.path("out.png").is_file());
 }
 
@@ -292,7 +291,7 @@ fn usage() {
             &[],
             &arguments,
             2,
-            &[flag.split(' ').next().unwrap(), "--backend cpu", "drop one"],
+            &[flag.split(' ').next().unwrap(), "--backend cpu", "remove one"],
         );
     }
     refused(&[], "render scene.toml -o out.png --accel bvh", 2, &["bvh", "grid", "binary-tree"]);

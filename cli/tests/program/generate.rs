@@ -1,4 +1,4 @@
-//! `pinhole generate`.
+//! Tests of `pinhole generate`.
 
 use crate::support::Folder;
 

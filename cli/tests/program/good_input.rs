@@ -1,4 +1,4 @@
-//! What the program makes of good input.
+//! Tests of good input.
 
 use npyz::NpyFile;
 
@@ -177,7 +177,7 @@ fn a_link_and_permissions_stay() {
 }
 
 #[test]
-fn species_that_are_no_elements_are_drawn_and_noted() {
+fn species_that_are_not_elements_are_drawn_and_noted() {
     let folder = Folder::with(&[("beads.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
     let run = folder.run("render beads.xyz -o out.png --size 20x10 --backend cpu").succeeded();
     assert_eq!(run.stderr.lines().count(), 1);

@@ -1,4 +1,4 @@
-//! A signal: one line, exit code 130, and no file.
+//! Tests of signals: one line, exit code 130 and no file.
 #![cfg(unix)]
 
 use std::process::{Child, Command, Stdio};
@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use crate::support::Folder;
 
-/// Long enough for the program to be at work, on a slow machine too; wherever it is, the answer is the same.
+/// A delay after which the program is at work, even on a slow machine.
 const LATER: Duration = Duration::from_millis(700);
 
-/// Hours of work for the reference.
+/// A command that takes the CPU reference hours.
 const LONG: &str = "render many.npy -o out.png --layer id=id.npy --backend cpu --size 4000x4000";
 
 fn start(folder: &Folder, arguments: &str) -> Child {
@@ -39,7 +39,7 @@ fn the_reference_is_stopped() {
     }
 }
 
-/// Whenever the signal comes: there is the whole file, or none, and never a temporary one.
+/// Whenever the signal comes, there is the complete file or none, and never a temporary file.
 #[test]
 fn what_is_being_written_is_there_or_not() {
     let folder = Folder::new();
@@ -61,7 +61,7 @@ fn what_is_being_written_is_there_or_not() {
             Some(code) => {
                 let stderr = String::from_utf8(output.stderr).unwrap();
                 assert_eq!(code, 130, "{stderr}");
-                if stderr.contains("the files were complete") {
+                if stderr.contains("all files were already complete") {
                     assert_eq!(files, ["big.bin"]);
                     std::fs::remove_file(folder.path("big.bin")).unwrap();
                 } else {

@@ -1,4 +1,4 @@
-//! Lit pictures, by the CPU reference: what flags and scene files ask for, and what is refused.
+//! Tests of lit pictures on the CPU reference: flags, scene files and errors.
 
 use exr::prelude::{SpecificChannels, WritableImage};
 
@@ -45,9 +45,9 @@ fn flags_out_of_range() {
         ("--integrator patth", ["patth", "path"]),
         ("--ao --integrator path", ["--ao", "`studio`"]),
         ("--outline 2 --integrator path", ["--outline", "`studio`"]),
-        ("--integrator primary --samples 4", ["--samples concerns", "made by `primary`"]),
-        ("--integrator primary --denoise", ["--denoise concerns", "made by `primary`"]),
-        ("--integrator primary --time 1s", ["--time concerns", "made by `primary`"]),
+        ("--integrator primary --samples 4", ["--samples applies only", "made by `primary`"]),
+        ("--integrator primary --denoise", ["--denoise applies only", "made by `primary`"]),
+        ("--integrator primary --time 1s", ["--time applies only", "made by `primary`"]),
         ("--keep-partial", ["--keep-partial", "lit pictures"]),
         ("--time 1s", ["--time needs an adapter", "--samples"]),
         ("--noise 0.1", ["--noise needs an adapter", "--samples"]),
@@ -71,7 +71,7 @@ fn scenes_with_errors() {
     bad(&scene("data = 'a.bin'\n[elements.O]\n"), &["bad.toml: `data`", "a.bin"]);
     let sky = |file: &str| scene(&format!("[sky]\nkind = 'image'\nimage = '{file}'\n"));
     bad(&sky("no.hdr"), &["bad.toml: `[sky]`: no.hdr: cannot be read"]);
-    bad(&sky("scene.toml"), &["bad.toml: `[sky]`: scene.toml: this is no image of light"]);
+    bad(&sky("scene.toml"), &["bad.toml: `[sky]`: scene.toml: this is neither a Radiance HDR"]);
     refused(
         &[
             ("bad.toml", &sky("cut.hdr")),
@@ -107,7 +107,7 @@ fn data_that_would_create_light() {
     let run = folder.run("render elements.toml -o out.png --backend cpu");
     assert_eq!(run.code, 1);
     assert!(
-        run.stderr.contains("`elements` concerns atoms (.xyz, .extxyz, .pdb, .ent)"),
+        run.stderr.contains("`elements` applies only to atoms (.xyz, .extxyz, .pdb, .ent)"),
         "{}",
         run.stderr
     );
@@ -126,7 +126,7 @@ fn map(texel: f32) -> Vec<u8> {
 }
 
 #[test]
-fn a_sky_that_is_no_light() {
+fn a_sky_that_is_not_valid_radiance() {
     let folder =
         Folder::with(&[("scene.toml", &scene("[sky]\nkind = 'image'\nimage = 'sky.exr'\n"))]);
     for (texel, words) in [(f32::NAN, "NaN"), (-1.0, "-1.0"), (f32::INFINITY, "inf")] {
@@ -141,7 +141,7 @@ fn a_sky_that_is_no_light() {
     folder.run("render scene.toml -o out.png --backend cpu --samples 1").succeeded();
     // A studio needs no sky, and so no file; and what is read is never written.
     let run = folder.run("render scene.toml -o sky.exr --backend cpu --samples 1");
-    assert_eq!((run.code, run.stderr.contains("an input as well")), (2, true), "{}", run.stderr);
+    assert_eq!((run.code, run.stderr.contains("also an input")), (2, true), "{}", run.stderr);
     std::fs::remove_file(folder.path("sky.exr")).unwrap();
     folder.run("render scene.toml -o out.png --backend cpu --integrator studio").succeeded();
 }
@@ -244,7 +244,7 @@ fn primary_rays_are_an_integrator() {
     }
     let run = folder.run("render asked.toml -o out.png --backend cpu --samples 2");
     assert_eq!(run.code, 2);
-    assert!(run.stderr.contains("--samples concerns the integrators `studio` and `path`"));
+    assert!(run.stderr.contains("--samples applies only to the integrators `studio` and `path`"));
     assert!(render("asked.toml --integrator studio --samples 1") != render("asked.toml"));
 }
 
@@ -262,5 +262,8 @@ fn what_is_drawn_otherwise_is_said() {
     let text = "data = 'water.xyz'\n[elements.O]\ncolor = 'blue'\n[elements.Fe]\nopacity = 0.5\n[film]\nwidth = 8\nheight = 8\n";
     std::fs::write(folder.path("atoms.toml"), text).unwrap();
     let run = folder.run("render atoms.toml -o out.png --backend cpu --samples 1").succeeded();
-    assert_eq!(run.stderr, "note: `[elements.Fe]`: there is no such atom in water.xyz\n");
+    assert_eq!(
+        run.stderr,
+        "note: `[elements.Fe]`: no atom of water.xyz has this name; check its spelling or remove the table\n"
+    );
 }

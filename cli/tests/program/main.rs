@@ -1,7 +1,6 @@
-//! The program, run as a user runs it, in an empty folder.
+//! Tests of the program, run as a user runs it, in an empty folder.
 //!
-//! Everything here renders on the CPU, or on a machine that is made to look as if it had no driver, so
-//! no adapter is needed.
+//! No adapter is needed: the tests render on the CPU reference, or hide the drivers of the machine.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 #[path = "../../../tests/support/arrays.rs"]

@@ -1,4 +1,4 @@
-//! Pictures of every kind, as the program writes them.
+//! Tests of the picture files that the program writes.
 #![allow(clippy::float_cmp, reason = "what is compared is exact")]
 
 use std::io::Cursor;

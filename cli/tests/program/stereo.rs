@@ -1,4 +1,4 @@
-//! Two pictures for two eyes.
+//! Tests of stereo pairs.
 
 use npyz::NpyFile;
 
@@ -9,7 +9,7 @@ const SCENE: &str = "[film]\nwidth = 40\nheight = 30\n\
                      stereo = { separation = 1, convergence = 5 }\n\
                      [[spheres]]\ncenter = [0, 0, 2]\nradius = 0.4\ncolor = 'red'\n";
 
-/// Width, height, and of every row where red starts and ends.
+/// Width, height, and for every row the columns that are red.
 fn red(png: &[u8]) -> (u32, u32, Vec<Vec<usize>>) {
     let (width, height, pixels) = decode(png);
     let rows = pixels.chunks(3 * width as usize).map(|row| {
@@ -89,7 +89,8 @@ fn standard_output_takes_one_picture() {
     assert_eq!(decode(&run.stdout).0, 80);
     let run = folder.run("render scene.toml -o - --stereo two-files --backend cpu");
     assert_eq!((run.code, run.stdout.len()), (2, 0));
-    let line = "error: --stereo two-files: standard output takes one picture; name a file\n";
+    let line =
+        "error: --stereo two-files: standard output can take only one picture; name a file\n";
     assert_eq!(run.stderr, line);
 }
 

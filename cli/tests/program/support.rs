@@ -1,4 +1,4 @@
-//! An empty folder, and the program in it.
+//! Runs the program in an empty folder.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -15,7 +15,7 @@ pub(crate) struct Folder {
     folder: TempDir,
 }
 
-/// What a run left behind.
+/// The results of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: i32,
@@ -60,7 +60,7 @@ impl Folder {
         Run::new(output)
     }
 
-    /// As [`Folder::run`], where the Vulkan loader finds no driver.
+    /// Runs `pinhole` like [`Folder::run`], but the Vulkan loader finds no driver.
     pub(crate) fn run_without_drivers(&self, arguments: &str) -> Run {
         let mut command = self.command(arguments);
         for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
@@ -72,7 +72,7 @@ impl Folder {
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
-        // Set by whoever runs the tests on another adapter.
+        // These may be set to run the tests of adapters on another adapter.
         for variable in ["WGPU_ADAPTER_NAME", "WGPU_BACKEND", "WGPU_POWER_PREF"] {
             command.env_remove(variable);
         }

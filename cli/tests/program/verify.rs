@@ -1,4 +1,4 @@
-//! `pinhole verify` without an adapter: replays of recordings made by hand, and what is refused.
+//! Tests of `pinhole verify` without an adapter: replays of handmade recordings, and errors.
 
 use pinhole::camera::{Camera, OrthographicCamera, Pose};
 use pinhole::verify::run_file::{self, Provenance, Run};
@@ -7,7 +7,7 @@ use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 use crate::support::{Folder, SCENE};
 
-/// Nothing to be seen: what a device does with that is the same to the bit on every one.
+/// A recording of an empty scene, which is the same to the bit on every device.
 fn nothing([width, height]: [u32; 2]) -> Run {
     let scene = Scene::from_f32(Vec::new(), LinearRgb::WHITE).unwrap();
     let pose = Pose::looking_along([0.0, 0.0, 4.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
@@ -210,24 +210,24 @@ fn wrong_usage() {
     }
     refused(&folder, "verify", 2, "the following required arguments were not provided: <SCENE");
     for (flags, words) in [
-        ("--json run", "run: this output is an input as well"),
+        ("--json run", "run: this output is also an input"),
         ("--json no/a.json", "no/a.json: the folder no does not exist"),
         ("--report scene.toml", "scene.toml: this is a file; name a folder"),
         ("--report no/a", "no/a: the folder no does not exist"),
-        ("--json a --report a", "a: two outputs are this file"),
+        ("--json a --report a", "a: two outputs have this file"),
     ] {
         refused(&folder, &format!("verify --replay run {flags}"), 2, words);
     }
-    refused(&folder, "verify scene.toml --save a --json ./a", 2, "a: two outputs are this file");
+    refused(&folder, "verify scene.toml --save a --json ./a", 2, "a: two outputs have this file");
     refused(
         &folder,
         "verify scene.toml --save scene.toml",
         2,
-        "scene.toml: this output is an input",
+        "scene.toml: this output is also an input",
     );
 }
 
-/// The reference judges nobody.
+/// The CPU reference never replaces an adapter in a check.
 #[test]
 fn without_an_adapter_there_is_nothing_to_verify() {
     let words = "no Vulkan, Metal or DX12 adapter was found";
