@@ -1,4 +1,5 @@
-//! Structures on standard scenes: building them, and rays through every pixel on the CPU and the adapter.
+//! Measures acceleration structures on standard scenes: building them, and tracing a ray through every pixel on the CPU
+//! and on the adapter.
 //!
 //! ```sh
 //! cargo bench --bench accel
@@ -18,7 +19,7 @@ use pinhole::{Film, LinearRgb, Scene, View};
 
 const CHOICES: [AccelChoice; 3] = [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];
 
-/// What any device can bind.
+/// Size of a binding that every device supports.
 const BINDING_BYTES: u64 = 1 << 27;
 
 fn accel(criterion: &mut Criterion) {
@@ -59,7 +60,7 @@ fn build(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene) {
     group.bench_function("binary tree", |b| b.iter(|| BinaryTree::build(spheres, margin)));
 }
 
-/// On one thread.
+/// Traces rays on one thread of the CPU.
 fn on_cpu(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene, camera: &dyn Camera) {
     let film = Film::new(128, 128).unwrap();
     for choice in CHOICES {
@@ -73,15 +74,15 @@ fn on_cpu(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene, camera: &dyn 
     }
 }
 
-/// Rays that meet the box, from where they enter it.
+/// Returns the rays that meet the box of the scene. They start where they enter the box.
 fn rays(
     scene: &Scene,
     camera: &dyn Camera,
     film: &Film,
     (min, max): (pinhole::glam::Vec3, pinhole::glam::Vec3),
 ) -> Vec<RayF32> {
-    let places = (0..film.height()).flat_map(|j| (0..film.width()).map(move |i| (i, j)));
-    places
+    let pixels = (0..film.height()).flat_map(|j| (0..film.width()).map(move |i| (i, j)));
+    pixels
         .filter_map(|(i, j)| {
             let location = film.relative_location(f64::from(i) + 0.5, f64::from(j) + 0.5);
             let ray = camera.ray_in_world(location);

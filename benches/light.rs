@@ -1,10 +1,11 @@
-//! What light costs beside finding the first sphere: rays of ambient light, shadows and diffuse bounces, by turns.
+//! Measures the time for light in addition to the primary rays: ambient rays, shadow rays and diffuse bounces.
 //!
 //! ```sh
 //! cargo bench --bench light              # R1M and C200k
 //! cargo bench --bench light -- R1M
 //! ```
-//! Times of one kind of ray are differences of pictures that differ in nothing else, over the number of such rays.
+//! The time of one kind of ray is the difference of two pictures that differ only in these rays, divided by their
+//! number.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
 use std::time::Instant;
@@ -16,7 +17,7 @@ use pinhole::light::{Light, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
 use pinhole::{LayerSet, LinearRgb, PixelFilter, RenderSettings, Scene, Shading, View};
 
-/// How often everything is measured; the best counts.
+/// Number of times that everything is measured; the best time counts.
 const TURNS: usize = 5;
 
 fn main() {
@@ -61,7 +62,7 @@ fn studio(samples: u32, occlusion: Option<Occlusion>, lights: Vec<Light>) -> Ren
     }
 }
 
-/// Grey spheres under a white sky, without direct light: one ray a bounce.
+/// Grey spheres under a white sky, without direct light, so that each bounce is one ray.
 fn path(samples: u32, max_depth: u32) -> RenderSettings {
     let light_sampling = LightSampling::Chance;
     let mut lighting = studio(samples, None, Vec::new());
@@ -115,7 +116,7 @@ fn measure(headless: &Headless, standard: Standard) {
         }
     }
     let pixels = film.pixel_count() as f64;
-    // Those that cannot meet the scene's box are not traced.
+    // Rays that cannot meet the box of the scene are not traced.
     let primary = bare / traced as f64;
     let name = standard.name();
     let share = |count: f64| 100.0 * count / pixels;

@@ -1,4 +1,4 @@
-//! Three spheres at 1920×1080: on the adapter that `pinhole render` would choose, and on the CPU.
+//! Measures rendering three spheres at 1920×1080, on the adapter that `pinhole render` would choose and on the CPU.
 //!
 //! ```sh
 //! cargo bench --bench render
@@ -26,7 +26,7 @@ fn three_spheres(criterion: &mut Criterion) {
     });
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
     for (layers, name) in [(LayerSet::COLOR, "color"), (LayerSet::DATA, "all layers")] {
-        // With the copy back to the host, as a headless user has it.
+        // This includes the copy back to the host, as in a headless program.
         let name = format!("{}, {name}", headless.adapter_info().name);
         group.bench_function(name, |b| {
             b.iter(|| headless.render(&scene, &view, &settings, layers).unwrap());

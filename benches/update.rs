@@ -1,4 +1,4 @@
-//! A million spheres on the adapter that change: their colours, and where they are.
+//! Measures changing the colours and the centres of a million spheres on the adapter.
 //!
 //! ```sh
 //! cargo bench --bench update

@@ -1,11 +1,11 @@
-//! The checker: what it decides, what it takes, and what the fences in kernels take.
+//! Measures the checker: the share of decided pixels, its time, and the time of the fences in kernels.
 //!
 //! ```sh
-//! cargo bench --bench verify -- standard    # the standard scenes, and from 100 times as far
+//! cargo bench --bench verify -- standard    # the standard scenes, also from 100 times as far away
 //! cargo bench --bench verify -- cost        # the checker against the CPU reference
-//! cargo bench --bench verify -- fences      # tracing with and without fences, by turns
+//! cargo bench --bench verify -- fences      # tracing with and without fences, in turns
 //! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
-//! cargo bench --bench verify -- lit-campaign 500    # paths of so many random lit scenes; ends at a violation
+//! cargo bench --bench verify -- lit-campaign 500    # light paths of this number of random scenes; ends at a violation
 //! ```
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
@@ -42,7 +42,7 @@ fn main() {
     if runs("fences") {
         fences(&headless);
     }
-    // Only if it is named: it takes minutes.
+    // The campaign runs only if it is named, because it takes minutes.
     if wanted.iter().any(|wanted| wanted == "campaign") {
         campaign(&headless);
     }
@@ -64,7 +64,7 @@ fn record(headless: &Headless, scene: &Scene, camera: &dyn Camera, film: &Film) 
     headless.record(&buffers, &view, &settings, &mut { go_on }).unwrap()
 }
 
-/// One row of a table.
+/// Prints one row of a table.
 fn row(name: &str, certificate: &Certificate) {
     let count = |verdict| certificate.count(verdict);
     println!(
@@ -117,7 +117,7 @@ fn standard(headless: &Headless) {
     println!();
 }
 
-/// A camera that is so many times a size away, and sees as much of it as one nearby.
+/// Returns a camera at a distance of `times` the size, which sees as much of the scene as a near one.
 fn far(center: DVec3, size: f64, times: f64) -> PinholeCamera {
     let eye = center + DVec3::new(0.48, 0.36, -0.8) * times * size;
     let pose = Pose::looking_at(eye, center, [0.0, 1.0, 0.0]).unwrap();
@@ -157,7 +157,7 @@ fn cost(headless: &Headless) {
     println!();
 }
 
-/// Rounds of a comparison; the best of each counts.
+/// Number of rounds of a comparison; the best time of each device counts.
 const ROUNDS: usize = 15;
 
 fn fences(fenced: &Headless) {
@@ -188,7 +188,7 @@ fn fences(fenced: &Headless) {
                     // A software device's own clock counts only what it queues.
                     let is_software = headless.adapter_info().device_type == DeviceType::Cpu;
                     let time = time.device.filter(|_| !is_software).unwrap_or(time.wall);
-                    // The first is for warming up.
+                    // The first round is a warm-up.
                     if round > 0 {
                         best[which] = best[which].min(time);
                     }
@@ -245,7 +245,7 @@ fn campaign_scenes() -> Vec<Named> {
     .into()
 }
 
-/// From outside, from 100 times as far, from within, and in parallel.
+/// Returns views from outside, from 100 times as far away, from within, and with parallel rays.
 fn campaign_views(scene: &Scene) -> Vec<(&'static str, Box<dyn Camera>)> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
@@ -279,7 +279,7 @@ fn campaign(headless: &Headless) {
     println!("{rays} rays in {pictures} pictures, {:.0} s\n", started.elapsed().as_secs_f64());
 }
 
-/// The scenes of the seeds from 0 on.
+/// Checks the light paths of `count` random scenes, with the seeds from 0 on.
 fn lit_campaign(headless: &Headless, count: u64) {
     let mut all = PathCertificate::default();
     let (mut undecided, mut worst) = (0, 0.0);

@@ -1,12 +1,12 @@
-//! Ray-traced spheres inside the frame of a program that already uses wgpu.
+//! Renders spheres into the frame of a host program that already uses wgpu.
 //!
-//! The host owns the device, the queue, the encoder and the texture; pinhole only records. Here the
-//! host is the bare minimum: it opens an adapter, and after the frame it writes its texture to a file.
+//! The host owns the device, the queue, the encoder and the texture; pinhole only records commands. The host of this
+//! example is minimal: it opens an adapter, and after the frame it writes its texture to a file.
 //!
 //! ```sh
 //! cargo run --release --example embed -- embed.png
 //! ```
-#![allow(clippy::print_stdout, reason = "an example speaks")]
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 
@@ -20,17 +20,17 @@ const HEIGHT: u32 = 480;
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "embed.png".to_owned());
 
-    // What a host has anyway. WebGPU's default limits are enough.
+    // A host already has an adapter, a device, a queue and a texture. WebGPU's default limits are enough.
     let adapter = adapter::choose(None)?;
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
     let texture = host_texture(&device);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
 
-    // Once per device.
+    // The renderer is made once per device.
     let renderer = Renderer::new(&device, &RendererOptions::default())?;
 
-    // Once per scene.
+    // The buffers of a scene are made once per scene.
     let spheres: Vec<Sphere> = (0..60_u8)
         .map(|i| {
             let angle = f64::from(i) * 0.4;
@@ -41,14 +41,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?)?;
 
-    // Once per set of targets; the view may change from frame to frame.
+    // A frame is made once per set of targets. Its view may change from one picture to the next.
     let mut frame = Frame::new(&renderer, &device, &Targets { color: &view, data: None })?;
     let film = Film::new(WIDTH, HEIGHT)?;
     let pose = Pose::looking_at([7.0, 5.0, 10.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     let camera = PinholeCamera::with_vertical_fov(pose, 40_f64.to_radians(), film.aspect())?;
     frame.set_view(&queue, &scene, &View::new(&camera, film), &RenderSettings::default())?;
 
-    // Every frame: the host's encoder, with the host's own work before and after.
+    // For every picture, pinhole records into the host's encoder, which may hold other work before and after.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     renderer.record(&mut encoder, &scene, &frame)?;
     let readback = host_copy(&device, &mut encoder, &texture);
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     readback.map_async(wgpu::MapMode::Read, .., |_| {});
     device.poll(wgpu::PollType::wait_indefinitely())?;
-    // 640 pixels of 4 bytes are a multiple of the 256 that WebGPU aligns rows to.
+    // WebGPU aligns rows to 256 bytes, and 640 pixels of 4 bytes are a multiple of that.
     let pixels = readback.get_mapped_range(..)?.to_vec();
     image::save_buffer(&path, &pixels, WIDTH, HEIGHT, image::ExtendedColorType::Rgba8)?;
     println!("wrote {path}, rendered on {}", adapter.get_info().name);

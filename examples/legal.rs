@@ -1,17 +1,17 @@
-//! A test for your own suite: does this machine's adapter render a scene as a conforming device may?
+//! A test for your own test suite: checks that the adapter of this machine renders a scene as a conforming device may.
 //!
 //! ```sh
 //! cargo run --example legal
 //! ```
 //!
-//! For an adapter of your own choice take `Headless::from_adapter`.
+//! To test an adapter of your choice, use `Headless::from_adapter`.
 
 use pinhole::camera::PinholeCamera;
 use pinhole::generate::Kind;
 use pinhole::gpu::{Headless, HeadlessOptions};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
-/// Put `#[test]` here.
+/// In a test suite, mark this function with `#[test]`.
 pub(crate) fn this_adapter_renders_legally() -> Result<(), Box<dyn std::error::Error>> {
     let headless = Headless::open(&HeadlessOptions::default())?;
     let scene = Scene::from_f32(Kind::Clusters.spheres(20_000, 1)?, LinearRgb::WHITE)?;

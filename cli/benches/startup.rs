@@ -1,4 +1,4 @@
-//! The whole process of `pinhole demo`, from start to exit, with and without a GPU.
+//! Measures the whole process of `pinhole demo`, from start to exit, with and without a GPU.
 //!
 //! ```sh
 //! cargo bench --bench startup
