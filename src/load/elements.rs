@@ -54,7 +54,7 @@ pub(super) fn appearance(species: &str) -> Appearance {
 }
 
 /// Returns a note about species that are not chemical elements, on one line however many there are. `unless` names
-/// what else can give such a species a colour or a radius, beside a scene file.
+/// what else can give such a species a colour or a radius, other than a scene file.
 pub(super) fn unknown_note(names: &[String], unless: &str) -> Option<String> {
     // More names would make the line too long to read.
     const NAMED: usize = 5;

@@ -167,7 +167,7 @@ impl Format {
         Ok(())
     }
 
-    /// Returns how many bytes of memory reading takes beside the file itself, or 0 if the file does not say.
+    /// Returns how many bytes of memory reading takes in addition to the file itself, or 0 if the file does not say.
     ///
     /// # Errors
     /// If the file cannot be read.

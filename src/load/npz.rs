@@ -156,7 +156,8 @@ fn contents<'a>(
             let method = format!("{method:?}");
             let method = method.rsplit("::").next().unwrap_or_default();
             Err(format!(
-                "it is compressed with {method}, but only stored and deflated arrays can be read; use numpy.savez_compressed"
+                "it is compressed with {method}, but only stored and deflated arrays can be read; use \
+                 numpy.savez_compressed"
             ))
         }
     }

@@ -73,7 +73,7 @@ struct Reader {
     /// Whether a file without models has reached an END or ENDMDL record after its atoms.
     ended: bool,
     /// Line of the first atom after this end.
-    behind_end: Option<usize>,
+    after_end: Option<usize>,
     cell: Option<[[f64; 3]; 3]>,
     atoms: Atoms,
 }
@@ -129,7 +129,7 @@ impl Reader {
             return Err(PdbError::AtomOutsideModel { line, model_line: self.first_model });
         }
         if self.ended {
-            self.behind_end.get_or_insert(line);
+            self.after_end.get_or_insert(line);
             return Ok(());
         }
         if self.models.saturating_sub(1) != self.frame {
@@ -171,7 +171,7 @@ impl Reader {
         let mut loaded = self.atoms.into_loaded();
         loaded.cell = self.cell;
         loaded.frames = Some(frames);
-        if let Some(line) = self.behind_end {
+        if let Some(line) = self.after_end {
             loaded.notes.push(format!(
                 "the atoms from line {line} on are left out, because they follow the end of the structure; if they \
                  are further frames, enclose each frame with MODEL and ENDMDL"

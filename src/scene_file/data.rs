@@ -29,8 +29,8 @@ pub struct Data {
     pub surface: SurfaceProperties,
     /// Appearance of atoms of one species, or with one value of another column.
     pub elements: Vec<Element>,
-    /// Columns whose values are looked up in `elements`. The first column with a match decides; if the list is empty, the
-    /// column is `species`.
+    /// Columns whose values are looked up in `elements`. The first column with a match decides; if the list is empty,
+    /// the column is `species`.
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,

@@ -42,8 +42,9 @@ pub enum DataError {
 }
 
 impl Data {
-    /// Applies the colours, radii and surface properties of the scene file to the spheres of its data, and leaves out the
-    /// spheres that it names. Returns the spheres, and notes for the user about names that do not occur in the data.
+    /// Applies the colours, radii and surface properties of the scene file to the spheres of its data, and leaves out
+    /// the spheres that it names. Returns the spheres, and notes for the user about names that do not occur in the
+    /// data.
     ///
     /// # Errors
     /// If the scene file names a column that the data does not have.

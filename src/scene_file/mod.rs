@@ -117,8 +117,8 @@ impl SceneFile {
         Scene::new(&spheres).map_err(|error| self.spanned(&error))
     }
 
-    /// Makes the scene like [`SceneFile::scene`], from data without colours. All spheres of the data get the `color`, and
-    /// the surface properties that the file gives. If the file has no spheres of its own, the data is not copied.
+    /// Makes the scene like [`SceneFile::scene`], from data without colours. All spheres of the data get the `color`,
+    /// and the surface properties that the file gives. If the file has no spheres of its own, the data is not copied.
     ///
     /// # Errors
     /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
@@ -157,8 +157,8 @@ impl SceneFile {
         self.data.as_ref().map(|data| &data.value)
     }
 
-    /// Makes the camera for a film of this aspect ratio. For a stereo camera this is the view from the middle between the
-    /// eyes. A camera without an eye position frames the scene.
+    /// Makes the camera for a film of this aspect ratio. For a stereo camera this is the view from the middle between
+    /// the eyes. A camera without an eye position frames the scene.
     ///
     /// # Errors
     /// If a parameter is out of range, or parameters exclude each other.

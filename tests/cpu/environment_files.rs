@@ -48,14 +48,14 @@ fn hdr(width: usize, height: usize) -> Vec<u8> {
 
 #[test]
 fn radiance_in_runs() {
-    // Short lines have no runs.
+    // Short lines are not run-length encoded.
     for [width, height] in [[100, 3], [5, 7], [1, 1]] {
         let map = read(&hdr(width, height)).unwrap();
         assert_eq!([map.width() as usize, map.height() as usize], [width, height]);
         for (found, expected) in map.texels().iter().zip(texels(width, height)) {
             let largest = expected.iter().copied().fold(0.0, f32::max);
             for (found, expected) in found.iter().zip(expected) {
-                // Eight bits of the largest component.
+                // The precision is eight bits of the largest component.
                 assert!((found - expected).abs() <= largest / 128.0, "{found}, {expected}");
             }
         }
@@ -101,7 +101,7 @@ fn exr_of_every_compression() {
         for [width, height] in [[40, 37], [1, 1]] {
             let map = read(&exr(width, height, compression)).unwrap();
             assert_eq!([map.width() as usize, map.height() as usize], [width, height]);
-            // PXR24 keeps 24 bits, which these numbers have room in.
+            // PXR24 keeps 24 bits, which are enough for these numbers.
             assert_eq!(map.texels(), texels(width, height), "{compression:?}");
         }
     }
@@ -125,7 +125,7 @@ fn exr_of_halves_and_other_channels() {
 }
 
 #[test]
-fn exr_without_colour_says_what_it_has() {
+fn exr_without_colour_lists_its_channels() {
     let channel = |name| AnyChannel::new(name, FlatSamples::F32(vec![1.0; 4]));
     let channels = ["R", "Y", "diffuse.G"].map(channel);
     let channels = AnyChannels::sort(channels.into_iter().collect());
@@ -207,7 +207,7 @@ fn files_that_are_not_environment_maps() {
 }
 
 #[test]
-fn what_is_too_large_is_refused_before_it_is_read() {
+fn large_maps_are_refused_before_they_are_read() {
     let width = u32::MAX;
     let bytes = flat_hdr(&HEADER.replace("+X 2", &format!("+X {width}")), &[[0; 4]; 2]);
     let error = read(&bytes).unwrap_err();

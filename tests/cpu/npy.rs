@@ -36,18 +36,18 @@ fn both_precisions_both_byte_orders_both_layouts() {
             ("<f8", bytes(numbers, |x| f64::from(x).to_le_bytes()), &wide),
             (">f8", bytes(numbers, |x| f64::from(x).to_be_bytes()), &wide),
         ] {
-            let points = read_spheres(&npy(dtype, by_columns, "(2, 4)", &data), None);
-            assert_eq!(points.as_ref(), Ok(expected), "{dtype} {by_columns}");
+            let spheres = read_spheres(&npy(dtype, by_columns, "(2, 4)", &data), None);
+            assert_eq!(spheres.as_ref(), Ok(expected), "{dtype} {by_columns}");
         }
-        // The first three columns alone, and a radius for both.
+        // The first three columns alone, with one radius for both spheres.
         let part: Vec<f32> = match by_columns {
             false => ROWS.iter().flat_map(|row| row[..3].to_vec()).collect(),
             true => by_column[..6].to_vec(),
         };
         let data = bytes(&part, f32::to_le_bytes);
-        let points = read_spheres(&npy("<f4", by_columns, "(2, 3)", &data), Some(0.75)).unwrap();
+        let spheres = read_spheres(&npy("<f4", by_columns, "(2, 3)", &data), Some(0.75)).unwrap();
         let expected = ROWS.map(|[x, y, z, _]| [x, y, z, 0.75]);
-        assert_eq!(points, SphereArray::F32(expected.to_vec()));
+        assert_eq!(spheres, SphereArray::F32(expected.to_vec()));
     }
 }
 
@@ -59,7 +59,7 @@ fn an_array_without_rows_gives_no_spheres() {
 }
 
 #[test]
-fn what_is_written_is_read() {
+fn arrays_survive_writing_and_reading() {
     for spheres in [&ROWS[..], &[]] {
         let mut file = Vec::new();
         write_spheres(spheres, &mut file).unwrap();
@@ -72,7 +72,7 @@ fn what_is_written_is_read() {
     }
 }
 
-/// Long enough for several threads and several chunks.
+/// This array is long enough for several threads and several chunks.
 #[test]
 fn long_arrays() {
     let spheres: Vec<[f32; 4]> = (0..200_001).map(|i| [0.0, 1.0, 2.0, i as f32]).collect();
@@ -132,7 +132,7 @@ fn files_that_are_not_whole() {
         "an array of shape (2, 4) and type <f4 takes 32 bytes, but 33 bytes follow the header; \
          there are other data after the array"
     );
-    // 10¹⁸ rows, and the most that there can be: none of them is believed.
+    // Absurd numbers of rows in a header are not trusted.
     for rows in ["1000000000000000000", "18446744073709551615", "4611686018427387904"] {
         for (dtype, order) in [("<f4", false), (">f8", true)] {
             let error = message(&npy(dtype, order, &format!("({rows}, 4)"), &[0; 100]), None);
@@ -160,8 +160,8 @@ fn archives() {
     for deflated in [false, true] {
         for names in [&["arr_0.npy"][..], &["spheres.npy", "b.npy"], &["a.txt", "positions.npy"]] {
             let entries: Vec<_> = names.iter().map(|name| (*name, &file[..])).collect();
-            let points = npz::read_spheres(&zip(&entries, deflated), None);
-            assert_eq!(points, Ok(SphereArray::F32(ROWS.to_vec())), "{names:?} {deflated}");
+            let spheres = npz::read_spheres(&zip(&entries, deflated), None);
+            assert_eq!(spheres, Ok(SphereArray::F32(ROWS.to_vec())), "{names:?} {deflated}");
         }
     }
     let error = |archive: &[u8]| npz::read_spheres(archive, None).unwrap_err().to_string();

@@ -40,11 +40,11 @@ fn an_empty_file_is_a_picture_of_nothing() {
 }
 
 #[test]
-fn the_example_says_what_it_should() {
+fn the_example_has_the_expected_contents() {
     let file = parse(include_str!("../../examples/three-spheres.toml"));
-    let look = settings(&file).primary().unwrap();
-    assert_eq!(look.shading, Shading::Flat);
-    assert_eq!(look.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
+    let primary = settings(&file).primary().unwrap();
+    assert_eq!(primary.shading, Shading::Flat);
+    assert_eq!(primary.background, LinearRgb::from_srgb8([0xb0, 0xe0, 0xe6]));
     assert_eq!(file.film.y_axis(), YAxis::Down);
     let scene = file.scene(&[]).unwrap();
     assert_eq!(
@@ -271,7 +271,7 @@ fn a_message_is_short_and_harmless() {
     }
 }
 
-/// A thousand times as many spheres must not take a million times as long.
+/// The time must not grow with the square of the number of spheres.
 #[test]
 fn many_spheres() {
     let text = "[[spheres]]\ncenter=[0,0,0]\nradius=1\n".repeat(30_000);

@@ -61,7 +61,7 @@ fn without_light_nothing_is_lit() {
 
 /// The tables that concern light do not prevent a picture without light.
 #[test]
-fn primary_rays_take_what_concerns_them() {
+fn primary_rays_use_only_their_own_settings() {
     let text = "integrator = 'primary'\nshading = 'flat'\nbackground = 'red'\n";
     let kind = IntegratorKind::Primary;
     assert_eq!(parse(text).integrator(), Some(kind));
@@ -71,12 +71,12 @@ fn primary_rays_take_what_concerns_them() {
     assert_eq!(lighting(text), RenderSettings { integrator, ..expected.clone() });
     let lit = "background = 'red'\n[studio]\n[sampling]\nsamples = 9\ndenoise = true\n[ground]\n[sun]\ntoward = [0, 1, 0]\n";
     assert_eq!(lighting_by(lit, kind), expected);
-    // Materials and opacity are the scene's.
+    // Materials and opacity belong to the scene, not to the settings.
     let clear = format!("integrator = 'primary'\n{SPHERE}opacity = 0.5\n");
     assert_eq!(lighting(&clear), RenderSettings::default());
 }
 
-/// A studio is not lit by a sky, and a file that has both is as good as one without the sky.
+/// A studio is not lit by a sky, so it ignores the sky of a file.
 #[test]
 fn a_studio_leaves_the_sky_out() {
     let both = "integrator = 'studio'\n[sky]\nkind = 'constant'\n[path]\nmax_depth = 3\n";
@@ -84,7 +84,7 @@ fn a_studio_leaves_the_sky_out() {
 }
 
 #[test]
-fn what_is_about_light_asks_for_it() {
+fn tables_about_light_ask_for_a_lit_picture() {
     let (studio, path) = (Some(IntegratorKind::Studio), Some(IntegratorKind::Path));
     for (text, expected) in [
         ("integrator = 'studio'\n", studio),
@@ -108,7 +108,7 @@ fn what_is_about_light_asks_for_it() {
 }
 
 #[test]
-fn what_is_left_out_is_as_without_a_file() {
+fn missing_values_are_the_defaults() {
     assert_eq!(lighting("integrator = 'studio'\n"), RenderSettings::studio());
     let path = lighting("integrator = 'path'\n");
     let integrator = Integrator::Path(pinhole::render::PathTracing::default());
@@ -168,8 +168,8 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
         let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
         (atoms.iter().map(|atom| atom.radius).collect::<Vec<_>>(), notes)
     };
-    let looks = "[elements.A]\nradius = 2\n[elements.HOH]\nradius = 5\n";
-    let (found, notes) = radii(&format!("elements_by = ['residue', 'chain']\n{looks}"));
+    let tables = "[elements.A]\nradius = 2\n[elements.HOH]\nradius = 5\n";
+    let (found, notes) = radii(&format!("elements_by = ['residue', 'chain']\n{tables}"));
     assert_eq!((found, notes), (vec![2.0, 1.0, 1.0, 5.0], Vec::new()));
     let (found, notes) = radii("leave_out = { residue = ['HOH', 'SOL'], chain = ['B'] }\n");
     assert_eq!(found, [1.0]);
@@ -202,7 +202,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
 }
 
 #[test]
-fn data_has_the_look_of_all_or_of_its_species() {
+fn data_gets_common_properties_or_those_of_its_species() {
     let file = parse(
         "data = 'a.xyz'\nmaterial = 'metal'\nopacity = 0.5\n[materials.metal]\nkind = 'conductor'\n\
          [materials.glass]\nkind = 'dielectric'\nopacity = 0.75\n\
@@ -227,7 +227,7 @@ fn data_has_the_look_of_all_or_of_its_species() {
 }
 
 #[test]
-fn arrays_have_the_look_of_all() {
+fn arrays_get_the_common_surface_properties() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
         let spheres = SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]);
@@ -267,7 +267,7 @@ fn a_depth_cue_reaches_over_the_scene() {
     assert!((cue.near - (10.0 - root)).abs() < 1e-12, "{}", cue.near);
     assert!((cue.far - (10.0 + root)).abs() < 1e-12, "{}", cue.far);
     assert_eq!(cue.color, LinearRgb::from_srgb8([255, 0, 0]));
-    // However little is given, far is farther than near.
+    // Whichever of the keys is given, `far` is greater than `near`.
     for keys in ["near = 100", "far = 1", "far = 1e-16"] {
         let text = text.replace("depth_cue]", &format!("depth_cue]\n{keys}"));
         let cue = studio(&text).depth_cue;
@@ -348,7 +348,7 @@ fn skies() {
     assert!(found.sky.is_visible);
     let SkyLight::Image { strength, rotation, .. } = found.sky.light else { panic!() };
     assert_eq!((strength, rotation), (3.0, std::f64::consts::FRAC_PI_2));
-    // A studio needs none.
+    // A studio does not need the image.
     assert!(file.settings(IntegratorKind::Studio, &scene, camera.as_ref(), None).is_ok());
     assert_eq!(
         file.settings(kind, &scene, camera.as_ref(), None).unwrap_err().to_string(),
@@ -370,7 +370,7 @@ fn a_ground_touches_the_lowest_sphere() {
 }
 
 #[test]
-fn what_is_out_of_range_is_named_with_its_position() {
+fn numbers_out_of_range_are_named_with_their_position() {
     for (text, expected) in [
         (
             "[sampling]\nsamples = 0\n",
@@ -479,7 +479,7 @@ fn what_is_out_of_range_is_named_with_its_position() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_a_remedy() {
+fn errors_name_a_remedy() {
     let ground = "integrator = 'path'\n[ground]\nshadow_catcher = true\n";
     for (text, expected) in [
         (
@@ -614,7 +614,7 @@ fn what_is_wrong_is_named_with_a_remedy() {
         let found = message(bright);
         assert!(found.contains(what) && found.ends_with("at most 1e18"), "{found}");
     }
-    // What shines may be brighter than white, and a picture without light as well.
+    // Emitters may be brighter than white, and so may the colours of a picture without light.
     let lamp = "[materials.a]\nkind = 'emissive'\n[[spheres]]\ncenter = [0, 0, 0]\nradius = 1\n\
                 color = [5, 5, 5]\nmaterial = 'a'\n";
     lighting(lamp);
@@ -637,7 +637,7 @@ fn every_example_is_right() {
         let text = std::fs::read_to_string(&path).unwrap();
         let file = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{place}: {error}"));
         let scene = file.scene(&[]).unwrap_or_else(|error| panic!("{place}: {error}"));
-        // What refers to data that is not here has no spheres of its own.
+        // A file without spheres must refer to data, which is not loaded here.
         assert!(!scene.is_empty() || file.data().is_some(), "{place}");
         let camera = file.camera(&file.film, &scene);
         let camera = camera.unwrap_or_else(|error| panic!("{place}: {error}"));

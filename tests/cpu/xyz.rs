@@ -5,7 +5,7 @@ use pinhole::{LinearRgb, Sphere};
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
 
-/// A frame, sphere by sphere.
+/// The atoms of a frame, as a list of spheres.
 #[derive(Debug, PartialEq)]
 struct Atoms {
     spheres: Vec<Sphere>,
@@ -90,7 +90,7 @@ fn extended_columns_in_any_order() {
 #[test]
 fn unknown_species_are_reported_once_each() {
     let frame = read(b"4\n\nA 0 0 0\nO 0 0 0\nB 0 0 0\nA 1 1 1\n", 0).unwrap();
-    // B is boron.
+    // B is not in the list, because it is boron.
     assert_eq!(frame.unknown_species, ["A"]);
 }
 
@@ -149,7 +149,7 @@ fn atoms_out_of_range_are_named_by_line() {
     );
 }
 
-/// A thousand times as many names must not take a million times as long.
+/// The time must not grow with the square of the number of names.
 #[test]
 fn many_unknown_species() {
     let text: String = (0..50_000).map(|i| format!("bead{i} 0 0 0\n")).collect();
@@ -157,7 +157,7 @@ fn many_unknown_species() {
     assert_eq!(frame.unknown_species.len(), 50_000);
 }
 
-/// A count that no memory could hold must not be believed.
+/// A number of atoms for which there is no memory must not be trusted.
 #[test]
 fn an_absurd_count_is_only_a_wrong_count() {
     let text = format!("{}\n\nO 0 0 0\n", u64::MAX);

@@ -109,7 +109,7 @@ const TEXELS_PER_BYTE: u64 = 2048;
 /// Number of texels that a file of any length may declare.
 const SMALL: u64 = 1 << 20;
 
-/// Allocates a black image. Its size comes from a header that may be wrong, so a size that a file of so many `bytes`
+/// Allocates a black image. Its size comes from a header that may be wrong, so a size that a file of `bytes` bytes
 /// cannot hold is refused.
 fn black(
     [width, height]: [u64; 2],

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_an_element_keeps_its_name() {
+    fn other_species_keep_their_names() {
         for (name, field, wanted) in [
             (b" X  ", b" X", "X"),
             (b" QQ ", b"  ", "QQ"),

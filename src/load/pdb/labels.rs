@@ -31,8 +31,8 @@ impl Memo {
         self.all.insert(key, value);
     }
 
-    /// Returns the slot of a key by multiplicative hashing: the upper bits of its product with 2⁶⁴ divided by the golden
-    /// ratio.
+    /// Returns the slot of a key by multiplicative hashing: the upper bits of its product with 2⁶⁴ divided by the
+    /// golden ratio.
     fn slot(key: u64) -> usize {
         (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize
     }

@@ -1,11 +1,11 @@
-//! Files made up here.
+//! Tests of the PDB reader with files that are made here.
 
 use super::*;
 use crate::load::elements::appearance;
 use crate::load::{ColumnValues, Labels};
 use crate::scene::sphere_array::SphereArray;
 
-/// An atom with what matters to a test; the rest is in its columns, too.
+/// The fields of an atom record that tests vary. The other fields are constant.
 struct Row {
     record: &'static str,
     name: &'static str,
@@ -158,14 +158,14 @@ fn alternate_locations() {
         at(" CA ", 'B', 0.6, 2.0),
         at(" CB ", 'A', 0.4, 3.0),
         at(" CB ", 'B', 0.6, 4.0),
-        // Only at the lesser location.
+        // This atom occurs only at the location with the lower occupancy.
         at(" CG ", 'A', 0.4, 5.0),
-        // The blank precedes the others.
+        // The blank location has precedence over the others.
         at(" N  ", 'B', 0.6, 6.0),
-        // A tie in another residue.
+        // In this residue the occupancies are equal.
         Row { number: "2", ..at(" CA ", 'B', 0.5, 7.0) },
         Row { number: "2", ..at(" CA ", 'A', 0.5, 8.0) },
-        // One residue or another.
+        // Two residues are alternatives at the same place in the chain.
         Row { number: "3", residue: "SER", ..at(" CA ", 'A', 0.3, 9.0) },
         Row { number: "3", residue: "SER", ..at(" OG ", 'A', 0.3, 10.0) },
         Row { number: "3", residue: "THR", ..at(" CA ", 'B', 0.7, 11.0) },
@@ -229,7 +229,7 @@ fn mixed_models() {
 }
 
 #[test]
-fn atoms_behind_the_end_are_noted() {
+fn atoms_after_the_end_are_noted() {
     let atom = ROW.line();
     for end in ["END", "ENDMDL", "END   "] {
         let loaded = loaded(&format!("{atom}{end}\n{atom}{atom}{end}\n"));
@@ -286,7 +286,7 @@ fn cells() {
 }
 
 #[test]
-fn what_a_short_line_lacks() {
+fn short_lines_name_the_missing_field() {
     let line = ROW.line();
     for (columns, what) in [
         (4, "atom name (columns 13-16)"),

@@ -140,8 +140,8 @@ impl LightingTables {
 }
 
 impl SceneFile {
-    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity that
-    /// needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
+    /// Returns the integrator that the file asks for: with the key `integrator`, or with a table, material or opacity
+    /// that needs a lit picture. `None` means that the file asks for nothing, so that primary rays are enough.
     #[must_use]
     pub fn integrator(&self) -> Option<IntegratorKind> {
         self.lighting.integrator
@@ -154,9 +154,9 @@ impl SceneFile {
     }
 
     /// Returns the render settings for an integrator, which need not be the one that the file asks for; tables that it
-    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there are
-    /// the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is the
-    /// image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
+    /// does not use are ignored. If the file names lights, a sun or a sky, there are no other lights; otherwise there
+    /// are the default lights. Missing values follow from the scene and, for the depth cue, from the camera. `image` is
+    /// the image at [`SceneFile::sky_image`]. The settings are not transparent; the caller can change that.
     ///
     /// # Errors
     /// For a lit picture: if a colour would create light, if the integrator does not support shadow catchers, or if the
@@ -220,8 +220,8 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been checked
-    /// before, so only a few errors are left.
+    /// Returns the position in the file that an error is about. All tables and the spheres of this file have been
+    /// checked before, so only a few errors are left.
     fn span_of(&self, error: &SettingsError) -> Span {
         let ground = || self.lighting.ground.as_ref().map(|ground| ground.span);
         let data = || self.data.as_ref().map(|data| data.span);
