@@ -62,8 +62,8 @@ pub(super) struct RenderArgs {
     pub(super) device: DeviceArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Data layer to write in addition: LAYER=FILE.npy writes a NumPy array, and LAYER alone adds it to an .exr picture.
-    /// Layers are color, alpha, depth, normal, position, albedo, id, samples and variance; may be repeated
+    /// Data layer to write in addition: LAYER=FILE.npy writes a NumPy array, and LAYER alone adds it to an .exr
+    /// picture. Layers are color, alpha, depth, normal, position, albedo, id, samples and variance; may be repeated
     #[arg(long = "layer", value_name = "LAYER[=FILE.npy]")]
     pub(super) layers: Vec<String>,
     /// How the two pictures of a stereo camera are written [default: side-by-side]
@@ -125,8 +125,8 @@ impl From<Tone> for ToneCurve {
 /// The scene and the view of it. [`super::input::Source`] checks them.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// File to render: a scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .npy, .npz; .bin with --format), which
-    /// the camera frames automatically
+    /// File to render: a scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .ent, .npy, .npz; .bin with
+    /// --format), which the camera frames automatically
     #[arg(value_name = "SCENE_OR_DATA")]
     pub(super) path: PathBuf,
     #[command(flatten)]
@@ -294,8 +294,8 @@ pub(super) struct VerifyArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Samples of each pixel whose light paths are checked bounce by bounce, for scenes with the integrator `path`. In a
-    /// picture with a side of more than 256 pixels, only the middle is checked [default: 1]
+    /// Samples of each pixel whose light paths are checked bounce by bounce, for scenes with the integrator `path`. In
+    /// a picture with a side of more than 256 pixels, only the middle is checked [default: 1]
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub(super) paths: Option<u32>,
     /// Also write the results to this file as JSON
@@ -318,9 +318,9 @@ pub(super) struct VerifyArgs {
     after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
     and the error is that of `render`; 2 wrong usage.\n\n\
     JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
-    reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), `buffers` (name, bytes, bytes_per_binding, \
-    bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, `host_peak`, \
-    `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
+    reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), \
+    `buffers` (name, bytes, bytes_per_binding, bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, \
+    `host_peak`, `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
     `problem`. New versions may add keys, but do not change these."
 )]
 pub(super) struct PlanArgs {
@@ -332,8 +332,8 @@ pub(super) struct PlanArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Data layer that would be written in addition (alpha, depth, normal, position, albedo, id, samples, variance); may
-    /// be repeated
+    /// Data layer that would be written in addition (alpha, depth, normal, position, albedo, id, samples, variance);
+    /// may be repeated
     #[arg(long = "layer", value_name = "LAYER")]
     pub(super) layers: Vec<String>,
     /// Print the results as JSON
@@ -346,7 +346,8 @@ pub(super) struct PlanArgs {
 #[command(
     after_help = "Each scene is measured with the structure that --accel auto chooses for many pictures, and with the \
     other of grid and tree. Rays go through the centers of all pixels; `any` asks only whether there is a hit. \
-    Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of `render`.\n\n\
+    Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of \
+    `render`.\n\n\
     JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
     trace_device, any_wall, any_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \

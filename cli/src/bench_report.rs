@@ -186,7 +186,7 @@ fn compared(runs: &[RunReport]) -> Option<String> {
     let (name, other) = (first.structure, other.structure);
     let chose = format!("{} chose {name}; {other} is", first.choice);
     let percent = |fast: f64, slow: f64| (fast / slow - 1.0) * 100.0;
-    // The percentage compares rates, so "faster" means more rays per second.
+    // "30 % faster" means 30 % more rays per second, and "30 % slower" means 30 % more time per ray.
     Some(if theirs > own {
         format!("{chose} {:.0} % faster", percent(theirs, own))
     } else {

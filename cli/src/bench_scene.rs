@@ -61,7 +61,8 @@ impl BenchSource {
         }
     }
 
-    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not free.
+    /// Generates or reads the scene. Prints how much memory a generated scene needs, and refuses it if that is not
+    /// free.
     pub(super) fn load(&self, size: Option<(u32, u32)>) -> Result<BenchScene, Failure> {
         match self {
             Self::Standard(standard) => made(*standard, size),

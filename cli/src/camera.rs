@@ -35,7 +35,8 @@ pub(super) struct CameraArgs {
     /// Distance from the eye to the view plane in scene units, with --half-extent (pinhole, thin-lens) [default: 1]
     #[arg(long, help_heading = HEADING, value_name = "D", allow_hyphen_values = true)]
     distance: Option<f64>,
-    /// Half width and half height of the view plane in scene units, instead of --fov
+    /// Half width and half height of the view plane in scene units, instead of --fov (pinhole, thin-lens,
+    /// orthographic)
     #[arg(long, help_heading = HEADING, value_name = "HX,HY", value_parser = numbers::<2>, allow_hyphen_values = true)]
     half_extent: Option<[f64; 2]>,
     /// Radius of the lens in scene units (thin-lens)

@@ -44,7 +44,8 @@ impl DataOptions {
         format.check(&self.to_read()).map_err(|error| format!("{prefix}{error}"))?;
         if self.color.is_some() && format.has_colors {
             return Err(format!(
-                "{prefix}color applies only to data without colors; remove it, because atoms have the colors of their elements"
+                "{prefix}color applies only to data without colors; remove it, because atoms have the colors of \
+                 their elements"
             ));
         }
         Ok(())

@@ -78,7 +78,7 @@ pub(super) enum Opened {
         /// The acceleration structure.
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
-        doubt: Option<String>,
+        warning: Option<String>,
     },
 }
 
@@ -103,8 +103,8 @@ impl Device {
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
                 Ok(headless) => {
-                    let doubt = interrupt::on_device(|| self_test::doubt(&headless))?;
-                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice, doubt })
+                    let warning = interrupt::on_device(|| self_test::quick_warning(&headless))?;
+                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice, warning })
                 }
                 Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),

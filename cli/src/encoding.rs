@@ -43,7 +43,7 @@ impl EncodingFlags {
     }
 
     /// Applies the flags to the encoding of a scene. Flags take precedence.
-    pub(super) fn over(self, scene: Encoding) -> Encoding {
+    pub(super) fn apply_to(self, scene: Encoding) -> Encoding {
         let encoding = scene
             .with_bits(self.bits.unwrap_or(scene.bits()))
             .with_transparent(self.transparent.unwrap_or(scene.transparent()))

@@ -10,7 +10,7 @@ pub(super) const FAILED: u8 = 1;
 pub(super) const USAGE: u8 = 2;
 
 /// Exit code of a check that found something wrong.
-pub(super) const UNPROVEN: u8 = 3;
+pub(super) const CHECK_FAILED: u8 = 3;
 
 /// Exit code of a job that a signal stopped, as shells use it for SIGINT.
 pub(super) const STOPPED: u8 = 130;
@@ -26,7 +26,7 @@ pub(super) enum Failure {
     /// The job could not be done.
     Job(anyhow::Error),
     /// The job was done, and its check found a violation.
-    Unproven(anyhow::Error),
+    CheckFailed(anyhow::Error),
     /// The user stopped it while a device was at work.
     #[cfg_attr(
         not(feature = "gpu"),
@@ -43,7 +43,9 @@ impl Failure {
     /// Returns the error with all its contexts.
     pub(super) fn message(&self) -> String {
         match self {
-            Self::Usage(error) | Self::Job(error) | Self::Unproven(error) => format!("{error:#}"),
+            Self::Usage(error) | Self::Job(error) | Self::CheckFailed(error) => {
+                format!("{error:#}")
+            }
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
         }
     }
@@ -52,7 +54,7 @@ impl Failure {
         match self {
             Self::Usage(_) => USAGE.into(),
             Self::Job(_) => FAILED.into(),
-            Self::Unproven(_) => UNPROVEN.into(),
+            Self::CheckFailed(_) => CHECK_FAILED.into(),
             Self::Stopped => STOPPED.into(),
         }
     }
@@ -68,7 +70,7 @@ impl fmt::Display for Failure {
     /// Writes the line that the program prints before it ends.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(_) | Self::Job(_) | Self::Unproven(_) => {
+            Self::Usage(_) | Self::Job(_) | Self::CheckFailed(_) => {
                 write!(f, "error: {}", self.message())
             }
             Self::Stopped => f.write_str(&self.message()),

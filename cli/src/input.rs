@@ -193,23 +193,23 @@ impl Source {
         }
         let parameters = self.camera.unwrap_or_default();
         let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
-        let settings = self.light.over(light::plain(self.light.integrator(None)))?;
+        let settings = self.light.apply_to(light::plain(self.light.integrator(None)))?;
         let encoding = Encoding::default();
         let files = vec![path.clone()];
         Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
 
-    /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of other
-    /// paths.
+    /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
+    /// other paths.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
         let file = SceneFile::parse(text).with_context(file_name)?;
         let (data, color, notes) = self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator());
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
-        let sky_file = sky_file.map(|file| self.beside(file));
+        let sky_file = sky_file.map(|file| self.resolve(file));
         let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
-        let data_file = file.data().map(|data| self.beside(&data.file));
+        let data_file = file.data().map(|data| self.resolve(&data.file));
         let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
         let (film, size_from) = self.film(file.film)?;
         let scene = match data {
@@ -226,7 +226,7 @@ impl Source {
         };
         let settings =
             file.settings(kind, &scene, camera.as_ref(), image).with_context(file_name)?;
-        let settings = self.light.over(settings)?;
+        let settings = self.light.apply_to(settings)?;
         let encoding = file.encoding;
         Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
     }
@@ -241,7 +241,7 @@ impl Source {
     }
 
     /// Resolves a path that is relative to the folder of the scene file.
-    fn beside(&self, path: &str) -> PathBuf {
+    fn resolve(&self, path: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
@@ -262,7 +262,7 @@ impl Source {
                 None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
             };
         };
-        let path = self.beside(&data.file);
+        let path = self.resolve(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let extension = extension(&path);
         let Some(format) = extension.as_deref().and_then(load::Format::of_extension) else {

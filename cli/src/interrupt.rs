@@ -21,7 +21,7 @@ static STATE: Mutex<State> = Mutex::new(State {
     phase: Phase::Free,
     is_requested: false,
     temporaries: Vec::new(),
-    words: NOTHING_WRITTEN,
+    message: NOTHING_WRITTEN,
 });
 
 struct State {
@@ -31,7 +31,7 @@ struct State {
     /// Temporary files to remove. The list may include files that were renamed or removed since.
     temporaries: Vec<PathBuf>,
     /// The message if the program ends now.
-    words: &'static str,
+    message: &'static str,
 }
 
 /// The work that a signal would interrupt.
@@ -84,7 +84,7 @@ fn on_signal() {
         let _ = std::fs::remove_file(path);
     }
     progress::close();
-    tell(state.words);
+    tell(state.message);
     // The lock is still held, so no file is created or renamed.
     std::process::exit(STOPPED.into());
 }
@@ -137,12 +137,12 @@ pub(super) fn all_or_nothing<E>(any: bool, name: impl FnOnce() -> Result<(), E>)
     let mut state = state();
     name()?;
     if any {
-        state.words = "stopped; all files were already complete";
+        state.message = "stopped; all files were already complete";
     }
     Ok(())
 }
 
 /// Changes the message if the program is stopped from now on.
-pub(super) fn words(words: &'static str) {
-    state().words = words;
+pub(super) fn set_message(message: &'static str) {
+    state().message = message;
 }

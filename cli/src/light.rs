@@ -136,7 +136,7 @@ impl LightFlags {
     }
 
     /// Applies the flags to the settings of a scene. Flags take precedence.
-    pub(super) fn over(&self, mut settings: RenderSettings) -> Result<RenderSettings, Failure> {
+    pub(super) fn apply_to(&self, mut settings: RenderSettings) -> Result<RenderSettings, Failure> {
         if let (Integrator::Primary(_), Some(flag)) =
             (&settings.integrator, self.for_light().next())
         {

@@ -11,15 +11,15 @@ use pinhole::image::LayerSet;
 pub(super) const ENCODING_BYTES_PER_PIXEL: u64 = 20;
 
 /// Refuses a picture of the CPU reference for which the machine, or the control group that the program runs in, has not
-/// enough memory. `beside` is the number of bytes per pixel in addition to the layers. The memory that an adapter needs
+/// enough memory. Each pixel needs `extra_bytes_per_pixel` in addition to the layers. The memory that an adapter needs
 /// is in its plan.
 pub(super) fn check(
     film: &Film,
     size_from: &str,
     layers: LayerSet,
-    beside: u64,
+    extra_bytes_per_pixel: u64,
 ) -> Result<(), Failure> {
-    let per_pixel = layers.bytes_per_pixel() + beside;
+    let per_pixel = layers.bytes_per_pixel() + extra_bytes_per_pixel;
     let needed = film.pixel_count().saturating_mul(per_pixel);
     let (width, height) = (film.width(), film.height());
     let what = format!("{size_from}: a picture of {width}x{height} needs");

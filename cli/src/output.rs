@@ -19,7 +19,7 @@ pub(super) fn check_distinct<'a>(
 ) -> Result<(), Failure> {
     let mut seen = HashSet::new();
     for path in outputs {
-        if !seen.insert(real(path)) {
+        if !seen.insert(canonical(path)) {
             return Err(Failure::usage(format!(
                 "{}: two outputs have this file; give each output a file of its own",
                 path.display()
@@ -30,12 +30,12 @@ pub(super) fn check_distinct<'a>(
 }
 
 /// Refuses to overwrite an input.
-pub(super) fn spare<'a>(
+pub(super) fn check_not_inputs<'a>(
     mut outputs: impl Iterator<Item = &'a PathBuf>,
     inputs: &[PathBuf],
 ) -> Result<(), Failure> {
-    let inputs: Vec<PathBuf> = inputs.iter().map(|path| real(path)).collect();
-    match outputs.find(|path| inputs.contains(&real(path))) {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| canonical(path)).collect();
+    match outputs.find(|path| inputs.contains(&canonical(path))) {
         None => Ok(()),
         Some(path) => Err(Failure::usage(format!(
             "{}: this output is also an input; give it another name",
@@ -54,14 +54,14 @@ impl NewFolder {
         // This removes a separator at the end.
         let path: PathBuf = path.components().collect();
         if path.is_dir() {
-            check_place(&path.join(file))?;
+            check_writable(&path.join(file))?;
         } else if path.exists() {
             return Err(Failure::usage(format!(
                 "{}: this is a file; name a folder",
                 path.display()
             )));
         } else {
-            check_place(&path)?;
+            check_writable(&path)?;
         }
         Ok(Self(path))
     }
@@ -102,7 +102,7 @@ impl SpheresFormat {
                 )));
             }
         };
-        check_place(path)?;
+        check_writable(path)?;
         Ok(format)
     }
 }
@@ -132,7 +132,7 @@ fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     builder
-        .tempfile_in(folder(&real(path)))
+        .tempfile_in(folder(&canonical(path)))
         .map_err(|error| without_name(&error))
         .with_context(|| format!("{}: cannot be written", path.display()))
 }
@@ -172,7 +172,7 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
     let mut new = Vec::new();
     for (path, file) in files {
         let existed = path.exists();
-        if let Err(error) = file.persist(real(path)) {
+        if let Err(error) = file.persist(canonical(path)) {
             for path in new {
                 // A file that cannot be removed is still a complete file.
                 let _ = std::fs::remove_file(path);
@@ -189,7 +189,7 @@ fn name_each(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
 
 /// Returns the canonical path of a file, whether it exists or not. For a link it is the path of the target, because the
 /// target is replaced and not the link.
-fn real(path: &Path) -> PathBuf {
+fn canonical(path: &Path) -> PathBuf {
     if let Ok(target) = path.canonicalize() {
         return target;
     }
@@ -203,7 +203,7 @@ fn real(path: &Path) -> PathBuf {
 
 /// Refuses a path at which no file can be written: a folder, or a file in a folder that does not exist or is not
 /// writable.
-pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
+pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
     let ends_with_separator = path
         .as_os_str()
         .as_encoded_bytes()

@@ -8,7 +8,9 @@ use tempfile::NamedTempFile;
 use super::failure::Failure;
 use super::input::extension;
 use super::interrupt;
-use super::output::{check_distinct, check_place, name_all, spare, unnamed, unnamed_with};
+use super::output::{
+    check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
+};
 use super::progress;
 use super::speak::answer;
 use pinhole::image::encoding::Encoding;
@@ -71,8 +73,8 @@ impl Outputs {
     }
 
     /// Refuses to overwrite an input.
-    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        spare(self.paths(), inputs)
+    pub(super) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        check_not_inputs(self.paths(), inputs)
     }
 
     /// Returns the layers to render.
@@ -81,8 +83,8 @@ impl Outputs {
         self.layers.iter().map(|(layer, _)| *layer).chain(self.inside.iter()).chain(alpha).collect()
     }
 
-    /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them are
-    /// complete. `adapter` is the name of the adapter that rendered.
+    /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them
+    /// are complete. `adapter` is the name of the adapter that rendered.
     pub(super) fn write(
         &self,
         image: &Image,
@@ -102,7 +104,7 @@ impl Outputs {
         };
         name_all(files)?;
         if let Some(picture) = for_standard_output {
-            interrupt::words("stopped; the picture on standard output is not complete");
+            interrupt::set_message("stopped; the picture on standard output is not complete");
             answer(&picture).context("standard output: cannot be written")?;
         }
         Ok(())
@@ -152,7 +154,7 @@ impl Outputs {
             layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
         });
         let paths = || outputs.iter().flat_map(Self::paths);
-        paths().try_for_each(|path| check_place(path))?;
+        paths().try_for_each(|path| check_writable(path))?;
         check_distinct(paths())?;
         Ok(outputs)
     }
@@ -194,7 +196,7 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
             )));
         }
     };
-    check_place(path)?;
+    check_writable(path)?;
     Ok(format)
 }
 
@@ -215,7 +217,7 @@ fn parse_layer(text: &str) -> Result<(Layer, Option<PathBuf>), Failure> {
                 path.display()
             )));
         }
-        check_place(path)?;
+        check_writable(path)?;
     }
     Ok((layer, path.map(Path::to_path_buf)))
 }

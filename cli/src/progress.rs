@@ -93,7 +93,7 @@ fn show_part(part: f64, template: &str, message: Option<String>) {
 }
 
 /// Runs `write` while the line is hidden.
-pub(super) fn beside<T>(write: impl FnOnce() -> T) -> T {
+pub(super) fn while_hidden<T>(write: impl FnOnce() -> T) -> T {
     let bar = line().bar.clone();
     match bar {
         Some(bar) => bar.suspend(write),

@@ -62,11 +62,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     threads::start()?;
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
-    job.outputs.spare(&input.files)?;
+    job.outputs.check_not_inputs(&input.files)?;
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
-    let encoding = job.encoding.over(input.encoding);
+    let encoding = job.encoding.apply_to(input.encoding);
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
         job.stop_rule.check_without_light()?;
@@ -84,7 +84,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let adapter = opened.adapter();
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = job.outputs.of_eyes()?;
-        outputs.iter().try_for_each(|outputs| outputs.spare(&input.files))?;
+        outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
         let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
         return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
     }
@@ -124,8 +124,8 @@ fn render_views(
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, doubt } => {
-            doubt.iter().for_each(tell);
+        Opened::Device { headless, choice, warning } => {
+            warning.iter().for_each(tell);
             on_gpu(headless, input, stop_rule, views, layers, *choice)
         }
     }
@@ -141,7 +141,7 @@ fn check_on_cpu(
     if !input.settings.integrator.is_primary() {
         stop_rule.check_on_cpu()?;
     }
-    memory::check(&input.film, &input.size_from, layers, views.bytes_beside(layers))
+    memory::check(&input.film, &input.size_from, layers, views.extra_bytes_per_pixel(layers))
 }
 
 fn on_cpu(
@@ -211,6 +211,6 @@ pub(super) fn plan(
     choice: AccelChoice,
 ) -> RenderPlan {
     let Input { scene, settings, .. } = input;
-    let beside = views.bytes_beside(layers);
-    headless.plan(scene, &input.view(), settings, layers, choice, beside)
+    let extra = views.extra_bytes_per_pixel(layers);
+    headless.plan(scene, &input.view(), settings, layers, choice, extra)
 }

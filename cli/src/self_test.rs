@@ -57,14 +57,14 @@ impl SelfTested {
 
     /// Returns a failure if a property failed.
     pub(super) fn verdict(&self) -> Result<(), Failure> {
-        unproven(self.failure.as_deref())
+        check_failed(self.failure.as_deref())
     }
 }
 
 /// Runs the full test on an open adapter, and returns a failure if a property failed.
 pub(super) fn check(headless: &Headless) -> Result<(), Failure> {
     let report = test(headless)?;
-    unproven(failure(&headless.adapter_info().name, &report).as_deref())
+    check_failed(failure(&headless.adapter_info().name, &report).as_deref())
 }
 
 fn test(headless: &Headless) -> Result<SelfTestReport, Failure> {
@@ -73,8 +73,8 @@ fn test(headless: &Headless) -> Result<SelfTestReport, Failure> {
     tested.map_err(|error| explained_alone(headless, &error))
 }
 
-fn unproven(failure: Option<&str>) -> Result<(), Failure> {
-    failure.map_or(Ok(()), |failure| Err(Failure::Unproven(anyhow!("{failure}"))))
+fn check_failed(failure: Option<&str>) -> Result<(), Failure> {
+    failure.map_or(Ok(()), |failure| Err(Failure::CheckFailed(anyhow!("{failure}"))))
 }
 
 impl PropertyReport {
@@ -101,7 +101,7 @@ fn failure(adapter: &str, report: &SelfTestReport) -> Option<String> {
 }
 
 /// Runs the quick part of the test. Returns a warning if the pictures of the adapter may be wrong.
-pub(super) fn doubt(headless: &Headless) -> Option<String> {
+pub(super) fn quick_warning(headless: &Headless) -> Option<String> {
     warning(&headless.adapter_info().name, headless.self_test(SelfTestExtent::Quick))
 }
 
@@ -143,12 +143,12 @@ mod tests {
         let failed = tested(Some("some fails the self-test (fence: the words)"));
         assert!(failed.readable().contains("\n  FAILED  fence: the words\n"));
         match failed.verdict() {
-            Err(failure @ Failure::Unproven(_)) => {
+            Err(failure @ Failure::CheckFailed(_)) => {
                 assert_eq!(
                     failure.to_string(),
                     "error: some fails the self-test (fence: the words)"
                 );
-                assert_eq!(failure.exit_code(), super::super::failure::UNPROVEN.into());
+                assert_eq!(failure.exit_code(), super::super::failure::CHECK_FAILED.into());
             }
             other => panic!("{other:?}"),
         }

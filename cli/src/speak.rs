@@ -9,7 +9,7 @@ use pinhole::text::one_line;
 /// Prints one line on standard error, with control characters escaped.
 pub(super) fn tell(line: impl fmt::Display) {
     let line = one_line(&line.to_string());
-    progress::beside(|| {
+    progress::while_hidden(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });
 }

@@ -76,7 +76,8 @@ impl StopRule {
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((flag, _)) => Err(Failure::usage(format!(
-                "{flag} needs an adapter, because the CPU reference completes one pixel after the other; use --samples instead"
+                "{flag} needs an adapter, because the CPU reference completes one pixel after the other; use \
+                 --samples instead"
             ))),
             None => Ok(()),
         }
@@ -250,7 +251,8 @@ impl Watching {
         let wanted = self.stop_rule.noise?;
         let left = noise.filter(|noise| *noise > wanted)?;
         Some(format!(
-            "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}; allow more --samples or --time"
+            "note: the noise is {left:.3} after {samples} samples, more than --noise {wanted}; allow more --samples or \
+             --time"
         ))
     }
 }

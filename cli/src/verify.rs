@@ -38,7 +38,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
 /// Reads a saved recording.
 fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Failure> {
     let outputs = VerifyOutputs::new(args)?;
-    outputs.spare(&[path.to_path_buf()])?;
+    outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
     progress::stage(format!("reading {}", path.display()));
     let bytes = read(path)?;
@@ -48,11 +48,11 @@ fn replayed(path: &Path, args: &VerifyArgs) -> Result<(Run, VerifyOutputs), Fail
 
 fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     if let Some(error) = &certificate.upload {
-        return Err(Failure::Unproven(anyhow!("the picture is not legal: {error}")));
+        return Err(Failure::CheckFailed(anyhow!("the picture is not legal: {error}")));
     }
     match certificate.violations.first() {
         None => Ok(()),
-        Some(first) => Err(Failure::Unproven(anyhow!(
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
             "the picture is not legal: {} of {} pixels; the first is {first}",
             certificate.count(Verdict::Violation),
             certificate.verdicts.len()
@@ -62,11 +62,11 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
 
 fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
     if let Some(error) = &certificate.upload {
-        return Err(Failure::Unproven(anyhow!("the paths are not legal: {error}")));
+        return Err(Failure::CheckFailed(anyhow!("the paths are not legal: {error}")));
     }
     match certificate.violations.first() {
         None => Ok(()),
-        Some(first) => Err(Failure::Unproven(anyhow!(
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
             "the paths are not legal: {} of {} stages; the first is {first}",
             certificate.violation_count,
             certificate.stages().checked
@@ -83,7 +83,8 @@ mod recorded {
 
     pub(super) fn recorded(_: &Path, _: &VerifyArgs) -> Result<Recorded, Failure> {
         Err(Failure::usage(
-            "this program was built without the feature `gpu`, so it can only check recordings: `pinhole verify --replay RUN`",
+            "this program was built without the feature `gpu`, so it can only check recordings: \
+             `pinhole verify --replay RUN`",
         ))
     }
 }
@@ -110,7 +111,7 @@ mod recorded {
         let wanted = WantedAdapter::new(&args.adapter);
         threads::start()?;
         let input = source.load()?;
-        outputs.spare(&input.files)?;
+        outputs.check_not_inputs(&input.files)?;
         for note in &input.notes {
             tell(format_args!("note: {note}"));
         }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use super::args::VerifyArgs;
 use super::failure::Failure;
 use super::output::{
-    NewFolder, check_distinct, check_place, name_all, spare, unnamed, unnamed_with,
+    NewFolder, check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
 use super::progress;
 use super::verify_page::page;
@@ -32,7 +32,7 @@ pub(super) struct VerifyOutputs {
 impl VerifyOutputs {
     pub(super) fn new(args: &VerifyArgs) -> Result<Self, Failure> {
         for path in args.json.iter().chain(&args.save) {
-            check_place(path)?;
+            check_writable(path)?;
         }
         let folder = args.report.as_deref().map(|path| NewFolder::new(path, PAGE)).transpose()?;
         let outputs = Self {
@@ -53,8 +53,8 @@ impl VerifyOutputs {
     }
 
     /// Refuses to overwrite an input.
-    pub(super) fn spare(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        spare(self.paths(), inputs)
+    pub(super) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        check_not_inputs(self.paths(), inputs)
     }
 
     /// Encodes and writes all outputs.

@@ -21,8 +21,8 @@ pub(super) const MISS: [u8; 3] = [0xb8, 0xb8, 0xb8];
 /// Colour of pixels in which the hit of a sphere is the only legal answer.
 pub(super) const DECIDED_HIT: [u8; 3] = [0xb9, 0xc9, 0xd4];
 
-/// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in greyscale
-/// and for people with red-green colour blindness (after Okabe and Ito).
+/// Returns the colour of a verdict: cold colours are legal, and the warm one is not. The colours also differ in
+/// greyscale and for people with red-green colour blindness (after Okabe and Ito).
 pub(super) const fn verdict_color(verdict: Verdict) -> [u8; 3] {
     match verdict {
         Verdict::Decided => [0xe4, 0xeb, 0xef],

@@ -56,7 +56,7 @@ impl<'a> Views<View<'a>> {
     }
 
     /// Returns the bytes per pixel that are needed in addition to the layers of one picture.
-    pub(super) fn bytes_beside(&self, layers: LayerSet) -> u64 {
+    pub(super) fn extra_bytes_per_pixel(&self, layers: LayerSet) -> u64 {
         let encoding = memory::ENCODING_BYTES_PER_PIXEL;
         match self {
             Self::One(_) => encoding,

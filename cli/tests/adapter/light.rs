@@ -38,7 +38,7 @@ fn run(folder: &Path, headless: &Headless, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// The number of samples, which all pixels share.
+/// Reads the number of samples, which is the same in all pixels.
 fn samples(folder: &Path) -> u32 {
     let bytes = std::fs::read(folder.join("s.npy")).unwrap();
     let samples: Vec<u32> = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap();
@@ -87,7 +87,7 @@ fn time(headless: &'static Headless) {
         run(folder.path(), headless, &format!("{flags} {time}"));
         assert!((1..=most).contains(&samples(folder.path())), "{time}");
     }
-    // Too short for a sample of every pixel.
+    // This time is too short for a sample in every pixel.
     std::fs::remove_file(folder.path().join("out.png")).unwrap();
     let flags = "render scene.toml -o out.png --integrator path --size 4000x3000 --time 0.02s";
     let output = command_on(headless, folder.path(), flags).output().unwrap();
@@ -117,7 +117,7 @@ fn signal(headless: &'static Headless) {
     let output = interrupted(folder.path(), headless, endless, Duration::from_secs(1));
     assert_eq!(output.status.code(), Some(130));
     assert!(!folder.path().join("out.png").exists());
-    // Before there is a device, nothing can be kept.
+    // Nothing can be kept before the device is open, so later signals are tried until a picture is written.
     for seconds in [1, 2, 4, 8, 16, 32] {
         let flags = format!("{endless} --keep-partial");
         let output = interrupted(folder.path(), headless, &flags, Duration::from_secs(seconds));
@@ -145,7 +145,7 @@ fn plan(headless: &'static Headless) {
             report["buffers"].as_array().unwrap().iter().find(|buffer| buffer["name"] == "paths");
         paths.map(|paths| paths["bytes"].as_u64().unwrap())
     };
-    // The ground asks for light.
+    // The scene has a ground, so it is lit.
     let state = plan("--size 64x48");
     assert!(state.is_some_and(|bytes| bytes > 0 && bytes % (16 * 64 * 48) == 0), "{state:?}");
     std::fs::write(folder.path().join("scene.toml"), SCENE.replace("[ground]\n", "")).unwrap();

@@ -127,7 +127,7 @@ fn paths(_: &'static Headless) {
     assert_eq!(json["paths"]["paths"], 3600);
     assert_eq!(json["paths"]["stages"]["start"]["checked"], 3600);
     assert_eq!((&json["paths"]["legal"], &json["legal"]), (&true.into(), &true.into()));
-    // Without paths, nothing is said of them.
+    // Without path tracing, the document has no key about paths.
     table(&folder, "verify scene.toml --size 8x6 --json b.json");
     let json = std::fs::read_to_string(folder.path().join("b.json")).unwrap();
     assert!(!json.contains("paths"), "{json}");

@@ -59,7 +59,7 @@ fn a_file_that_does_not_fit_into_memory() {
     assert_eq!(folder.files(), ["large.npy"]);
 }
 
-/// The picture of some arguments.
+/// Renders with some arguments, and returns the RGB bytes of the picture.
 #[track_caller]
 fn picture(folder: &Folder, arguments: &str) -> Vec<u8> {
     let arguments = format!("render {arguments} -o - --size 24x16 --backend cpu");
@@ -231,7 +231,7 @@ fn a_camera_on_the_command_line() {
         let expected = picture(&folder, &format!("{name}.toml"));
         assert_eq!(picture(&folder, &format!("a.npy {flags}")), expected, "{flags}");
         assert_ne!(picture(&folder, "a.npy"), expected);
-        // Flags take the place of the whole camera of a scene.
+        // Flags replace the whole camera of a scene.
         assert_eq!(picture(&folder, &format!("fov.toml {flags}")), expected, "{flags}");
     }
     let scene = "data = 'a.npy'\n[camera.orthographic]\neye = [0, 0, -5]\ndirection = [0, 0, 1]\n\

@@ -2,7 +2,7 @@
 
 use crate::support::{Folder, SCENE, WATER};
 
-/// Runs one bad command in a folder with one scene and one data file beside the files given.
+/// Runs a bad command in a folder with a scene, a data file and the given files.
 #[track_caller]
 fn refused(files: &[(&str, &str)], arguments: &str, code: i32, words: &[&str]) {
     let mut all = vec![("scene.toml", SCENE), ("water.xyz", WATER)];
@@ -103,7 +103,7 @@ fn sizes() {
     for size in ["9000000x1", "4294967295x4294967295"] {
         refused(&[], &format!("render scene.toml -o out.png --size {size}"), 2, &["too large"]);
     }
-    // Ten million million pixels.
+    // This picture has 16 million million pixels.
     let arguments = "render scene.toml -o out.png --backend cpu --size 4000000x4000000";
     refused(&[], arguments, 1, &["--size", "4000000x4000000", "memory", "smaller"]);
     let large = [("large.toml", "[film]\nwidth = 4000000\nheight = 4000000\n")];
@@ -175,8 +175,8 @@ fn a_failed_layer_leaves_no_picture() {
     refused(&[], &arguments, 1, &["aaa.npy", "cannot be written"]);
 }
 
-/// Found before anything is rendered: this size would take minutes. In /proc not even the superuser can
-/// create a file.
+/// The error appears before anything is rendered, because this size would take minutes. In /proc not even the superuser
+/// can create a file.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_folder_that_cannot_be_written() {
@@ -192,14 +192,14 @@ fn control_characters_do_not_reach_the_terminal() {
 }
 
 #[test]
-fn a_backend_that_is_not_there_is_named() {
+fn an_unknown_backend_is_named() {
     let folder = Folder::with(&[("scene.toml", SCENE)]);
     let mut command = folder.command("render scene.toml -o out.png");
     let output = command.env("WGPU_BACKEND", "nonsense").output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(stderr.contains("WGPU_BACKEND=nonsense"), "{stderr}");
-    // And `info` says what `render` does.
+    // `info` reports the same error.
     let info = folder.command("info").env("WGPU_BACKEND", "nonsense").output().unwrap();
     let text = String::from_utf8(info.stdout).unwrap();
     assert!(text.contains("`render` refuses: WGPU_BACKEND=nonsense"), "{text}");
@@ -232,7 +232,7 @@ fn one_file_by_a_link() {
 }
 
 #[test]
-fn what_is_read_is_not_overwritten() {
+fn inputs_are_not_overwritten() {
     let folder = Folder::with(&[("scene.toml", "data = 'in.npy'\n")]);
     folder.run("generate random -n 10 -o in.npy").succeeded();
     let spheres = folder.read("in.npy");

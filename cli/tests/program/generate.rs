@@ -27,7 +27,7 @@ fn files_are_the_same_each_time_and_can_be_rendered() {
 }
 
 #[test]
-fn what_is_refused_leaves_no_file() {
+fn refused_jobs_leave_no_file() {
     let folder = Folder::new();
     for (arguments, words) in [
         ("random -n 4294967295 -o a.npy", "-n 4294967295: 4294967295 spheres are too many"),

@@ -58,7 +58,7 @@ fn without_a_driver_the_reference_renders_and_says_so_in_one_line() {
     assert!(text.contains("mesa-vulkan-drivers") && text.contains("CPU reference"), "{text}");
 }
 
-/// A name in the environment chooses among adapters; where there are none, there is nothing to choose.
+/// A name in the environment chooses among adapters. It has no effect if there are none.
 #[test]
 fn without_a_driver_a_name_in_the_environment_does_not_matter() {
     if !cfg!(target_os = "linux") {

@@ -41,12 +41,12 @@ fn the_reference_is_stopped() {
 
 /// Whenever the signal comes, there is the complete file or none, and never a temporary file.
 #[test]
-fn what_is_being_written_is_there_or_not() {
+fn files_are_complete_or_absent_after_a_signal() {
     let folder = Folder::new();
     for delay in [5, 20, 40, 80, 120, 200, 400] {
         let child = start(&folder, "generate random -n 3000000 -o big.bin");
         std::thread::sleep(Duration::from_millis(delay));
-        // It may have ended already.
+        // The program may have ended already, so the result of `kill` does not matter.
         let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).output().unwrap();
         let output = child.wait_with_output().unwrap();
         let files = folder.files();
@@ -56,7 +56,7 @@ fn what_is_being_written_is_there_or_not() {
                 assert_eq!(std::fs::metadata(folder.path("big.bin")).unwrap().len(), 48_000_000);
                 std::fs::remove_file(folder.path("big.bin")).unwrap();
             }
-            // Before the program listens, the signal ends it.
+            // The signal itself ends the program if it does not listen yet.
             None => assert!(files.is_empty(), "{files:?}"),
             Some(code) => {
                 let stderr = String::from_utf8(output.stderr).unwrap();
@@ -75,7 +75,7 @@ fn what_is_being_written_is_there_or_not() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn what_outlives_its_terminal_is_not_stopped_with_it() {
+fn nohup_keeps_the_program_alive() {
     let folder = Folder::new();
     folder.run("generate random -n 20000 -o many.npy").succeeded();
     let mut command = Command::new("nohup");
@@ -86,7 +86,7 @@ fn what_outlives_its_terminal_is_not_stopped_with_it() {
     send("-HUP", &child);
     std::thread::sleep(Duration::from_millis(200));
     assert_eq!(child.try_wait().unwrap(), None);
-    // Other signals are listened for.
+    // The program still handles other signals.
     send("-TERM", &child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }

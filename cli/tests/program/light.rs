@@ -7,7 +7,7 @@ use crate::support::{Folder, decode};
 const SCENE: &str = "[film]\nwidth = 24\nheight = 18\n[camera.pinhole]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n\
                      [[spheres]]\ncenter = [0, 0, 0]\nradius = 1\ncolor = 'tomato'\n";
 
-/// The scene with more at its top.
+/// The scene with more keys or tables at its top.
 fn scene(top: &str) -> String {
     format!("{top}{SCENE}")
 }
@@ -113,7 +113,7 @@ fn data_that_would_create_light() {
     );
 }
 
-/// A map whose third texel is as given.
+/// An environment map with a given third texel.
 fn map(texel: f32) -> Vec<u8> {
     let channels = SpecificChannels::rgb(|at: exr::prelude::Vec2<usize>| {
         let value = if at.x() == 2 { texel } else { 1.0 };
@@ -139,7 +139,7 @@ fn a_sky_that_is_not_valid_radiance() {
     }
     std::fs::write(folder.path("sky.exr"), map(0.5)).unwrap();
     folder.run("render scene.toml -o out.png --backend cpu --samples 1").succeeded();
-    // A studio needs no sky, and so no file; and what is read is never written.
+    // An input is never overwritten. The studio does not need the sky, so its file may be missing.
     let run = folder.run("render scene.toml -o sky.exr --backend cpu --samples 1");
     assert_eq!((run.code, run.stderr.contains("also an input")), (2, true), "{}", run.stderr);
     std::fs::remove_file(folder.path("sky.exr")).unwrap();
@@ -147,7 +147,7 @@ fn a_sky_that_is_not_valid_radiance() {
 }
 
 #[test]
-fn no_light_is_black_with_alpha_and_said() {
+fn a_scene_without_light_is_black_with_alpha_and_a_note() {
     let dark = "lights = []\n[studio]\nambient = 'black'\n[output]\ntransparent = true\n";
     let folder = Folder::with(&[("dark.toml", &scene(dark))]);
     let run = folder.run("render dark.toml -o out.png --backend cpu --samples 4").succeeded();
@@ -176,7 +176,7 @@ fn the_same_job_gives_the_same_bytes() {
 }
 
 #[test]
-fn flags_light_what_the_scene_does_not() {
+fn flags_make_a_lit_picture() {
     let touching = "[[spheres]]\ncenter = [0.5, 0.5, 1]\nradius = 0.4\n";
     let folder = Folder::with(&[("scene.toml", &format!("{SCENE}{touching}"))]);
     let render = |flags: &str| {
@@ -214,7 +214,7 @@ fn layers_of_samples() {
     assert_eq!(read::<u32>(&folder, "i.npy")[9 * 24 + 12], 0);
 }
 
-/// What was only a default can be asked for; of a lit scene it is the picture without light.
+/// Primary rays can be asked for explicitly; a lit scene is then rendered without light.
 #[test]
 fn primary_rays_are_an_integrator() {
     let lit = scene("[studio]\n[studio.occlusion]\n[sampling]\nsamples = 3\n");
@@ -249,7 +249,7 @@ fn primary_rays_are_an_integrator() {
 }
 
 #[test]
-fn what_is_drawn_otherwise_is_said() {
+fn notes_tell_what_is_not_drawn_as_asked() {
     let glass = "[materials.glass]\nkind = 'dielectric'\n";
     let text = format!("{}material = 'glass'\n", scene(glass));
     let folder = Folder::with(&[("glass.toml", &text), ("water.xyz", "1\n\nO 0 0 0\n")]);

@@ -57,7 +57,7 @@ fn an_exr_has_the_layers_that_are_named() {
         FlatSamples::U32(samples) => f64::from(samples[at]),
         FlatSamples::F16(_) => panic!("half"),
     };
-    // A corner is background, the middle is blue.
+    // The corner shows the background, and the middle a blue sphere.
     assert_eq!(["A", "R", "G", "B"].map(|name| number(name, 0)), [0.0; 4]);
     assert_eq!(["A", "R", "G", "B"].map(|name| number(name, at)), [1.0, 0.0, 0.0, 1.0]);
     assert_eq!((number("id", 0), number("id", at)), (4_294_967_295.0, 2.0));
@@ -67,7 +67,7 @@ fn an_exr_has_the_layers_that_are_named() {
 }
 
 #[test]
-fn what_is_transparent_has_no_background() {
+fn transparent_pictures_have_no_background() {
     let folder = folder();
     render(&folder, "three.toml -o out.png --transparent");
     let image = rgba(&folder.read("out.png"));
@@ -75,7 +75,7 @@ fn what_is_transparent_has_no_background() {
     let image = image.to_rgba8();
     assert_eq!(image.get_pixel(0, 0).0, [0; 4]);
     assert_eq!(image.get_pixel(19, 30).0, [0xff, 0, 0, 0xff]);
-    // To standard output as well, and with 16 bits.
+    // Standard output and 16 bits can be transparent too.
     let run = render(&folder, "three.toml -o - --transparent --bits 16");
     let deep = rgba(&run.stdout);
     assert_eq!(deep.color(), image::ColorType::Rgba16);
@@ -86,7 +86,7 @@ fn what_is_transparent_has_no_background() {
 fn scenes_say_how_they_are_written_and_flags_come_first() {
     let folder = folder();
     let output = "[output]\nexposure = -1\ntone = 'agx'\ntransparent = true\nbits = 16\n";
-    // The scene's own keys stand before any table.
+    // Keys at the top level must come before the first table.
     let (keys, tables) = THREE_SPHERES.split_once("[film]").unwrap();
     let scene = format!("{keys}{output}[film]{tables}");
     std::fs::write(folder.path("output.toml"), scene).unwrap();
@@ -106,13 +106,13 @@ fn scenes_say_how_they_are_written_and_flags_come_first() {
         assert_ne!(expected, by_scene, "{flags}");
         assert_eq!(picture(&format!("output.toml {flags}")), expected, "{flags}");
     }
-    // An EXR is of the light, whatever a scene says of PNG.
+    // An EXR file stores the light, so the keys for PNG do not change it.
     render(&folder, "output.toml -o a.exr");
     render(&folder, "three.toml -o b.exr --transparent");
     assert_eq!(folder.read("a.exr"), folder.read("b.exr"));
 }
 
-/// The middle of a white sphere, darker by stops until nothing is left.
+/// Each stop doubles or halves the light in the middle of a sphere.
 #[test]
 fn exposure_is_in_stops() {
     let folder = Folder::with(&[("scene.toml", &SCENE.replace("'red'", "[1, 0.25, 4]"))]);
@@ -121,7 +121,7 @@ fn exposure_is_in_stops() {
         let image = rgba(&run.stdout).to_rgb8();
         image.get_pixel(40, 30).0
     };
-    // 188 is half the light, 137 a quarter.
+    // In sRGB, 188 is half the light and 137 a quarter.
     let close = |found: [u8; 3], expected: [u8; 3]| {
         assert!(found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1), "{found:?}");
     };
@@ -138,7 +138,7 @@ fn exposure_is_in_stops() {
 fn a_full_disk_leaves_one_line_and_no_file() {
     let folder = folder();
     for output in ["out.exr", "out.png"] {
-        // 4 KiB: what is tried before the work, an empty file, has room.
+        // The limit is 4 KiB, so that the empty file that is tried before the work can be created.
         let script = format!(
             "ulimit -f 8; exec {} render three.toml -o {output} --backend cpu",
             env!("CARGO_BIN_EXE_pinhole")

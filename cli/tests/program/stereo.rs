@@ -20,7 +20,7 @@ fn red(png: &[u8]) -> (u32, u32, Vec<Vec<usize>>) {
 }
 
 #[test]
-fn side_by_side_is_what_two_files_are() {
+fn side_by_side_and_two_files_have_the_same_pictures() {
     let folder = Folder::with(&[("scene.toml", SCENE)]);
     let layers = "--layer depth=depth.npy --layer id=id.npy --backend cpu";
     folder.run(&format!("render scene.toml -o both.png {layers}")).succeeded();
@@ -49,7 +49,7 @@ fn side_by_side_is_what_two_files_are() {
         let joined = left.iter().copied().chain(right.iter().map(|i| i + 40));
         assert_eq!(*both, joined.collect::<Vec<_>>());
     }
-    // Nearer than the screen: the left eye sees it farther to the right.
+    // The sphere is nearer than the screen, so the left eye sees it farther to the right.
     let middle = |rows: &[Vec<usize>]| {
         let all: Vec<usize> = rows.iter().flatten().copied().collect();
         all.iter().sum::<usize>() as f64 / all.len() as f64

@@ -25,7 +25,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
             up: narrow(vectors.up),
             forward: narrow(vectors.forward),
             numbers: vectors.numbers.map(|number| number as f32),
-            // No ray meets it.
+            // No ray meets this box.
             scene_min: [10.0; 3],
             scene_max: [11.0; 3],
         },
@@ -56,7 +56,7 @@ fn folder() -> Folder {
     let folder = Folder::with(&[("scene.toml", SCENE)]);
     std::fs::write(folder.path("run"), bytes(&nothing([3, 2]))).unwrap();
     std::fs::write(folder.path("one"), bytes(&nothing([1, 1]))).unwrap();
-    // White, where black was asked for.
+    // The picture is white, but the background of the view is black.
     let mut wrong = nothing([30, 20]);
     wrong.recording.primary.background = LinearRgb::BLACK;
     std::fs::write(folder.path("wrong"), bytes(&wrong)).unwrap();
@@ -100,7 +100,7 @@ fn a_replay_needs_no_adapter() {
 }
 
 #[test]
-fn the_page_stands_alone_and_escapes_what_is_foreign() {
+fn the_page_needs_no_other_files_and_escapes_foreign_text() {
     let folder = folder();
     folder.run("verify --replay run --report a").succeeded();
     let page = String::from_utf8(folder.read("a/report.html")).unwrap();
@@ -112,13 +112,13 @@ fn the_page_stands_alone_and_escapes_what_is_foreign() {
     for outside in ["http:", "https:", "src=\"/", "url(", "@import", "<script", "<link"] {
         assert!(!page.contains(outside), "{outside}");
     }
-    // Into a folder that is there, over a page that is there.
+    // The folder and the page exist already.
     folder.run("verify --replay one --report a").succeeded();
     assert_eq!(folder.files(), ["a", "one", "other-view", "run", "scene.toml", "wrong"]);
 }
 
 #[test]
-fn what_is_not_legal_is_exit_3_with_all_files() {
+fn a_violation_gives_exit_code_3_and_all_files() {
     let folder = folder();
     let run = folder.run("verify --replay wrong --json a.json --report a");
     assert_eq!(run.code, 3, "{}", run.stderr);
@@ -166,7 +166,7 @@ fn runs_that_are_damaged() {
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
     let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"2\"").unwrap();
-    // All of the length is text.
+    // The number of the version is replaced by another of the same length.
     assert!(whole[version..].starts_with(b"\"pinhole_run\":\"2\""));
     let mut other = whole.clone();
     other[version + 15] = b'7';
