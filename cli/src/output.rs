@@ -144,10 +144,12 @@ fn without_name(error: &io::Error) -> anyhow::Error {
     anyhow!("{reason}")
 }
 
+/// Writes contents to a temporary file, which [`name_all`] renames to `path`.
 pub(super) fn unnamed(path: &Path, contents: &[u8]) -> Result<NamedTempFile> {
     unnamed_with(path, |file| file.write_all(contents))
 }
 
+/// Writes a temporary file with a function. [`name_all`] renames the file to `path`.
 pub(super) fn unnamed_with(
     path: &Path,
     write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,

@@ -13,7 +13,7 @@ pub(super) struct Candidate {
     pub(super) name: u32,
     /// The letter of the location, or a blank.
     pub(super) letter: u8,
-    /// The fraction of the atoms at this location, from 0 to 1.
+    /// The occupancy of this location, usually from 0 to 1.
     pub(super) occupancy: f64,
 }
 
