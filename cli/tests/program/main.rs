@@ -15,6 +15,7 @@ mod light;
 mod pictures;
 #[cfg(feature = "gpu")]
 mod shaders;
+mod snapshots;
 mod stereo;
 mod support;
 mod verify;
