@@ -6,14 +6,15 @@ use pinhole::accel::{Accel, AccelChoice, Nearest, RayF32};
 use pinhole::camera::CameraKind;
 use pinhole::camera::film::YAxis;
 use pinhole::glam::{UVec2, Vec2, Vec3};
-use pinhole::gpu::Decision;
+use pinhole::gpu::{Decision, Headless};
 use pinhole::image::NO_ID;
 use pinhole::render::PrimarySettings;
 use pinhole::verify::{Recording, TracedRay, UploadedView};
 use pinhole::{Film, LayerSet, LinearRgb, Shading};
 
+use crate::harness::trial_unless;
+use crate::scenes;
 use crate::support::View;
-use crate::{headless, scenes};
 
 /// The versions of lavapipe that are known to; Mesa 26.2 is known not to.
 const PLAIN: [&str; 2] = ["Mesa 22.3", "Mesa 25.0"];
@@ -21,8 +22,19 @@ const PLAIN: [&str; 2] = ["Mesa 22.3", "Mesa 25.0"];
 pub(crate) fn trials() -> Vec<Trial> {
     scenes::all()
         .into_iter()
-        .map(|(name, view)| Trial::test(format!("twin::{name}"), move || check(&view)))
+        .map(|(name, view)| {
+            let name = format!("twin::{name}");
+            trial_unless(name, lacking_plain_f32, move |headless| check(headless, &view))
+        })
         .collect()
+}
+
+/// Other drivers are legal and yet different: docs/drivers.md.
+fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
+    let info = headless.adapter_info();
+    let is_plain = PLAIN.iter().any(|version| info.driver_info.starts_with(version));
+    (!is_plain)
+        .then(|| format!("{} {} need not compute as plain f32 does", info.driver, info.driver_info))
 }
 
 /// `relative_location` of shaders/camera/film.wgsl.
@@ -114,14 +126,7 @@ fn color(primary: &PrimarySettings, of: LinearRgb, normal: [f32; 3], ray: &Trace
     (Vec3::from(of.to_array()) * cosine).to_array()
 }
 
-fn check(view: &View) -> Result<(), Failed> {
-    let headless = headless()?;
-    let info = headless.adapter_info();
-    if !PLAIN.iter().any(|version| info.driver_info.starts_with(version)) {
-        // Legal and yet different: docs/drivers.md.
-        println!("{} {} need not be as plain f32", info.driver, info.driver_info);
-        return Ok(());
-    }
+fn check(headless: &Headless, view: &View) -> Result<(), Failed> {
     let (scene, film) = (&view.scene, &view.film);
     let structures = headless
         .plan(scene, &view.seen(), &view.settings, LayerSet::DATA, AccelChoice::Auto, 0)

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use libtest_mimic::{Arguments, Failed, Trial};
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use pinhole::gpu::{Headless, HeadlessOptions};
 
 /// One device for all tests, so that it is opened, and printed, once.
@@ -26,11 +26,29 @@ pub(crate) fn trial(name: &str, test: fn(&'static Headless)) -> Trial {
     })
 }
 
+/// A trial for some adapters or systems. Where `lacking` gives a reason, nothing is run, and the trial counts as
+/// ignored.
+pub(crate) fn trial_unless(
+    name: impl Into<String>,
+    lacking: fn(&'static Headless) -> Option<String>,
+    test: impl FnOnce(&'static Headless) -> Result<(), Failed> + Send + 'static,
+) -> Trial {
+    Trial::ignorable_test(name, move || {
+        let headless = headless()?;
+        if let Some(reason) = lacking(headless) {
+            return Ok(Completion::ignored_with(reason));
+        }
+        test(headless).map(|()| Completion::Completed)
+    })
+}
+
 /// Runs trials and ends the program.
 pub(crate) fn run(trials: impl FnOnce() -> Vec<Trial>) -> ! {
     let arguments = Arguments::from_args();
     let without_gpu = std::env::var_os("PINHOLE_NO_GPU_TESTS").is_some_and(|value| value != "0");
-    if !without_gpu && !arguments.list {
+    if without_gpu && !arguments.list {
+        println!("\nPINHOLE_NO_GPU_TESTS is set: tests on an adapter count as ignored");
+    } else if !arguments.list {
         match &*HEADLESS {
             Ok(headless) => {
                 let info = headless.adapter_info();

@@ -9,14 +9,14 @@ use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
 use crate::program::{command_on, succeed};
-use crate::trial;
+use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("light::the_same_job_gives_the_same_bytes", same_bytes),
         trial("light::noise_decides_how_many_samples_there_are", noise),
         trial("light::a_time_gives_at_least_one_sample", time),
-        trial("light::a_signal_keeps_the_partial_picture_if_asked", signal),
+        trial_of_signals("light::a_signal_keeps_the_partial_picture_if_asked", signal),
         trial("light::a_plan_includes_the_buffers_of_light", plan),
         trial("light::shadows_follow_the_choice_of_structure", shadows),
     ]
@@ -109,9 +109,6 @@ fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration)
 }
 
 fn signal(headless: &'static Headless) {
-    if !cfg!(unix) {
-        return;
-    }
     let folder = folder();
     let endless = "--integrator path --size 320x240 --samples 10000000";
     let output = interrupted(folder.path(), headless, endless, Duration::from_secs(1));

@@ -14,7 +14,18 @@ mod verify;
 #[allow(dead_code, reason = "other tests use all of it")]
 mod view;
 
-use harness::trial;
+use harness::{trial, trial_unless};
+use libtest_mimic::Trial;
+use pinhole::gpu::Headless;
+
+/// A trial that sends signals; elsewhere than on Unix it counts as ignored.
+fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
+    let lacking = |_: &_| (!cfg!(unix)).then(|| "this system has no signals".to_owned());
+    trial_unless(name, lacking, move |headless| {
+        test(headless);
+        Ok(())
+    })
+}
 
 fn main() {
     harness::run(|| {

@@ -7,19 +7,16 @@ use pinhole::gpu::Headless;
 use tempfile::TempDir;
 
 use crate::program::{command, succeed};
-use crate::trial;
+use crate::{trial, trial_of_signals};
 
 pub(crate) fn trials() -> Vec<Trial> {
-    let mut trials = vec![
+    vec![
         trial("plan::it_is_printed_for_people_and_programs", printed),
         trial("plan::what_does_not_fit_is_refused_with_one_line", refused),
         trial("plan::structures_and_limits_change_no_picture", same_picture),
         trial("bench::a_file_is_measured_with_two_structures", bench),
-    ];
-    if cfg!(unix) {
-        trials.push(trial("interrupt::tracing_is_stopped", stopped));
-    }
-    trials
+        trial_of_signals("interrupt::tracing_is_stopped", stopped),
+    ]
 }
 
 fn run(folder: &TempDir, arguments: &str) -> Output {
