@@ -5,6 +5,7 @@
 #   scripts/test.sh              all tests
 #   scripts/test.sh --quick      units and the program without an adapter: after a small change, within a minute
 #   scripts/test.sh --no-gpu     all that need no adapter; the others count as ignored
+#   scripts/test.sh --cpu-only   the library and the program built without the feature `gpu`
 #   scripts/test.sh --install    may call sudo to install what is missing; also before another of these
 #
 # What follows is handed to `cargo test`.
@@ -26,6 +27,12 @@ case "${1:-}" in
     --no-gpu)
         shift
         export PINHOLE_NO_GPU_TESTS=1
+        ;;
+    --cpu-only)
+        shift
+        export PINHOLE_NO_GPU_TESTS=1
+        scope=(-p pinhole -p pinhole-cli --no-default-features --features pinhole/parallel,pinhole/all-formats
+            --lib --test cpu --test program)
         ;;
 esac
 

@@ -192,6 +192,7 @@ fn control_characters_do_not_reach_the_terminal() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
 fn an_unknown_backend_is_named() {
     let folder = Folder::with(&[("scene.toml", SCENE)]);
     let mut command = folder.command("render scene.toml -o out.png");
@@ -294,6 +295,12 @@ fn usage() {
     }
     refused(&[], "render scene.toml -o out.png --accel bvh", 2, &["bvh", "grid", "binary-tree"]);
     refused(&[], "render scene.toml -o out.png --limits none", 2, &["none", "adapter", "webgpu"]);
+    refused(&[], "rendr scene.toml", 2, &["rendr", "render"]);
+}
+
+#[test]
+#[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
+fn usage_with_adapters() {
     refused(&[], "plan scene.csv", 2, &["scene.csv", ".toml"]);
     refused(&[], "plan scene.toml --layer depht", 2, &["--layer depht", "depth"]);
     refused(&[], "plan no.toml", 1, &["no.toml", "cannot be read"]);
@@ -301,7 +308,6 @@ fn usage() {
     refused(&[], "bench R1M --reps 0", 2, &["--reps", "0"]);
     refused(&[], "bench R1M --size 5", 2, &["--size 5", "WIDTHxHEIGHT"]);
     refused(&[], "bench R1M --accel octree", 2, &["octree", "tree"]);
-    refused(&[], "rendr scene.toml", 2, &["rendr", "render"]);
     let name = "no-such-adapter";
     for backend in ["auto", "gpu"] {
         let arguments =

@@ -88,12 +88,10 @@ fn printable(text: &str) -> String {
 }
 
 macro_rules! areas {
-    ($($module:ident::$area:ident)*) => {$(
+    ($($(#[$attribute:meta])* $module:ident::$area:ident)*) => {$(
         #[test]
-        #[cfg_attr(
-            not(all(target_os = "linux", feature = "gpu")),
-            ignore = "some messages are those of Linux, or of the feature `gpu`"
-        )]
+        #[cfg_attr(not(target_os = "linux"), ignore = "some lines quote the system, which is Linux")]
+        $(#[$attribute])*
         fn $area() {
             errors(stringify!($area), $module::$area());
         }
@@ -105,8 +103,11 @@ areas!(
     cases::files
     cases::arrays
     cases::light
-    cases::devices
     contents::scene_files
     contents::lit_scene_files
     contents::atoms
+    #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
+    cases::devices
+    #[cfg_attr(feature = "gpu", ignore = "concerns the program without the feature `gpu`")]
+    cases::without_gpu
 );

@@ -218,6 +218,12 @@ fn wrong_usage() {
     ] {
         refused(&folder, &format!("verify --replay run {flags}"), 2, words);
     }
+}
+
+#[test]
+#[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
+fn outputs_that_are_refused() {
+    let folder = folder();
     refused(&folder, "verify scene.toml --save a --json ./a", 2, "a: two outputs have this file");
     refused(
         &folder,
@@ -229,6 +235,10 @@ fn wrong_usage() {
 
 /// The CPU reference never replaces an adapter in a check.
 #[test]
+#[cfg_attr(
+    not(all(target_os = "linux", feature = "gpu")),
+    ignore = "needs the feature `gpu`, and only a Vulkan loader can be told that there are no drivers"
+)]
 fn without_an_adapter_there_is_nothing_to_verify() {
     let words = "no Vulkan, Metal or DX12 adapter was found";
     refused(&folder(), "verify scene.toml --json a.json --save b", 1, words);

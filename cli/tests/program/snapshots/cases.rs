@@ -116,17 +116,15 @@ pub(super) fn arguments() -> Vec<Case> {
          generate cubes -n 10 -o out.npy
          generate random -n 5000000000 -o out.npy
          generate random -n 10 -o out.png
-         plan scene.toml --layer depht
-         bench R2M
-         bench R1M --reps 0
-         bench R1M --accel octree
          verify
-         verify scene.toml --save a --json ./a
          verify scene.toml --replay run
          verify --replay run --size 8x6
-         verify scene.toml --paths 2
-         info --adapter name
-         demo --backend cpu --size 8x6",
+         demo --backend cpu --size 8x6
+         render scene.toml -o out.png --backend tpu
+         render scene.toml -o out.png --backend cpu --adapter x
+         render scene.toml -o out.png --backend cpu --accel grid
+         render scene.toml -o out.png --accel bvh
+         render scene.toml -o out.png --limits none",
     )
 }
 
@@ -154,7 +152,6 @@ pub(super) fn files() -> Vec<Case> {
          generate random -n 10 -o no/out.npy
          verify --replay no
          verify --replay scene.toml
-         verify scene.toml --report water.xyz
          demo --backend cpu",
     )
 }
@@ -201,15 +198,30 @@ pub(super) fn light() -> Vec<Case> {
     )
 }
 
-/// Adapters, on a machine without drivers.
+/// Commands that need an adapter, on a machine without drivers.
 pub(super) fn devices() -> Vec<Case> {
     lines(
-        "render scene.toml -o out.png --backend tpu
-         render scene.toml -o out.png --backend cpu --adapter x
-         render scene.toml -o out.png --backend cpu --accel grid
-         render scene.toml -o out.png --accel bvh
-         render scene.toml -o out.png --limits none
-         render scene.toml -o out.png --backend gpu
+        "render scene.toml -o out.png --backend gpu
+         render scene.toml -o out.png --adapter x
+         plan scene.toml
+         plan scene.toml --layer depht
+         bench R1M
+         bench R2M
+         bench R1M --reps 0
+         bench R1M --accel octree
+         verify scene.toml
+         verify scene.toml --save a --json ./a
+         verify scene.toml --report water.xyz
+         verify scene.toml --paths 2
+         info --self-test
+         info --adapter name",
+    )
+}
+
+/// The same, by a program that was built without the feature `gpu`.
+pub(super) fn without_gpu() -> Vec<Case> {
+    lines(
+        "render scene.toml -o out.png --backend gpu
          render scene.toml -o out.png --adapter x
          plan scene.toml
          bench R1M
