@@ -1,4 +1,4 @@
-// What the shapes of a brick look like. Twin: src/gpu/appearance.rs.
+// What the shapes of a brick look like. Twin: src/gpu/scene/appearance.rs.
 // provides: brick, material_index, shapes, sphere_color
 // needs: Brick, Shape
 

@@ -1,4 +1,4 @@
-// Records of lit pictures. Twins: the structs of the same names in src/gpu/lit/records.rs; a test compares names,
+// Records of lit pictures. Twins: the structs of the same names in src/gpu/passes/lit/records.rs; a test compares names,
 // offsets and sizes.
 // provides: DispatchParameters, LIGHTING_CATCHER, LIGHTING_GROUND, LIGHTING_SKY_SEEN, LIGHTING_TRANSPARENT,
 //   LIGHT_CHANCE, LIGHT_DIRECT, LIGHT_MULTIPLE, LightingParameters

@@ -1,4 +1,4 @@
-// Records that the host writes. Twins: the structs of the same names in src/gpu/records.rs;
+// Records that the host writes. Twins: the structs of the same names in src/gpu/shader/records.rs;
 // a test compares names, offsets and sizes.
 // provides: Brick, FrameParameters
 

@@ -2,7 +2,7 @@
 
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPreference};
 
-use super::error::GpuError;
+use crate::gpu::error::GpuError;
 
 /// More than one would cost start-up time, and list each GPU more than once.
 const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {

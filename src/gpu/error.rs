@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::edit::ShaderEdit;
 use crate::accel::BrickKind;
 use crate::camera::CameraKind;
+use crate::gpu::edit::ShaderEdit;
 use crate::image::ImageTooLarge;
 use crate::image::denoise::MissingGuide;
 use crate::render::SettingsError;

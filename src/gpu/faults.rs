@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::error::GpuError;
+use crate::gpu::error::GpuError;
 
 /// What wgpu reported outside any call.
 #[derive(Debug, Default)]

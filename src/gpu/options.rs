@@ -4,12 +4,12 @@ use std::time::Duration;
 
 use wgpu::Limits;
 
-use super::edit::ShaderEdit;
+use crate::gpu::edit::ShaderEdit;
 
 /// How a device is opened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
-    /// The adapter whose name contains this text, as in [`candidates`](super::adapter::candidates).
+    /// The adapter whose name contains this text, as in [`candidates`](crate::gpu::adapter::candidates).
     pub adapter: Option<String>,
     /// What the device may use.
     pub limits: LimitChoice,

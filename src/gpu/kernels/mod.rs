@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::formats::ColorTarget;
-use super::shader::{
-    BrickPass, Kernel, Probe, occluded_kernel, self_test_kernel, shade_kernel, trace_kernel,
-};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
+use crate::gpu::shader::formats::ColorTarget;
+use crate::gpu::shader::{
+    BrickPass, Kernel, Probe, occluded_kernel, self_test_kernel, shade_kernel, trace_kernel,
+};
 
 #[cfg(test)]
 mod constant_tests;
@@ -58,8 +58,8 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
             }
         }
     }
-    kernels.extend(super::lit::all_kernels());
-    kernels.push(super::denoise::denoise_kernel());
-    kernels.push(super::recolor::recolor_kernel());
+    kernels.extend(crate::gpu::passes::lit::all_kernels());
+    kernels.push(crate::gpu::headless::denoise::denoise_kernel());
+    kernels.push(crate::gpu::scene::recolor::recolor_kernel());
     kernels
 }

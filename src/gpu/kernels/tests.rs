@@ -7,7 +7,7 @@ use super::all_kernels;
 use super::declarations::Declarations;
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
-use crate::gpu::formats::ColorTarget;
+use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::{Kernel, Part, part, variants};
 
 fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
@@ -34,7 +34,7 @@ fn every_kernel_composes_and_validates() {
             * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
                 + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
             + 5
-            + crate::gpu::lit::all_kernels().len()
+            + crate::gpu::passes::lit::all_kernels().len()
     );
     for kernel in kernels {
         let module = validate(&kernel).unwrap_or_else(|error| panic!("{}: {error}", kernel.name()));

@@ -11,9 +11,9 @@ use super::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
 use super::report::{SelfTestExtent, SelfTestReport};
 use super::{exactness, inputs, loops, rounding};
 use crate::gpu::error::{GpuError, scoped};
-use crate::gpu::frame::iteration_limit;
-use crate::gpu::layouts::{layout, storage, uniform};
-use crate::gpu::readback::ReadableBuffer;
+use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::frame::iteration_limit;
+use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Probe, self_test_kernel};
 

@@ -4,10 +4,13 @@
 //! starts with what it provides and what it needs; a test compares both with its text and writes the tables of
 //! `shaders/README.md`.
 
+pub(super) mod formats;
 mod kernel;
+pub(super) mod layouts;
 mod part;
 mod pipeline;
 mod primary;
+pub(super) mod records;
 
 pub(super) use kernel::Kernel;
 pub(super) use part::{Part, part};

@@ -4,7 +4,7 @@ use super::kernel::Kernel;
 use super::part::{Part, part};
 use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
-use crate::gpu::formats::ColorTarget;
+use crate::gpu::shader::formats::ColorTarget;
 
 /// Whether a brick is the first that a picture's rays meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

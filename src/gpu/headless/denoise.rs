@@ -1,0 +1,135 @@
+//! Denoising a picture on a device, in strips that fit its bindings.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{Buffer, BufferUsages, ComputePassDescriptor};
+
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::scene::scene_buffers::binding_limit;
+use crate::gpu::shader::layouts::{layout_of, storage, uniform};
+use crate::gpu::shader::pipeline;
+use crate::gpu::shader::{Kernel, part};
+use crate::image::Image;
+use crate::image::denoise::{Guided, PASSES};
+
+/// What one pass does.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct Denoise {
+    pub(in crate::gpu) size: [u32; 2],
+    pub(in crate::gpu) step: u32,
+    pub(in crate::gpu) zero: u32,
+}
+
+/// How many pixels away a pixel may be that counts.
+const REACH: u32 = 2 * ((1 << PASSES) - 1);
+
+/// The most pixels of a strip that is filtered at once.
+const MOST_PIXELS: u64 = 1 << 21;
+
+pub(in crate::gpu) fn denoise_kernel() -> Kernel {
+    Kernel {
+        entry_point: "denoise",
+        parts: vec![part!("math/luminance.wgsl"), part!("primary/denoise.wgsl")],
+    }
+}
+
+impl Headless {
+    /// A picture with less noise: light is averaged among pixels of like shape and colour, in five passes.
+    ///
+    /// # Errors
+    /// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`], or if the device fails.
+    pub fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
+        let guided = Guided::of(image)?;
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        let most = MOST_PIXELS.min(binding_limit(&self.device().limits()) / 16);
+        let reach = REACH as usize;
+        let rows = (most as usize / width).saturating_sub(2 * reach).max(1);
+        let mut lights = Vec::new();
+        lights.reserve_exact(guided.lights.len());
+        for start in (0..height).step_by(rows) {
+            let end = (start + rows).min(height);
+            let (first, last) = (start.saturating_sub(reach), (end + reach).min(height));
+            let strip = self.denoised_strip(&guided, width, first..last)?;
+            lights.extend_from_slice(&strip[(start - first) * width..(end - first) * width]);
+        }
+        let mut quiet = image.clone();
+        quiet.color_mut().copy_from_slice(&guided.colors(lights.into_iter()));
+        Ok(quiet)
+    }
+
+    /// The light of some rows, filtered with what these rows know.
+    fn denoised_strip(
+        &self,
+        guided: &Guided,
+        width: usize,
+        rows: std::ops::Range<usize>,
+    ) -> Result<Vec<[f32; 4]>, GpuError> {
+        let (device, queue) = (self.device(), self.queue());
+        let pixels = rows.start * width..rows.end * width;
+        let bytes = 16 * pixels.len() as u64;
+        // A width and a part of a height of a film, so they fit.
+        let size = [width as u32, rows.len() as u32];
+        let (filter, passes, result, back) = scoped(device, || {
+            let vectors = storage::<[f32; 4]>(true);
+            let kinds = [
+                (0, uniform::<Denoise>()),
+                (1, vectors),
+                (2, vectors),
+                (3, vectors),
+                (4, storage::<[f32; 4]>(false)),
+            ];
+            let layout = layout_of(device, "pinhole denoise", &kinds);
+            let filter = pipeline(device, &denoise_kernel(), &[&layout]);
+            let buffer = |size, usage| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("pinhole denoise"),
+                    size,
+                    usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                    mapped_at_creation: false,
+                })
+            };
+            let [front, back, shapes, albedos] =
+                [(); 4].map(|()| buffer(bytes, BufferUsages::STORAGE));
+            for (target, contents) in
+                [(&front, &guided.lights), (&shapes, &guided.shapes), (&albedos, &guided.albedos)]
+            {
+                queue.write_buffer(target, 0, bytemuck::cast_slice(&contents[pixels.clone()]));
+            }
+            let passes: Vec<_> = (0..PASSES)
+                .map(|pass| {
+                    let record = buffer(size_of::<Denoise>() as u64, BufferUsages::UNIFORM);
+                    let step = 1 << pass;
+                    let contents = Denoise { size, step, zero: 0 };
+                    queue.write_buffer(&record, 0, bytemuck::bytes_of(&contents));
+                    let (from, to) = if pass & 1 == 0 { (&front, &back) } else { (&back, &front) };
+                    let buffers = [&record, from, &shapes, &albedos, to];
+                    let entries: Vec<_> = (0..)
+                        .zip(buffers.map(Buffer::as_entire_binding))
+                        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                        .collect();
+                    device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        label: Some("pinhole denoise"),
+                        layout: &layout,
+                        entries: &entries,
+                    })
+                })
+                .collect();
+            let result = if PASSES & 1 == 0 { front.clone() } else { back.clone() };
+            let read = ReadableBuffer::new(device, "pinhole denoise read-back", bytes);
+            (filter, passes, result, read)
+        })?;
+        let filter = filter?;
+        let mut encoder = self.encoder();
+        for group in &passes {
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+            pass.set_pipeline(&filter);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
+        }
+        back.record_copy(&mut encoder, &result);
+        self.run(encoder, &[back.buffer()])?;
+        back.read(|lights: &[[f32; 4]]| lights.to_vec())
+    }
+}

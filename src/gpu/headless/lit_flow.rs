@@ -1,0 +1,200 @@
+//! Dispatches of lit pictures, gathered into submissions that are neither too short nor too long.
+
+use std::time::Instant;
+
+use wgpu::{CommandEncoder, SubmissionIndex};
+
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::passes::lit::{LitFrame, LitPasses, MOST_DISPATCHES, Moment, Recorder, Step};
+use crate::gpu::passes::tiles::Groups;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+
+/// Told after every submission; an error ends the work.
+pub(in crate::gpu) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
+
+/// While the device works on one submission, the next is recorded.
+pub(in crate::gpu) struct Flow<'a> {
+    headless: &'a Headless,
+    frame: &'a LitFrame,
+    scene: &'a SceneBuffers,
+    recorder: Recorder<'a>,
+    encoder: Option<CommandEncoder>,
+    /// Workgroups of searches in the encoder.
+    gathered: u64,
+    /// How many samples a tile will have after the round that is recorded.
+    end: u32,
+    /// The tiles, and the samples that will be summed up there once the encoder has been submitted.
+    accumulated: Vec<(usize, u32)>,
+    submitted: Option<Submitted>,
+    /// When the submission before that was done.
+    last_done: Instant,
+    /// How many samples are summed up in each tile, as far as is submitted.
+    pub(in crate::gpu) samples: Vec<u32>,
+}
+
+struct Submitted {
+    index: SubmissionIndex,
+    at: Instant,
+    groups: u64,
+}
+
+impl<'a> Flow<'a> {
+    pub(in crate::gpu) fn new(
+        headless: &'a Headless,
+        frame: &'a LitFrame,
+        passes: &'a LitPasses,
+        scene: &'a SceneBuffers,
+    ) -> Self {
+        Self {
+            headless,
+            frame,
+            scene,
+            recorder: Recorder::new(frame, passes.advance(), headless.is_indirect()),
+            encoder: None,
+            gathered: 0,
+            end: 0,
+            accumulated: Vec::new(),
+            submitted: None,
+            last_done: Instant::now(),
+            samples: vec![0; frame.tiles.len()],
+        }
+    }
+
+    /// What is recorded next, beside dispatches.
+    pub(in crate::gpu) fn encoder(&mut self) -> &mut CommandEncoder {
+        let headless = self.headless;
+        self.encoder.get_or_insert_with(|| headless.encoder())
+    }
+
+    /// Records the dispatches of some samples of a tile, up to `end`, and submits what is enough.
+    pub(in crate::gpu) fn round(
+        &mut self,
+        tile: usize,
+        steps: &[Step<'a>],
+        end: u32,
+        after: &mut After<'_>,
+    ) -> Result<(), GpuError> {
+        self.begin(tile);
+        self.end = end;
+        steps.iter().try_for_each(|step| self.step(step, after))
+    }
+
+    /// Turns to a tile, of which no path is followed yet.
+    pub(in crate::gpu) fn begin(&mut self, tile: usize) {
+        self.recorder.tile = tile;
+        let frame = self.frame;
+        frame.record_clear_lists(self.encoder());
+    }
+
+    /// Records a dispatch, in slices if it takes long.
+    pub(in crate::gpu) fn step(
+        &mut self,
+        step: &Step<'a>,
+        after: &mut After<'_>,
+    ) -> Result<(), GpuError> {
+        // A slice of a list needs one more.
+        if self.recorder.dispatches() + 2 > MOST_DISPATCHES {
+            self.send(after)?;
+        }
+        let whole = self.recorder.groups(step);
+        let weight = u64::from(step.layers()) * u64::from(step.rays());
+        let submission_size = self.scene.submission_size().groups();
+        if !step.is_search() || whole.count() * weight <= submission_size {
+            self.record(step, None);
+            if step.is_search() {
+                self.gathered += whole.count() * weight;
+            }
+            if step.moment == Some(Moment::Accumulated) {
+                self.accumulated.push((self.recorder.tile, self.end));
+            }
+            return if self.gathered >= submission_size { self.send(after) } else { Ok(()) };
+        }
+        self.send(after)?;
+        let mut left = vec![whole];
+        while let Some(slice) =
+            Groups::take(&mut left, (self.scene.submission_size().groups() / weight).max(1))
+        {
+            self.record(step, Some(slice));
+            self.gathered = slice.count() * weight;
+            self.send(after)?;
+        }
+        Ok(())
+    }
+
+    fn record(&mut self, step: &Step<'a>, slice: Option<Groups>) {
+        let headless = self.headless;
+        let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
+        self.recorder.record(encoder, step, slice);
+    }
+
+    /// Submits what was gathered, and waits until what was submitted before is done.
+    fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+        let Some(encoder) = self.encoder.take() else {
+            return Ok(());
+        };
+        let queue = self.headless.queue();
+        self.frame.queue_parameters(queue, &self.recorder.take_parameters());
+        let at = Instant::now();
+        let index = self.headless.start(encoder);
+        for (tile, samples) in self.accumulated.drain(..) {
+            self.samples[tile] = samples;
+        }
+        let groups = std::mem::take(&mut self.gathered);
+        let before = self.submitted.replace(Submitted { index, at, groups });
+        self.wait_for(before)?;
+        after()
+    }
+
+    /// Submits what was gathered, and waits until all is done and the buffers are mapped.
+    pub(in crate::gpu) fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
+        self.send(&mut || Ok(()))?;
+        let last = self.submitted.take();
+        if let Some(Submitted { index, .. }) = &last {
+            self.headless.wait(mapped, index.clone())?;
+        }
+        self.wait_for(last)
+    }
+
+    /// Drops what was gathered, and waits until what was submitted is done.
+    pub(in crate::gpu) fn abandon(&mut self) -> Result<(), GpuError> {
+        self.encoder = None;
+        self.accumulated.clear();
+        self.recorder.take_parameters();
+        let last = self.submitted.take();
+        self.wait_for(last)
+    }
+
+    fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
+        let Some(Submitted { index, at, groups }) = submitted else {
+            return Ok(());
+        };
+        self.headless.wait(&[], index)?;
+        // It began when it was submitted, or when the one before was done.
+        let elapsed = at.max(self.last_done).elapsed();
+        self.last_done = Instant::now();
+        let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
+        self.scene.took(Groups { first: [0, 0], size }, elapsed);
+        Ok(())
+    }
+
+    /// How much the samples of all pixels vary: sums of variances, and of luminances. All must have as many samples.
+    pub(in crate::gpu) fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
+        let mut sums = [0.0; 2];
+        for (tile, samples) in self.samples.clone().into_iter().enumerate() {
+            self.recorder.tile = tile;
+            let (headless, frame) = (self.headless, self.frame);
+            let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
+            let written = self.recorder.record_noise(encoder, passes.noise(), samples);
+            frame.record_copy_variations(encoder);
+            self.finish(&[frame.variations_back.buffer()])?;
+            frame.variations_back.read(|found: &[[f32; 2]]| {
+                for [variance, light] in &found[..written] {
+                    sums[0] += f64::from(*variance);
+                    sums[1] += f64::from(*light);
+                }
+            })?;
+        }
+        Ok(sums)
+    }
+}

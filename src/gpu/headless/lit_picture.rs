@@ -1,0 +1,208 @@
+//! Lit pictures on a device of our own, batch by batch of samples.
+
+use std::ops::Range;
+
+use crate::camera::View;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::lit_flow::Flow;
+use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
+use crate::gpu::passes::frame::iteration_limit;
+use crate::gpu::passes::lit::sums::{self, Totals};
+use crate::gpu::passes::lit::{
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Round,
+};
+use crate::gpu::passes::tiles::tiles;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::image::outline;
+use crate::image::{Image, Layer, LayerSet};
+use crate::render::{PrimarySettings, RenderSettings};
+
+/// How many samples are taken after so many. After each batch there is a picture that could be kept.
+fn batch(done: u32, total: u32) -> u32 {
+    done.clamp(1, 32).min(total - done)
+}
+
+impl Headless {
+    /// Renders a lit picture of a scene that is on this device.
+    pub(in crate::gpu) fn render_lit(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watch: &mut Watch<'_>,
+    ) -> Result<Picture, GpuError> {
+        settings.check_with(scene.appearance())?;
+        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+        let wanted = settings.layers_for(layers);
+        let mut image = self.data_layers(scene, view, settings, wanted, watch)?;
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let (samples, totals) = self.with_lit_passes(scenes.key(view, &lighting), |passes| {
+            let work = Work {
+                headless: self,
+                passes,
+                scenes,
+                view,
+                settings,
+                lighting: &lighting,
+                at_once: AT_ONCE,
+            };
+            match work.gather(&mut image, watch) {
+                // Several directions take more steps than one.
+                Err(GpuError::Steps) if lighting.parameters.occlusion_samples > 1 => {
+                    Work { at_once: 1, ..work }.gather(&mut image, watch)
+                }
+                done => done,
+            }
+        })?;
+        if settings.is_denoised {
+            image = self.denoise(&image)?;
+        }
+        if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
+            outline::draw(&mut image, &lines);
+        }
+        image.keep(layers);
+        let noise = totals.noise(samples);
+        Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+    }
+
+    /// The layers that are not averaged: of the ray through each pixel's centre.
+    fn data_layers(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watch: &mut Watch<'_>,
+    ) -> Result<Image, GpuError> {
+        let by_one_ray = [Layer::Depth, Layer::Normal, Layer::Id, Layer::Position];
+        if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
+            return Ok(Image::new(view.film.width(), view.film.height(), layers)?);
+        }
+        // No sample is taken yet: what would finish the picture has to wait.
+        let total = settings.sampling.samples;
+        let none = Progress { samples: 0, total, part: 0.0, noise: None };
+        let watch = &mut |_: &Progress| match watch(&none) {
+            Decision::Stop => Decision::Stop,
+            _ => Decision::GoOn,
+        };
+        self.render_primary(scene, view, &PrimarySettings::default(), layers, watch)
+    }
+}
+
+/// All that a lit picture is made of.
+struct Work<'a> {
+    headless: &'a Headless,
+    passes: &'a LitPasses,
+    scenes: LitScene<'a>,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+    lighting: &'a LightingData,
+    /// How many directions of ambient light are searched at once.
+    at_once: u32,
+}
+
+impl Work<'_> {
+    /// Takes samples until there are enough of them or the caller says so, and writes their means. Gives how many
+    /// every pixel has.
+    fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
+        let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
+        let (device, queue) = (headless.device(), headless.queue());
+        let total = settings.sampling.samples;
+        let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, total);
+        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
+        let tiles = tiles(&view.film, sizes.tile);
+        let records = tiles.map(|tile| (tile, scenes.frames(view, region, tile, limit)));
+        let frame = LitFrame::new(device, queue, passes, sizes, lighting, records)?;
+        let mut flow = Flow::new(headless, &frame, passes, scenes.all);
+        let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
+        let mut wants_noise = false;
+        while progress.samples < total {
+            let first = progress.samples;
+            let end = first + batch(first, total);
+            let mut decision = Decision::GoOn;
+            match self.batch(&frame, &mut flow, first..end, &mut |part| {
+                progress.part = part;
+                decision = watch(&progress);
+                matches!(decision, Decision::GoOn | Decision::MeasureNoise)
+            }) {
+                Err(GpuError::Stopped) if decision == Decision::Finish && first > 0 => {
+                    flow.abandon()?;
+                    check_spent(&frame, &mut flow)?;
+                    break;
+                }
+                done => done?,
+            }
+            progress.samples = end;
+            if wants_noise || decision == Decision::MeasureNoise {
+                let [variance, light] = flow.variations(passes)?;
+                let pixels = view.film.pixel_count();
+                progress.noise = Totals { opacity: 0.0, variance, light, pixels }.noise(end);
+            }
+            progress.part = f64::from(end) / f64::from(total);
+            match watch(&progress) {
+                Decision::GoOn => {}
+                Decision::MeasureNoise => wants_noise = true,
+                Decision::Finish => break,
+                Decision::Stop => return Err(GpuError::Stopped),
+            }
+        }
+        let mut totals = Totals::default();
+        for (number, tile) in frame.tiles.iter().enumerate() {
+            let samples = flow.samples[number];
+            frame.record_copy_film(flow.encoder(), number);
+            flow.finish(&[frame.film_back.buffer()])?;
+            frame.film_back.read(|found| {
+                totals.add(&sums::write(image, tile.tile, found, samples));
+            })?;
+        }
+        // Tiles may have more than the others if the picture was finished within a batch.
+        let every = flow.samples.iter().copied().min().unwrap_or(progress.samples);
+        Ok((every, totals))
+    }
+
+    /// Takes some samples of every pixel. `go_on` is told how much of all work is done.
+    fn batch<'a>(
+        &'a self,
+        frame: &'a LitFrame,
+        flow: &mut Flow<'a>,
+        samples: Range<u32>,
+        go_on: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<(), GpuError> {
+        let Self { passes, scenes, lighting, at_once, .. } = *self;
+        let room = frame.sizes.room();
+        let round = Round {
+            passes,
+            lighting,
+            scene: scenes.all,
+            occluders: scenes.occluders,
+            room,
+            at_once,
+        };
+        let (total, tiles) = (f64::from(self.settings.sampling.samples), frame.tiles.len());
+        let count = f64::from(samples.end - samples.start);
+        for tile in 0..tiles {
+            let mut start = samples.start;
+            while start < samples.end {
+                let end = samples.end.min(start + frame.sizes.in_flight);
+                let in_tile = f64::from(start - samples.start) / count;
+                let done = count * (tile as f64 + in_tile) / tiles as f64;
+                let part = (f64::from(samples.start) + done) / total;
+                flow.round(tile, &round.steps(start..end)?, end, &mut || match go_on(part) {
+                    true => Ok(()),
+                    false => Err(GpuError::Stopped),
+                })?;
+                start = end;
+            }
+        }
+        check_spent(frame, flow)
+    }
+}
+
+/// Waits for all that is submitted; an error if rays were given up.
+fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
+    frame.record_copy_spent(flow.encoder());
+    flow.finish(&[frame.spent_back.buffer()])?;
+    frame.read_spent()
+}

@@ -1,0 +1,82 @@
+//! Measuring how long tracing takes.
+
+use wgpu::ComputePassDescriptor;
+
+use crate::camera::View;
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::renderers::RendererKey;
+use crate::gpu::headless::tile_textures::TileTextures;
+use crate::gpu::headless::timer::{PassTimer, TraceTime};
+use crate::gpu::passes::bands::tile_size;
+use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::renderer_options::Query;
+use crate::gpu::passes::tiles::{Groups, tiles};
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::render::PrimarySettings;
+
+impl Headless {
+    /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn measure(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        query: Query,
+    ) -> Result<TraceTime, GpuError> {
+        let key = RendererKey { query, ..RendererKey::new(scene, view.camera) };
+        self.with_renderer(key, |renderer| self.measure_with(renderer, scene, view))
+    }
+
+    fn measure_with(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+    ) -> Result<TraceTime, GpuError> {
+        let tile_size = tile_size(&self.device().limits(), &view.film, renderer.keeps_rays);
+        let textures =
+            scoped(self.device(), || TileTextures::new(self.device(), tile_size, false))?;
+        let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;
+        let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue()))?;
+        let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
+        // wgpu clears a buffer when it is first used, which is none of the tracing.
+        let mut encoder = self.encoder();
+        frame.record_clear(&mut encoder);
+        self.run(encoder, &[])?;
+        let mut time = TraceTime::default();
+        for tile in tiles(&view.film, tile_size) {
+            frame.set_tile(self.queue(), scene, view, tile, &PrimarySettings::default());
+            for part in frame.parts() {
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
+                    frame.set_first_group(self.queue(), part.band, groups.first);
+                    let mut encoder = self.encoder();
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                        label: Some("pinhole"),
+                        timestamp_writes: timer.as_ref().map(PassTimer::writes),
+                    });
+                    let slice = BandBrick { groups, ..part };
+                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
+                    drop(pass);
+                    if let Some(timer) = &timer {
+                        timer.record_copy(&mut encoder);
+                    }
+                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
+                    time.pixels += groups.pixels();
+                    time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
+                }
+            }
+        }
+        let mut encoder = self.encoder();
+        textures.status().record_copy(&mut encoder, frame.status());
+        self.run(encoder, &[textures.status().buffer()])?;
+        match textures.status().read(|words: &[u32]| words[0])? {
+            0 => Ok(time),
+            _ => Err(GpuError::Steps),
+        }
+    }
+}

@@ -1,0 +1,422 @@
+//! What a render will take of the device and of the host: known before either is asked for it.
+
+use wgpu::{DeviceType, Limits};
+
+use crate::accel::{AccelPlan, PlannedBuffer, Structure};
+use crate::camera::View;
+use crate::camera::film::Film;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::tile_textures;
+use crate::gpu::passes::bands::{BandBuffers, tile_size};
+use crate::gpu::scene::appearance;
+use crate::gpu::shader::records;
+use crate::image::LayerSet;
+use crate::render::RenderSettings;
+use crate::scene::Scene;
+use crate::verify::{Checker, TracedPixel, Verdict};
+
+/// What a render by [`Headless`](super::Headless) takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
+/// records for each brick come on top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderPlan {
+    /// The structure, and why.
+    pub accel: AccelPlan,
+    /// Of the spheres that cast shadows, where a studio needs a structure of its own for them: where some spheres are
+    /// not opaque.
+    pub occluders: Option<AccelPlan>,
+    /// Buffers of the scene: those of the structures, and the colours.
+    pub scene_buffers: Vec<PlannedBuffer>,
+    /// Buffers that kernels write for one tile.
+    pub tile_buffers: Vec<PlannedBuffer>,
+    /// Textures of one tile, and the buffers that the host reads them from.
+    pub tile_textures: Vec<PlannedBuffer>,
+    /// Width and height of a tile in pixels; the whole picture, if it is small enough.
+    pub tile_size: [u32; 2],
+    /// How many tiles are rendered, one after the other.
+    pub tile_count: u64,
+    /// Bytes on the device, of scene and tile.
+    pub device_bytes: u64,
+    /// Bytes of host memory beside the scene itself, at the worst moment.
+    pub host_bytes: u64,
+    /// Which moment that is.
+    pub host_peak: HostPeak,
+}
+
+/// When a render takes the most of the host's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HostPeak {
+    /// While the structure is built.
+    Building,
+    /// While it is copied to the device.
+    Uploading,
+    /// Once there is the picture.
+    Picture,
+    /// While a recording is checked.
+    Checking,
+}
+
+/// What a plan is made for.
+#[derive(Clone, Copy, Debug)]
+pub struct PictureRequest<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// How it is seen.
+    pub view: View<'a>,
+    /// How the picture is made.
+    pub settings: &'a RenderSettings,
+    /// The layers that are wanted.
+    pub layers: LayerSet,
+    /// What the caller will take of the host's memory for each pixel beside the image itself, such as for encoding it.
+    pub host_bytes_per_pixel: u64,
+}
+
+/// What will be built of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructurePlans {
+    /// Of all spheres.
+    pub accel: AccelPlan,
+    /// Of the spheres that cast shadows in a studio, where some do not.
+    pub occluders: Option<AccelPlan>,
+}
+
+/// What bounds pictures and scenes on a device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceLimits {
+    /// wgpu's limits.
+    pub limits: Limits,
+    /// A software device takes its memory from the host's.
+    pub device_type: DeviceType,
+}
+
+impl DeviceLimits {
+    /// How much of so many bytes on the device is the host's memory.
+    pub(in crate::gpu) fn in_host(&self, bytes: u64) -> u64 {
+        if self.device_type == DeviceType::Cpu { bytes } else { 0 }
+    }
+}
+
+impl RenderPlan {
+    /// Plans a picture of primary rays.
+    pub(in crate::gpu) fn of_primary(
+        request: &PictureRequest<'_>,
+        accel: AccelPlan,
+        device: &DeviceLimits,
+    ) -> Self {
+        Self::planned(request, accel, device, false)
+    }
+
+    /// As [`RenderPlan::of_primary`], of all layers and with every ray and hit, of rendering the same once more without
+    /// them, and of checking both.
+    pub(in crate::gpu) fn of_recording(
+        request: &PictureRequest<'_>,
+        accel: AccelPlan,
+        device: &DeviceLimits,
+    ) -> Self {
+        let request = PictureRequest { layers: LayerSet::DATA, ..*request };
+        Self::planned(&request, accel, device, true)
+    }
+
+    fn planned(
+        request: &PictureRequest<'_>,
+        accel: AccelPlan,
+        device: &DeviceLimits,
+        keeps_rays: bool,
+    ) -> Self {
+        let PictureRequest { scene, layers, host_bytes_per_pixel, .. } = *request;
+        let (limits, film) = (&device.limits, &request.view.film);
+        let scene_buffers = scene_buffers(scene, &accel);
+        let tile_size = tile_size(limits, film, keeps_rays);
+        let band = BandBuffers::new(limits, tile_size, keeps_rays);
+        let tile_buffers = band.planned();
+        let mut tile_textures = band.planned_read_back();
+        tile_textures.extend(tile_textures::planned(tile_size, layers != LayerSet::COLOR));
+        let scene_bytes = total(&scene_buffers);
+        let tile_bytes = total(&tile_buffers) + total(&tile_textures);
+        let in_host = |bytes| device.in_host(bytes);
+        // One brick's copy is waiting for the device at a time.
+        let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
+        // Rays, hits, and verdicts, which are gathered from parts; and the same view without a recording.
+        let judged =
+            (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
+        let per_pixel = layers
+            .bytes_per_pixel()
+            .saturating_add(host_bytes_per_pixel)
+            .saturating_add(if keeps_rays { judged } else { 0 });
+        let picture = film.pixel_count().saturating_mul(per_pixel);
+        let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
+        let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
+        let moments = [
+            (HostPeak::Building, accel.host_bytes()),
+            (HostPeak::Uploading, accel.device_bytes() + queued + in_host(scene_bytes)),
+            (HostPeak::Checking, checking),
+            (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
+        ];
+        let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);
+        let (host_peak, host_bytes) = worst.unwrap_or((HostPeak::Picture, 0));
+        Self {
+            accel,
+            occluders: None,
+            scene_buffers,
+            tile_buffers,
+            tile_textures,
+            tile_size,
+            tile_count: tile_count(film, tile_size),
+            device_bytes: scene_bytes + tile_bytes,
+            host_bytes,
+            host_peak,
+        }
+    }
+
+    /// How many submissions there are at least: one for every brick of every tile. There are more, because
+    /// they are cut so that each takes about 60 milliseconds.
+    #[must_use]
+    pub fn least_submissions(&self) -> u64 {
+        self.tile_count * self.accel.brick_count as u64
+    }
+
+    /// Bytes on the device for every sphere, if there is one.
+    #[must_use]
+    pub fn device_bytes_per_sphere(&self) -> Option<f64> {
+        let count = self.accel.statistics.count;
+        (count > 0).then(|| self.device_bytes as f64 / count as f64)
+    }
+
+    /// Refuses what does not fit into such limits, or into so many free bytes of the host's memory; `None`
+    /// is not known, and then the allocation itself decides.
+    ///
+    /// # Errors
+    /// The first limit that is too low; or that the memory is too small.
+    pub fn check(&self, limits: &Limits, memory: Option<u64>) -> Result<(), GpuError> {
+        let binding = ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size);
+        let buffer = ("max_buffer_size", limits.max_buffer_size);
+        let bound = self.scene_buffers.iter().chain(&self.tile_buffers);
+        let checks = bound
+            .flat_map(|planned| [(planned, binding), (planned, buffer)])
+            .chain(self.tile_textures.iter().map(|planned| (planned, buffer)));
+        for (planned, (limit_name, limit)) in checks {
+            let needed = planned.bytes_per_binding;
+            if needed > limit {
+                let what = in_words(planned.name);
+                return Err(GpuError::Limit { what, needed, limit_name, limit });
+            }
+        }
+        match memory {
+            Some(available) if self.host_bytes > available => Err(GpuError::HostMemory {
+                what: self.host_peak.what(),
+                needed: self.host_bytes,
+                available,
+                instead: self.host_peak.instead(self.accel.structure),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl HostPeak {
+    /// What takes the memory.
+    #[must_use]
+    pub const fn what(self) -> &'static str {
+        match self {
+            Self::Building => "building the structure",
+            Self::Uploading => "copying the scene to the device",
+            Self::Picture => "the picture",
+            Self::Checking => "checking the picture",
+        }
+    }
+
+    /// What to choose if there is not enough.
+    const fn instead(self, structure: Structure) -> &'static str {
+        match (self, structure) {
+            (Self::Picture | Self::Checking, _) => "a smaller size",
+            (_, Structure::Grid(_)) => "fewer spheres, or the structure `tree`",
+            _ => "fewer spheres",
+        }
+    }
+}
+
+/// The structure's, and what shading reads.
+pub(in crate::gpu) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
+    let mut buffers = accel.buffers.clone();
+    // A sphere that is copied into several cells has its words as often as its id.
+    let ids = buffers.iter().find(|buffer| buffer.name == "ids").copied();
+    let words = appearance::words_per_sphere(scene.checked_appearance()).count();
+    if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = ids.filter(|_| words > 0) {
+        buffers.push(PlannedBuffer {
+            name: "colors",
+            bytes: words * bytes,
+            bytes_per_binding: words * bytes_per_binding,
+        });
+    }
+    let palette = appearance::palette_length(scene.appearance()) * size_of::<records::Color>();
+    buffers.push(PlannedBuffer::one("palette", palette as u64));
+    buffers
+}
+
+pub(in crate::gpu) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
+    u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
+}
+
+/// What a buffer of a plan is called in an error.
+fn in_words(name: &str) -> &'static str {
+    match name {
+        "spheres" => "the buffer of spheres",
+        "ids" => "the buffer of ids",
+        "colors" => "the buffer of colors",
+        "palette" => "the palette",
+        "hits" => "the buffer of hits",
+        "rays" => "the buffer of rays",
+        "paths" => "the paths of a tile",
+        "tables" => "the tables of lights and materials",
+        "sky" | "sky shares" => "the image of the sky",
+        "nodes" | "cells" | "references" => "the buffer of the structure",
+        _ => "a tile of the picture",
+    }
+}
+
+pub(in crate::gpu) fn total(buffers: &[PlannedBuffer]) -> u64 {
+    buffers.iter().map(|buffer| buffer.bytes).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::AccelChoice;
+    use crate::camera::PinholeCamera;
+    use crate::image::Layer;
+    use crate::image::color::LinearRgb;
+    use crate::scene::material::SurfaceProperties;
+    use crate::scene::sphere_array::SphereArray;
+    use crate::scene::{Appearance, Colors};
+
+    fn plan(size: u32, layers: LayerSet, device_type: DeviceType) -> RenderPlan {
+        planned(size, layers, device_type, false)
+    }
+
+    fn planned(
+        size: u32,
+        layers: LayerSet,
+        device_type: DeviceType,
+        keeps_rays: bool,
+    ) -> RenderPlan {
+        let scene = Scene::from_f32(
+            (0..1000).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect(),
+            LinearRgb::from_srgb8([255, 0, 0]),
+        )
+        .unwrap();
+        let accel = AccelPlan::new(scene.spheres(), AccelChoice::List, 1 << 27);
+        let film = Film::new(size, size).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+        let request = PictureRequest {
+            scene: &scene,
+            view: View::new(&camera, film),
+            settings: &RenderSettings::default(),
+            layers,
+            host_bytes_per_pixel: 16,
+        };
+        let device = DeviceLimits { limits: Limits::default(), device_type };
+        if keeps_rays {
+            RenderPlan::of_recording(&request, accel, &device)
+        } else {
+            RenderPlan::of_primary(&request, accel, &device)
+        }
+    }
+
+    #[test]
+    fn a_tile_takes_hits_texture_and_what_is_read_back() {
+        let plan = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        assert_eq!((plan.tile_size, plan.tile_count), ([1024, 1024], 1));
+        let hit = size_of::<records::Hit>() as u64;
+        assert_eq!(total(&plan.tile_buffers), hit << 20);
+        assert_eq!(total(&plan.tile_textures), 32 << 20);
+
+        assert_eq!(plan.check(&Limits::default(), None), Ok(()));
+        let all = super::tests::plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
+        assert_eq!(total(&all.tile_textures), (2 * (16 + 4 + 16 + 4)) << 20);
+    }
+
+    #[test]
+    fn the_host_keeps_every_layer_and_the_device_four() {
+        let plan = |layers| plan(1024, layers, DeviceType::DiscreteGpu);
+        let (color, alpha) = (plan(LayerSet::COLOR), plan(LayerSet::COLOR.with(Layer::Alpha)));
+        let (data, all) = (plan(LayerSet::DATA), plan(LayerSet::ALL));
+        assert_eq!(color.host_bytes, (12 + 16) << 20);
+        assert_eq!(alpha.host_bytes, color.host_bytes + (4 << 20));
+        assert_eq!(data.host_bytes, color.host_bytes + ((4 + 12 + 4) << 20));
+        assert_eq!(all.host_bytes, data.host_bytes + ((4 + 12 + 12 + 4 + 4) << 20));
+        assert_eq!(all.tile_textures, data.tile_textures);
+        assert_eq!(alpha.tile_textures, data.tile_textures);
+    }
+
+    /// Four bytes each, of ten million different ones, and as many for which of two surfaces a sphere has.
+    #[test]
+    fn a_color_of_its_own_takes_four_bytes_a_sphere() {
+        let count = 10_000_000;
+        let spheres: Vec<[f32; 4]> = (0..count)
+            .map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4])
+            .collect();
+        let accel = AccelPlan::new(&spheres, AccelChoice::Auto, 1 << 27);
+        let colors = (0..count as u32).map(|i| (i | 0xff00_0000).to_le_bytes()).collect();
+        let mut appearance = Appearance::new(Colors::Rgba8(colors));
+        let ids = accel.buffers.iter().find(|buffer| buffer.name == "ids").unwrap().bytes;
+        assert_eq!(ids, 4 * count as u64);
+        let mut spheres = spheres;
+        for words in [1, 2] {
+            let scene = Scene::from_parts(SphereArray::F32(spheres), appearance.clone()).unwrap();
+            let buffers = scene_buffers(&scene, &accel);
+            let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
+            assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
+            spheres = scene.spheres().to_vec();
+            let surfaces = vec![
+                SurfaceProperties::default(),
+                SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() },
+            ];
+            let indices = (0..count as u32).map(|i| i % 2).collect();
+            appearance = appearance.with_surfaces(surfaces, indices);
+        }
+    }
+
+    #[test]
+    fn a_software_device_takes_its_memory_from_the_host() {
+        let gpu = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        let software = plan(1024, LayerSet::COLOR, DeviceType::Cpu);
+        assert_eq!(software.device_bytes, gpu.device_bytes);
+        assert_eq!(software.host_peak, HostPeak::Picture);
+        assert_eq!(software.host_bytes, gpu.host_bytes + gpu.device_bytes);
+        assert_eq!(software.check(&Limits::default(), Some(software.host_bytes)), Ok(()));
+        assert!(matches!(
+            software.check(&Limits::default(), Some(software.host_bytes - 1)),
+            Err(GpuError::HostMemory { what: "the picture", .. })
+        ));
+    }
+
+    #[test]
+    fn a_recording_keeps_rays_and_hits() {
+        let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
+        let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
+        assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
+        // A ray, and both read back.
+        assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));
+        assert_eq!(recording.host_peak, HostPeak::Checking);
+        assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2 + 32) << 20) + 40_000);
+        assert_eq!(recording.check(&Limits::default(), None), Ok(()));
+    }
+
+    #[test]
+    fn a_limit_that_is_too_low_is_named() {
+        let plan = plan(64, LayerSet::COLOR, DeviceType::DiscreteGpu);
+        let limits = Limits { max_storage_buffer_binding_size: 100, ..Limits::default() };
+        let refused = plan.check(&limits, None);
+        assert!(
+            matches!(
+                refused,
+                Err(GpuError::Limit {
+                    what: "the buffer of spheres",
+                    limit_name: "max_storage_buffer_binding_size",
+                    limit: 100,
+                    ..
+                })
+            ),
+            "{refused:?}"
+        );
+    }
+}

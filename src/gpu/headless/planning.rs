@@ -1,0 +1,87 @@
+//! Planning on a device, for every integrator.
+
+use crate::accel::{AccelChoice, AccelPlan};
+use crate::camera::View;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::plan::{DeviceLimits, PictureRequest, RenderPlan, StructurePlans};
+use crate::gpu::quirks;
+use crate::gpu::scene::scene_buffers::binding_limit;
+use crate::image::LayerSet;
+use crate::render::RenderSettings;
+use crate::scene::Scene;
+
+impl RenderPlan {
+    /// Plans a picture on a device with such limits, with structures that were planned for it.
+    #[must_use]
+    pub fn new(
+        request: &PictureRequest<'_>,
+        structures: StructurePlans,
+        device: &DeviceLimits,
+    ) -> Self {
+        if request.settings.integrator.is_primary() {
+            Self::of_primary(request, structures.accel, device)
+        } else {
+            Self::of_lit(request, structures, device)
+        }
+    }
+}
+
+impl Headless {
+    /// What a picture will take on this device: structures, buffers, tiles and host memory. Structures are those of
+    /// `choice`, also the one for shadows that a studio needs where some spheres are not opaque.
+    /// `host_bytes_per_pixel` is as in [`PictureRequest`].
+    #[must_use]
+    pub fn plan(
+        &self,
+        scene: &Scene,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        choice: AccelChoice,
+        host_bytes_per_pixel: u64,
+    ) -> RenderPlan {
+        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
+        let is_primary = settings.integrator.is_primary();
+        // Every sample of a lit picture sends rays, and so does every surface.
+        let rays = if is_primary { view.film.pixel_count() } else { u64::MAX };
+        let accel = self.plan_for_rays(scene, choice, rays);
+        let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
+        let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
+        RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
+    }
+
+    /// What [`Headless::record`] will take, and checking what it gives; otherwise as [`Headless::plan`].
+    #[must_use]
+    pub fn plan_record(
+        &self,
+        scene: &Scene,
+        view: &View<'_>,
+        choice: AccelChoice,
+        host_bytes_per_pixel: u64,
+    ) -> RenderPlan {
+        let (settings, layers) = (&RenderSettings::default(), LayerSet::DATA);
+        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
+        let accel = self.plan_for_rays(scene, choice, view.film.pixel_count());
+        RenderPlan::of_recording(&request, accel, &self.device_limits())
+    }
+
+    /// What to build of a scene for this device and for many pictures, without a picture in mind: for measurements.
+    #[must_use]
+    pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
+        self.plan_for_rays(scene, choice, u64::MAX)
+    }
+
+    fn plan_for_rays(&self, scene: &Scene, choice: AccelChoice, rays: u64) -> AccelPlan {
+        let binding = binding_limit(&self.device().limits());
+        quirks::plan(self.adapter_info(), scene, choice, |choice| {
+            AccelPlan::for_rays(scene.spheres(), choice, binding, rays)
+        })
+    }
+
+    /// What bounds pictures and scenes on this device.
+    #[must_use]
+    pub fn device_limits(&self) -> DeviceLimits {
+        let device_type = self.adapter_info().device_type;
+        DeviceLimits { limits: self.device().limits(), device_type }
+    }
+}

@@ -1,0 +1,120 @@
+//! Pictures of primary rays, tile by tile.
+
+use wgpu::ComputePassDescriptor;
+
+use crate::camera::View;
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::derived::Derived;
+use crate::gpu::headless::progress::{TracedPixels, Watch};
+use crate::gpu::headless::readable_trace::ReadableTrace;
+use crate::gpu::headless::readback::ReadableTexture;
+use crate::gpu::headless::renderers::RendererKey;
+use crate::gpu::headless::tile_textures::TileTextures;
+use crate::gpu::passes::bands::tile_size;
+use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::tiles::{Groups, tiles};
+use crate::gpu::passes::visible_region::traced_pixels;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::image::{Image, LayerSet};
+use crate::render::PrimarySettings;
+use crate::verify::TracedPixel;
+
+/// What a picture is written to.
+pub(in crate::gpu) struct Output<'a> {
+    pub(in crate::gpu) image: &'a mut Image,
+    /// The ray and the hit of every pixel, if they are kept.
+    pub(in crate::gpu) pixels: Option<&'a mut Vec<TracedPixel>>,
+}
+
+impl Headless {
+    /// One ray through the centre of every pixel.
+    pub(in crate::gpu) fn render_primary(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        primary: &PrimarySettings,
+        layers: LayerSet,
+        watch: &mut Watch<'_>,
+    ) -> Result<Image, GpuError> {
+        let data_layers = layers != LayerSet::COLOR;
+        let key = RendererKey { data_layers, ..RendererKey::new(scene, view.camera) };
+        self.with_renderer(key, |renderer| {
+            let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
+            let output = Output { image: &mut image, pixels: None };
+            self.render_tiles(renderer, scene, view, primary, output, watch)?;
+            Ok(image)
+        })
+    }
+
+    pub(in crate::gpu) fn render_tiles(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        primary: &PrimarySettings,
+        mut output: Output<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), GpuError> {
+        let (device, film) = (self.device(), &view.film);
+        let tile_size = tile_size(&device.limits(), film, renderer.keeps_rays);
+        let textures =
+            scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers))?;
+        let mut frame = Frame::new(renderer, device, &textures.targets())?;
+        let traced = scoped(device, || ReadableTrace::new(device, &frame))?;
+        let derived = Derived { view: *view, appearance: scene.appearance() };
+        let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
+        for tile in tiles(film, tile_size) {
+            frame.set_tile(self.queue(), scene, view, tile, primary);
+            let mut encoder = self.encoder();
+            if renderer.keeps_rays {
+                // Those that are not traced are known by having none.
+                frame.record_clear(&mut encoder);
+            }
+            let mut unfinished = Groups::NONE;
+            for part in frame.parts() {
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
+                    frame.set_first_group(self.queue(), part.band, groups.first);
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    let slice = BandBrick { groups, ..part };
+                    renderer.record_trace(&mut pass, scene, &frame, slice)?;
+                    drop(pass);
+                    if left.is_empty() && part.is_last {
+                        // Shaded and copied in the same submission.
+                        unfinished = groups;
+                        break;
+                    }
+                    self.submit_slice(encoder, groups, scene, &[])?;
+                    done.add(groups, watch)?;
+                    encoder = self.encoder();
+                }
+                if part.is_last_of_band {
+                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    renderer.record_shade(&mut pass, scene, &frame, part.band)?;
+                }
+            }
+            for texture in textures.all() {
+                texture.record_copy(&mut encoder, tile.size);
+            }
+            textures.status().record_copy(&mut encoder, frame.status());
+            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
+            mapped.push(textures.status().buffer());
+            if let Some(traced) = &traced {
+                traced.record_copy(&mut encoder, &frame);
+                mapped.extend(traced.buffers());
+            }
+            self.submit_slice(encoder, unfinished, scene, &mapped)?;
+            if textures.status().read(|words: &[u32]| words[0])? != 0 {
+                return Err(GpuError::Steps);
+            }
+            textures.read_into(output.image, tile, &derived)?;
+            if let (Some(traced), Some(pixels)) = (&traced, &mut output.pixels) {
+                traced.read_into(pixels, film, tile)?;
+            }
+            done.add(unfinished, watch)?;
+        }
+        Ok(())
+    }
+}

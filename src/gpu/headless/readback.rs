@@ -1,0 +1,153 @@
+//! A texture of a headless render, and its way back to the host.
+
+use wgpu::{Buffer, Device, Texture, TextureFormat, TextureView};
+
+use crate::gpu::error::GpuError;
+
+/// A texture that kernels write, and a buffer that the host reads.
+#[derive(Debug)]
+pub(in crate::gpu) struct ReadableTexture {
+    texture: Texture,
+    view: TextureView,
+    buffer: Buffer,
+    bytes_per_pixel: u32,
+}
+
+impl ReadableTexture {
+    pub(in crate::gpu) fn new(
+        device: &Device,
+        label: &'static str,
+        format: TextureFormat,
+        [width, height]: [u32; 2],
+    ) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: extent([width, height]),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let bytes_per_pixel = bytes_per_pixel(format);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: Self::buffer_bytes(format, [width, height]),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { texture, view, buffer, bytes_per_pixel }
+    }
+
+    /// Bytes of the texture.
+    pub(in crate::gpu) fn texture_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
+        u64::from(width) * u64::from(height) * u64::from(bytes_per_pixel(format))
+    }
+
+    /// Bytes of the buffer.
+    pub(in crate::gpu) fn buffer_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
+        u64::from(padded_row(width, bytes_per_pixel(format))) * u64::from(height)
+    }
+
+    pub(in crate::gpu) fn view(&self) -> &TextureView {
+        &self.view
+    }
+
+    pub(in crate::gpu) fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    /// Records the copy of the texture's upper left part.
+    pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
+        encoder.copy_texture_to_buffer(
+            self.texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_row(size[0], self.bytes_per_pixel)),
+                    rows_per_image: None,
+                },
+            },
+            extent(size),
+        );
+    }
+
+    /// Hands out the rows of the part that was copied, then unmaps the buffer, which must be mapped.
+    pub(in crate::gpu) fn read_rows<T: bytemuck::AnyBitPattern>(
+        &self,
+        [width, height]: [u32; 2],
+        mut row: impl FnMut(usize, &[T]),
+    ) -> Result<(), GpuError> {
+        let bytes = self
+            .buffer
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::Device { message: error.to_string() })?;
+        let padded = padded_row(width, self.bytes_per_pixel) as usize;
+        let used = (width * self.bytes_per_pixel) as usize;
+        for (j, bytes) in bytes.chunks(padded).take(height as usize).enumerate() {
+            row(j, bytemuck::cast_slice(&bytes[..used]));
+        }
+        drop(bytes);
+        self.buffer.unmap();
+        Ok(())
+    }
+}
+
+/// A buffer that the host reads what kernels wrote from.
+#[derive(Debug)]
+pub(in crate::gpu) struct ReadableBuffer {
+    buffer: Buffer,
+}
+
+impl ReadableBuffer {
+    pub(in crate::gpu) fn new(device: &Device, label: &'static str, size: u64) -> Self {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { buffer }
+    }
+
+    pub(in crate::gpu) fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    /// Records the copy of a buffer of the same size, or of the start of a larger one.
+    pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, written: &Buffer) {
+        encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
+    }
+
+    /// What `read` makes of its elements; unmaps the buffer, which must be mapped.
+    pub(in crate::gpu) fn read<T: bytemuck::AnyBitPattern, R>(
+        &self,
+        read: impl FnOnce(&[T]) -> R,
+    ) -> Result<R, GpuError> {
+        let bytes = self
+            .buffer
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::Device { message: error.to_string() })?;
+        let seen = read(bytemuck::cast_slice(&bytes));
+        drop(bytes);
+        self.buffer.unmap();
+        Ok(seen)
+    }
+}
+
+fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
+    wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
+}
+
+/// Every format in use is one uncompressed colour plane.
+fn bytes_per_pixel(format: TextureFormat) -> u32 {
+    format.block_copy_size(None).unwrap_or(0)
+}
+
+/// Bytes of a row in a copy, which WebGPU wants to be a multiple of 256.
+fn padded_row(width: u32, bytes_per_pixel: u32) -> u32 {
+    (width * bytes_per_pixel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+}

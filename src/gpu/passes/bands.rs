@@ -1,0 +1,66 @@
+//! How many pixels primary rays are traced for at once, and the buffers that this takes: what plans sum up, and what
+//! frames create.
+
+use wgpu::Limits;
+
+use crate::accel::PlannedBuffer;
+use crate::camera::film::Film;
+use crate::gpu::passes::tiles;
+use crate::gpu::scene::scene_buffers::binding_limit;
+use crate::gpu::shader::records;
+
+const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
+const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
+
+/// Bytes of the buffers of a band of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) struct BandBuffers {
+    pub(in crate::gpu) hits: u64,
+    /// If rays are kept.
+    pub(in crate::gpu) rays: Option<u64>,
+}
+
+impl BandBuffers {
+    /// Of a band of targets of a size.
+    pub(in crate::gpu) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
+        let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
+        Self { hits: pixels * HIT_BYTES, rays: keeps_rays.then_some(pixels * RAY_BYTES) }
+    }
+
+    pub(in crate::gpu) fn bytes(&self) -> u64 {
+        self.hits + self.rays.unwrap_or(0)
+    }
+
+    /// Those that kernels write.
+    pub(in crate::gpu) fn planned(&self) -> Vec<PlannedBuffer> {
+        let rays = self.rays.map(|bytes| PlannedBuffer::one("rays", bytes));
+        [PlannedBuffer::one("hits", self.hits)].into_iter().chain(rays).collect()
+    }
+
+    /// Those that the host reads, where rays are kept.
+    pub(in crate::gpu) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
+        let both = self.rays.map(|rays| [("hits read-back", self.hits), ("rays read-back", rays)]);
+        both.into_iter().flatten().map(|(name, bytes)| PlannedBuffer::one(name, bytes)).collect()
+    }
+}
+
+/// How many rows of targets of a size are traced before they are shaded: their hits, and their rays if they are
+/// kept, fit into one binding.
+pub(in crate::gpu) fn rows_per_band(
+    limits: &Limits,
+    [width, height]: [u32; 2],
+    keeps_rays: bool,
+) -> u32 {
+    let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
+    let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_PIXELS);
+    // At most MAX_PIXELS, so it fits.
+    ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
+}
+
+/// The size of the tiles of a headless render. Where rays are kept, a tile is no more than a band, because what
+/// is kept is that of a frame's last band.
+pub(in crate::gpu) fn tile_size(limits: &Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
+    let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
+    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
+    [width, rows]
+}

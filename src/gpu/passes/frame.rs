@@ -1,0 +1,404 @@
+//! What changes from picture to picture: targets, view, settings.
+
+use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
+
+use crate::camera::{CameraKind, View};
+use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::passes::bands::{BandBuffers, rows_per_band};
+use crate::gpu::passes::order::nearest_first;
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::tiles::{self, Groups, Tile};
+use crate::gpu::passes::visible_region::VisibleRegion;
+use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
+use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use crate::gpu::shader::records;
+use crate::render::{PrimarySettings, RenderSettings};
+use crate::verify::RequestedCamera;
+
+/// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'a> {
+    /// Of the format that the renderer's [`ColorTarget`](super::ColorTarget) names.
+    pub color: &'a TextureView,
+    /// Present exactly if the renderer was built with `data_layers`.
+    pub data: Option<DataTargets<'a>>,
+}
+
+/// Textures for the data layers.
+#[derive(Clone, Copy, Debug)]
+pub struct DataTargets<'a> {
+    /// `R32Float`: distance along the ray, in scene units; 1e30 for a miss.
+    pub depth: &'a TextureView,
+    /// `Rgba32Float`: unit normal in the world, pointing away from the sphere's centre; zero for a miss.
+    pub normal: &'a TextureView,
+    /// `R32Uint`: index of the sphere in input order; `u32::MAX` for a miss.
+    pub id: &'a TextureView,
+}
+
+/// One view into one set of targets. Per frame: a frame that was recorded must have been submitted
+/// before it is given another view.
+#[derive(Debug)]
+pub struct Frame {
+    color: ColorTarget,
+    data_layers: bool,
+    /// The rays of all pixels, if they are kept.
+    rays: Option<Buffer>,
+    /// One record per band, each at a multiple of `stride`.
+    records: Buffer,
+    hits: Buffer,
+    stride: usize,
+    rows_per_band: u32,
+    /// Group 0 of every kernel, one per band. All bands share one buffer of hits.
+    band_groups: Vec<BindGroup>,
+    target_group: BindGroup,
+    size: [u32; 2],
+    view: Option<SetView>,
+    /// Not 0 once a kernel ran into its limit of iterations.
+    status: Buffer,
+    iteration_limit: u32,
+    bytes: u64,
+}
+
+/// What recording needs to know of the view.
+#[derive(Debug)]
+pub(in crate::gpu) struct SetView {
+    pub(in crate::gpu) camera: CameraKind,
+    pub(in crate::gpu) scene: SceneId,
+    /// The sizes of the bands that are rendered, in their order.
+    pub(in crate::gpu) bands: Vec<[u32; 2]>,
+    records: Vec<records::FrameParameters>,
+    /// The bricks in the order in which they are traced.
+    order: Vec<usize>,
+}
+
+/// One brick, for one band.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct BandBrick {
+    pub(in crate::gpu) band: usize,
+    pub(in crate::gpu) brick: usize,
+    pub(in crate::gpu) groups: Groups,
+    pub(in crate::gpu) is_first_of_band: bool,
+    pub(in crate::gpu) is_last_of_band: bool,
+    pub(in crate::gpu) is_last: bool,
+}
+
+impl Frame {
+    /// A frame that renders into the given targets.
+    ///
+    /// A picture whose hits (16 bytes a pixel) would not fit into one binding is rendered in bands.
+    ///
+    /// # Errors
+    /// If a target is not of the format, size or usage that the renderer needs, or if the device has no
+    /// memory left.
+    pub fn new(
+        renderer: &Renderer,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        let views = checked_targets(renderer, targets)?;
+        let texture = targets.color.texture();
+        let size = [texture.width(), texture.height()];
+        let limits = device.limits();
+        let keeps_rays = renderer.keeps_rays;
+        let rows_per_band = rows_per_band(&limits, size, keeps_rays);
+        let band = BandBuffers::new(&limits, size, keeps_rays);
+        check_storage_size(device, "the buffer of hits", band.hits)?;
+        check_storage_size(device, "the buffer of rays", band.rays.unwrap_or(0))?;
+        let record_size = size_of::<records::FrameParameters>();
+        let alignment = limits.min_uniform_buffer_offset_alignment as usize;
+        let stride = record_size.next_multiple_of(alignment);
+        let bands = size[1].div_ceil(rows_per_band) as usize;
+        let (records, hits, rays, status, band_groups, target_group) = scoped(device, || {
+            let status = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole status"),
+                size: size_of::<records::Status>() as u64,
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let records = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole frame"),
+                size: (bands * stride) as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let of_pixels = |label, size| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size,
+                    usage: wgpu::BufferUsages::STORAGE
+                        | wgpu::BufferUsages::COPY_SRC
+                        | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            };
+            let hits = of_pixels("pinhole hits", band.hits);
+            let rays = band.rays.map(|bytes| of_pixels("pinhole rays", bytes));
+            let band_group = |band| {
+                let buffers = [&hits, &status].into_iter().chain(&rays);
+                let resources = std::iter::once(part(&records, band * stride, record_size))
+                    .chain(buffers.map(Buffer::as_entire_binding));
+                let entries: Vec<_> = (0..)
+                    .zip(resources)
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                    .collect();
+                device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("pinhole frame"),
+                    layout: &renderer.layouts.frame,
+                    entries: &entries,
+                })
+            };
+            let band_groups = (0..bands).map(band_group).collect();
+            let entries: Vec<_> = (0..)
+                .zip(views)
+                .map(|(binding, view)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: wgpu::BindingResource::TextureView(view),
+                })
+                .collect();
+            let target_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole targets"),
+                layout: &renderer.layouts.targets,
+                entries: &entries,
+            });
+            (records, hits, rays, status, band_groups, target_group)
+        })?;
+        let Renderer { color, data_layers, .. } = *renderer;
+        Ok(Self {
+            color,
+            data_layers,
+            rays,
+            records,
+            hits,
+            stride,
+            rows_per_band,
+            band_groups,
+            target_group,
+            size,
+            view: None,
+            status,
+            iteration_limit: iteration_limit(device),
+            bytes: band.bytes() + (bands * stride) as u64,
+        })
+    }
+
+    /// Sets what the next recording shows: the whole film, which must have the size of the targets.
+    ///
+    /// The new values are queued on `queue`; they hold from its next submission on.
+    ///
+    /// # Errors
+    /// If the film and the targets differ in size; [`GpuError::NotPrimary`] if the picture is to be lit, because frames
+    /// have primary rays only for now; what [`RenderSettings::check`] refuses.
+    pub fn set_view(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Result<(), GpuError> {
+        let primary = scene.primary_settings(settings)?;
+        let film_size = [view.film.width(), view.film.height()];
+        if film_size != self.size {
+            return Err(GpuError::Target {
+                layer: "color",
+                found: describe_size(self.size),
+                expected: format!("as large as the film, {}", describe_size(film_size)),
+            });
+        }
+        let tile = Tile { origin: [0, 0], size: film_size, in_target: [0, 0] };
+        self.set_tile(queue, scene, view, tile, &primary);
+        Ok(())
+    }
+
+    /// As [`Frame::set_view`], for a part of the film that is no larger than the targets.
+    pub(in crate::gpu) fn set_tile(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        tile: Tile,
+        primary: &PrimarySettings,
+    ) {
+        let (camera, space) = (RequestedCamera::of(view.camera), scene.space());
+        let region = VisibleRegion::of(view, space);
+        let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
+        let limit = self.iteration_limit;
+        let records: Vec<_> = bands
+            .iter()
+            .map(|band| {
+                let traced = region.groups_of(*band);
+                records::FrameParameters::new(
+                    &camera, space, &view.film, *band, traced, primary, limit,
+                )
+            })
+            .collect();
+        let mut bytes = vec![0_u8; bands.len() * self.stride];
+        for (target, record) in bytes.chunks_mut(self.stride).zip(&records) {
+            target[..size_of::<records::FrameParameters>()]
+                .copy_from_slice(bytemuck::bytes_of(record));
+        }
+        queue.write_buffer(&self.records, 0, &bytes);
+        let boxes = scene.bricks().iter().map(|brick| brick.center_box);
+        self.view = Some(SetView {
+            camera: camera.kind,
+            scene: scene.id(),
+            bands: bands.into_iter().map(|band| band.size).collect(),
+            records,
+            order: nearest_first(boxes, view.camera, space),
+        });
+    }
+
+    /// Queues the first workgroup of the slice of a band that is traced next.
+    pub(in crate::gpu) fn set_first_group(&mut self, queue: &Queue, band: usize, first: [u32; 2]) {
+        let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(band)) else {
+            return;
+        };
+        if record.first_group != first {
+            record.first_group = first;
+            let bytes = bytemuck::bytes_of(record);
+            queue.write_buffer(&self.records, (band * self.stride) as u64, bytes);
+        }
+    }
+
+    /// What is to be traced for the view, in order.
+    pub(in crate::gpu) fn parts(&self) -> Vec<BandBrick> {
+        let Some(view) = &self.view else {
+            return Vec::new();
+        };
+        let turns = view.order.len();
+        let mut parts = Vec::new();
+        for (band, record) in view.records.iter().enumerate() {
+            for (turn, brick) in view.order.iter().enumerate() {
+                parts.push(BandBrick {
+                    band,
+                    brick: *brick,
+                    groups: Groups { first: [0, 0], size: record.traced_size },
+                    is_first_of_band: turn == 0,
+                    is_last_of_band: turn + 1 == turns,
+                    is_last: turn + 1 == turns && band + 1 == view.records.len(),
+                });
+            }
+        }
+        parts
+    }
+
+    /// Records the clearing of the hits, and of the rays if they are kept.
+    pub(in crate::gpu) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.hits, 0, None);
+        if let Some(rays) = &self.rays {
+            encoder.clear_buffer(rays, 0, None);
+        }
+    }
+
+    /// What is known of the pixels of the last band: hits, and rays if they are kept.
+    pub(in crate::gpu) fn traced(&self) -> (&Buffer, Option<&Buffer>) {
+        (&self.hits, self.rays.as_ref())
+    }
+
+    /// One u32, which kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
+    /// 0 after creation, and not set back; read it once a submission is done, and clear it then.
+    ///
+    /// Usage: `COPY_SRC`, `COPY_DST`. Software devices give up after 8,000 spheres and cells, because old ones
+    /// leave long loops silently.
+    #[must_use]
+    pub fn status(&self) -> &Buffer {
+        &self.status
+    }
+
+    /// Bytes of its buffers on the device, without the caller's textures.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The view, if it is one that this renderer can record of this scene.
+    pub(in crate::gpu) fn view(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+    ) -> Result<&SetView, GpuError> {
+        let view = self.view.as_ref().ok_or(GpuError::NoView)?;
+        let made_for = (self.color, self.data_layers, self.rays.is_some());
+        if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
+            return Err(GpuError::OtherRenderer);
+        }
+        if view.scene != scene.id() {
+            return Err(GpuError::OtherScene);
+        }
+        Ok(view)
+    }
+
+    /// Group 0 of every kernel, one per band.
+    pub(in crate::gpu) fn band_groups(&self) -> &[BindGroup] {
+        &self.band_groups
+    }
+
+    /// Group 2 of `shade`.
+    pub(in crate::gpu) fn target_group(&self) -> &BindGroup {
+        &self.target_group
+    }
+}
+
+/// How many iterations of loops an invocation may take.
+///
+/// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the invocations that it runs
+/// together, which are eight by default, so that an eighth of that is safe; the self-test's nested loops try
+/// that. Elsewhere it is only a bound on what a kernel that is wrong could do.
+pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
+    let info = device.adapter_info();
+    match info.device_type {
+        wgpu::DeviceType::Cpu => 64_000 / info.subgroup_max_size.max(8),
+        _ => 1 << 24,
+    }
+}
+
+/// The targets in the order of their bindings.
+fn checked_targets<'a>(
+    renderer: &Renderer,
+    targets: &Targets<'a>,
+) -> Result<Vec<&'a TextureView>, GpuError> {
+    let mut wanted = vec![("color", targets.color, renderer.color.texture_format())];
+    match targets.data {
+        Some(data) if renderer.data_layers => wanted.extend([
+            ("depth", data.depth, DEPTH_FORMAT),
+            ("normal", data.normal, NORMAL_FORMAT),
+            ("id", data.id, ID_FORMAT),
+        ]),
+        None if !renderer.data_layers => {}
+        found => {
+            let state = |present| if present { "present" } else { "absent" }.to_owned();
+            return Err(GpuError::Target {
+                layer: "data",
+                found: state(found.is_some()),
+                expected: state(renderer.data_layers) + ", as in the renderer's options",
+            });
+        }
+    }
+    let size = targets.color.texture().size();
+    for &(layer, view, format) in &wanted {
+        let texture = view.texture();
+        let refused =
+            |found: String, expected: String| Err(GpuError::Target { layer, found, expected });
+        if texture.format() != format {
+            return refused(format!("{:?}", texture.format()), format!("{format:?}"));
+        }
+        if !texture.usage().contains(wgpu::TextureUsages::STORAGE_BINDING) {
+            return refused(format!("{:?}", texture.usage()), "usable as STORAGE_BINDING".into());
+        }
+        if texture.size() != size {
+            return refused(
+                describe_size([texture.width(), texture.height()]),
+                format!(
+                    "as large as the color target, {}",
+                    describe_size([size.width, size.height])
+                ),
+            );
+        }
+    }
+    Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
+}
+
+fn describe_size([width, height]: [u32; 2]) -> String {
+    format!("{width}x{height}")
+}

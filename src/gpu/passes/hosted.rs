@@ -1,0 +1,121 @@
+//! Lit pictures in an encoder of somebody else's.
+//!
+//! What [`Headless`](super::Headless) paces, submits and reads back is recorded here as it is: a host that gathers
+//! samples in its own frame records the same passes.
+
+use std::ops::Range;
+
+use wgpu::{Buffer, CommandEncoder, Device, Queue};
+
+use crate::camera::View;
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::iteration_limit;
+use crate::gpu::passes::lit::{
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MOST_DISPATCHES, Recorder,
+    Round,
+};
+use crate::gpu::passes::tiles::tiles;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::render::RenderSettings;
+
+/// A lit picture that grows by samples, on a device that the caller keeps.
+#[derive(Debug)]
+pub struct HostedPicture {
+    passes: LitPasses,
+    frame: LitFrame,
+    lighting: LightingData,
+    is_indirect: bool,
+}
+
+/// The sums of a part of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct HostedSums<'a> {
+    /// Its first column and row, in pixels.
+    pub origin: [u32; 2],
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    /// Row by row, three `vec4f` for each pixel: the sums of colours and opacities; what rounding left out of the sums of
+    /// colours; the sums of the first surfaces' colours. Usage: `STORAGE`, `COPY_SRC`.
+    pub buffer: &'a Buffer,
+}
+
+impl HostedPicture {
+    /// Makes the passes and the buffers. `is_indirect` says whether the adapter has indirect dispatch
+    /// (`DownlevelFlags::INDIRECT_EXECUTION`); the picture does not depend on it.
+    ///
+    /// # Errors
+    /// What [`RenderSettings::check`] refuses; [`GpuError::NoOccluders`]; if the device has no memory left.
+    pub fn new(
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        is_indirect: bool,
+    ) -> Result<Self, GpuError> {
+        settings.check_with(scene.appearance())?;
+        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let passes = LitPasses::new(device, scenes.key(view, &lighting), &[])?;
+        let samples = settings.sampling.samples;
+        let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, samples);
+        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
+        let records = tiles(&view.film, sizes.tile)
+            .map(|tile| (tile, scenes.frames(view, region, tile, limit)));
+        let frame = LitFrame::new(device, queue, &passes, sizes, &lighting, records)?;
+        Ok(Self { passes, frame, lighting, is_indirect })
+    }
+
+    /// Records some samples of every pixel. What the passes read is queued, and holds for the queue's next submission,
+    /// which must be this encoder's.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if that takes more dispatches than one submission may have; record fewer samples then.
+    pub fn record(
+        &self,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        settings: &RenderSettings,
+        samples: Range<u32>,
+    ) -> Result<(), GpuError> {
+        let Self { passes, frame, lighting, is_indirect } = self;
+        let occluders = scene.occluders(settings)?;
+        let room = frame.sizes.room();
+        let round = Round { passes, lighting, scene, occluders, room, at_once: AT_ONCE };
+        let mut recorder = Recorder::new(frame, passes.advance(), *is_indirect);
+        for tile in 0..frame.tiles.len() {
+            recorder.tile = tile;
+            let mut start = samples.start;
+            while start < samples.end {
+                let end = samples.end.min(start + frame.sizes.in_flight);
+                let steps = round.steps(start..end)?;
+                let needed = recorder.dispatches() + steps.len();
+                if needed > MOST_DISPATCHES {
+                    return Err(GpuError::Limit {
+                        what: "one recording of lit samples",
+                        needed: needed as u64,
+                        limit_name: "dispatches of one submission",
+                        limit: MOST_DISPATCHES as u64,
+                    });
+                }
+                frame.record_clear_lists(encoder);
+                for step in &steps {
+                    recorder.record(encoder, step, None);
+                }
+                start = end;
+            }
+        }
+        frame.queue_parameters(queue, &recorder.take_parameters());
+        Ok(())
+    }
+
+    /// The sums so far, of every part of the picture.
+    pub fn sums(&self) -> impl Iterator<Item = HostedSums<'_>> {
+        self.frame.tiles.iter().map(|tile| HostedSums {
+            origin: tile.tile.origin,
+            size: tile.tile.size,
+            buffer: tile.film(),
+        })
+    }
+}

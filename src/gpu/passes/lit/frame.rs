@@ -1,0 +1,305 @@
+//! Buffers of a lit picture: what all tiles share, and the sums of each.
+
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue};
+
+use super::lighting::LightingData;
+use super::passes::LitPasses;
+use super::records::{DispatchParameters, QUEUE_HEAD};
+use super::sizes::LitSizes;
+use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::tiles::Tile;
+use crate::gpu::scene::scene_buffers::part;
+use crate::gpu::shader::records::FrameParameters;
+use crate::light::environment::Environment;
+
+/// How many dispatches one submission has at most.
+pub(in crate::gpu) const MOST_DISPATCHES: usize = 1024;
+
+/// Which workgroups of a tile a dispatch may have, and what box its rays are moved to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum Area {
+    /// All of the tile.
+    Whole,
+    /// Where the scene may be seen.
+    Visible,
+    /// The same for what casts shadows.
+    Occluders,
+}
+
+/// Records of a tile, by [`Area`].
+pub(in crate::gpu) type Frames = [FrameParameters; 3];
+
+/// A lit picture in progress. Per picture.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitFrame {
+    pub(in crate::gpu) sizes: LitSizes,
+    parameters: Buffer,
+    parameter_stride: usize,
+    pub(super) queue: Buffer,
+    pub(super) groups_needed: Buffer,
+    /// The state of all paths, slot by slot.
+    pub(in crate::gpu) paths: Buffer,
+    variations: Buffer,
+    pub(super) lighting: BindGroup,
+    pub(super) sky: Option<BindGroup>,
+    pub(in crate::gpu) tiles: Vec<LitTile>,
+    /// Whether an invocation gave up.
+    pub(in crate::gpu) spent_back: ReadableBuffer,
+    pub(in crate::gpu) film_back: ReadableBuffer,
+    pub(in crate::gpu) variations_back: ReadableBuffer,
+}
+
+/// A tile, and the sums of its pixels.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitTile {
+    pub(in crate::gpu) tile: Tile,
+    pub(super) frames: Frames,
+    film: Buffer,
+    /// Group 0 of most passes, by [`Area`].
+    pub(super) groups: [BindGroup; 3],
+    pub(super) advance: BindGroup,
+    /// Group 0 of those that work on sums.
+    pub(super) sums: BindGroup,
+}
+
+impl LitTile {
+    /// The sums of its pixels: `shaders/path/film_sums.wgsl`.
+    pub(in crate::gpu) fn film(&self) -> &Buffer {
+        &self.film
+    }
+}
+
+impl LitFrame {
+    /// Buffers for some tiles, none of which is larger than the sizes say.
+    pub(in crate::gpu) fn new(
+        device: &Device,
+        queue: &Queue,
+        passes: &LitPasses,
+        sizes: LitSizes,
+        lighting: &LightingData,
+        tiles: impl Iterator<Item = (Tile, Frames)>,
+    ) -> Result<Self, GpuError> {
+        let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let parameter_stride = size_of::<DispatchParameters>().next_multiple_of(alignment);
+        check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
+        check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
+        check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
+        check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
+        if let Some(environment) = &lighting.sky {
+            let bytes = 16 * environment.texels().len() as u64;
+            check_storage_size(device, "the image of the sky", bytes)?;
+        }
+        let make = Make { device, queue };
+        scoped(device, || {
+            let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let parameters = make.buffer(
+                "pinhole parameters",
+                MOST_DISPATCHES * parameter_stride,
+                BufferUsages::UNIFORM,
+            );
+            let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
+            let paths = of_paths("pinhole paths", sizes.path_bytes());
+            let lists = of_paths("pinhole lists of paths", sizes.queue_bytes());
+            let variations = of_paths("pinhole variations", sizes.variation_bytes());
+            let needed = storage | BufferUsages::INDIRECT;
+            let groups_needed =
+                make.buffer("pinhole groups needed", sizes.groups_bytes() as usize, needed);
+            let shared = Shared {
+                passes,
+                parameters: &parameters,
+                lists: &lists,
+                paths: &paths,
+                groups_needed: &groups_needed,
+                variations: &variations,
+            };
+            let tiles = tiles.map(|(tile, frames)| make.tile(&shared, sizes, tile, frames));
+            let tiles = tiles.collect();
+            let layouts = &passes.layouts;
+            Self {
+                sizes,
+                lighting: make.lighting(&layouts.lighting, lighting),
+                sky: lighting.sky.as_deref().map(|sky| make.sky(&layouts.sky, sky)),
+                tiles,
+                spent_back: ReadableBuffer::new(device, "pinhole spent read-back", 4),
+                film_back: ReadableBuffer::new(
+                    device,
+                    "pinhole sums read-back",
+                    sizes.film_bytes(),
+                ),
+                variations_back: ReadableBuffer::new(
+                    device,
+                    "pinhole variations read-back",
+                    variations.size(),
+                ),
+                parameters,
+                parameter_stride,
+                queue: lists,
+                groups_needed,
+                paths,
+                variations,
+            }
+        })
+    }
+
+    /// Queues what the next submission's dispatches do; at most [`MOST_DISPATCHES`].
+    pub(in crate::gpu) fn queue_parameters(
+        &self,
+        queue: &Queue,
+        parameters: &[DispatchParameters],
+    ) {
+        let mut bytes = vec![0_u8; parameters.len() * self.parameter_stride];
+        for (target, dispatch) in bytes.chunks_mut(self.parameter_stride).zip(parameters) {
+            target[..size_of::<DispatchParameters>()].copy_from_slice(bytemuck::bytes_of(dispatch));
+        }
+        queue.write_buffer(&self.parameters, 0, &bytes);
+    }
+
+    /// Where the record of a dispatch lies, counted from the first of a submission.
+    pub(super) fn parameter_offset(&self, number: usize) -> u32 {
+        // No more than MOST_DISPATCHES of them, so it fits.
+        (number * self.parameter_stride) as u32
+    }
+
+    /// Records that lists are empty.
+    pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
+        encoder.clear_buffer(&self.queue, 4, Some(QUEUE_HEAD - 4));
+    }
+
+    /// Records that nothing is summed up yet in a tile.
+    pub(in crate::gpu) fn record_clear_film(&self, encoder: &mut CommandEncoder, tile: usize) {
+        encoder.clear_buffer(&self.tiles[tile].film, 0, None);
+    }
+
+    /// Records the copy of whether an invocation gave up.
+    pub(in crate::gpu) fn record_copy_spent(&self, encoder: &mut CommandEncoder) {
+        self.spent_back.record_copy(encoder, &self.queue);
+    }
+
+    /// An error if rays were given up; what was copied must be mapped.
+    pub(in crate::gpu) fn read_spent(&self) -> Result<(), GpuError> {
+        match self.spent_back.read(|words: &[u32]| words[0])? {
+            0 => Ok(()),
+            _ => Err(GpuError::Steps),
+        }
+    }
+
+    /// Records the copy of a tile's sums.
+    pub(in crate::gpu) fn record_copy_film(&self, encoder: &mut CommandEncoder, tile: usize) {
+        self.film_back.record_copy(encoder, &self.tiles[tile].film);
+    }
+
+    /// Records the copy of how much the samples of a tile vary.
+    pub(in crate::gpu) fn record_copy_variations(&self, encoder: &mut CommandEncoder) {
+        self.variations_back.record_copy(encoder, &self.variations);
+    }
+}
+
+/// What makes buffers and groups.
+#[derive(Clone, Copy)]
+struct Make<'a> {
+    device: &'a Device,
+    queue: &'a Queue,
+}
+
+/// What all tiles share.
+struct Shared<'a> {
+    passes: &'a LitPasses,
+    parameters: &'a Buffer,
+    lists: &'a Buffer,
+    paths: &'a Buffer,
+    groups_needed: &'a Buffer,
+    variations: &'a Buffer,
+}
+
+type Entry<'a> = (u32, wgpu::BindingResource<'a>);
+
+impl Make<'_> {
+    fn buffer(&self, label: &'static str, bytes: usize, usage: BufferUsages) -> Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes as u64,
+            usage: usage | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    fn filled(&self, label: &'static str, bytes: &[u8], usage: BufferUsages) -> Buffer {
+        let buffer = self.buffer(label, bytes.len(), usage);
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    fn group(&self, label: &str, layout: &BindGroupLayout, entries: &[Entry<'_>]) -> BindGroup {
+        let entries: Vec<_> = entries
+            .iter()
+            .map(|(binding, resource)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: resource.clone(),
+            })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(label),
+            layout,
+            entries: &entries,
+        })
+    }
+
+    fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
+        let alignment = self.device.limits().min_uniform_buffer_offset_alignment as usize;
+        let stride = size_of::<FrameParameters>().next_multiple_of(alignment);
+        let mut bytes = vec![0_u8; frames.len() * stride];
+        for (target, frame) in bytes.chunks_mut(stride).zip(&frames) {
+            target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
+        }
+        let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        // Read back whole, so all are of one size.
+        let film = self.buffer("pinhole sums", sizes.film_bytes() as usize, usage);
+        let common = |area: usize| -> Vec<Entry<'_>> {
+            vec![
+                (0, part(&records, area * stride, size_of::<FrameParameters>())),
+                whole(2, shared.lists),
+                whole(3, shared.paths),
+                (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
+            ]
+        };
+        let layouts = &shared.passes.layouts;
+        let mut advance = common(0);
+        advance.push(whole(5, shared.groups_needed));
+        let mut sums = common(0);
+        sums.extend([whole(5, &film), whole(6, shared.variations)]);
+        LitTile {
+            tile,
+            frames,
+            groups: [0, 1, 2]
+                .map(|area| self.group("pinhole frame", &layouts.frame, &common(area))),
+            advance: self.group("pinhole advance", &layouts.advance, &advance),
+            sums: self.group("pinhole film", &layouts.film, &sums),
+            film,
+        }
+    }
+
+    fn lighting(&self, layout: &BindGroupLayout, lighting: &LightingData) -> BindGroup {
+        let record = bytemuck::bytes_of(&lighting.parameters);
+        let record = self.filled("pinhole lighting", record, BufferUsages::UNIFORM);
+        let tables = bytemuck::cast_slice(&lighting.tables);
+        let tables = self.filled("pinhole tables", tables, BufferUsages::STORAGE);
+        self.group("pinhole lighting", layout, &[whole(0, &record), whole(1, &tables)])
+    }
+
+    fn sky(&self, layout: &BindGroupLayout, environment: &Environment) -> BindGroup {
+        let texels: Vec<[f32; 4]> =
+            environment.texels().iter().map(|[r, g, b]| [*r, *g, *b, 0.0]).collect();
+        let shares: Vec<f32> =
+            environment.rows().iter().chain(environment.columns()).copied().collect();
+        let storage = BufferUsages::STORAGE;
+        let texels = self.filled("pinhole sky", bytemuck::cast_slice(&texels), storage);
+        let shares = self.filled("pinhole sky shares", bytemuck::cast_slice(&shares), storage);
+        self.group("pinhole sky", layout, &[whole(0, &texels), whole(1, &shares)])
+    }
+}
+
+fn whole(binding: u32, buffer: &Buffer) -> Entry<'_> {
+    (binding, buffer.as_entire_binding())
+}

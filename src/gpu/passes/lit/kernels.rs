@@ -1,0 +1,367 @@
+//! The kernels of lit pictures. `shaders/README.md` lists them.
+
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::shader::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
+
+/// What of a lighting decides which kernels it needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum Mode {
+    Studio,
+    Path(Materials, Sources, SkyKind),
+}
+
+impl Mode {
+    /// Whether paths look for light.
+    pub(in crate::gpu) fn looks_for_light(self) -> bool {
+        matches!(self, Self::Path(_, Sources::Any, _))
+    }
+
+    /// Whether something may absorb light on the way.
+    pub(in crate::gpu) fn has_medium(self) -> bool {
+        matches!(self, Self::Path(Materials::Any, ..))
+    }
+
+    fn direct_light(self) -> Part {
+        if self.looks_for_light() {
+            part!("path/direct_light.wgsl", "any")
+        } else {
+            part!("path/direct_light.wgsl", "none")
+        }
+    }
+
+    fn medium(self) -> Part {
+        if self.has_medium() {
+            part!("path/medium.wgsl", "glass")
+        } else {
+            part!("path/medium.wgsl", "none")
+        }
+    }
+}
+
+/// Whether all surfaces are matt or emissive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum Materials {
+    Matt,
+    Any,
+}
+
+/// Whether there is a light that can be looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum Sources {
+    None,
+    Any,
+}
+
+/// Whether the sky is an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum SkyKind {
+    Plain,
+    Image,
+}
+
+/// Which paths a dispatch works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Schedule {
+    /// One for each pixel and each sample in flight.
+    Pixels,
+    /// Those of a list.
+    Queue,
+}
+
+impl Schedule {
+    fn part(self) -> Part {
+        match self {
+            Self::Pixels => part!("path/schedule.wgsl", "pixels"),
+            Self::Queue => part!("path/schedule.wgsl", "queue"),
+        }
+    }
+}
+
+/// Makes the rays of samples.
+pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend([
+        part!("path/address.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("camera/filter.wgsl"),
+        part!("camera/film_sample.wgsl"),
+    ]);
+    parts.extend(camera_parts(camera));
+    parts.extend([mode.direct_light(), mode.medium(), part!("path/start.wgsl")]);
+    Kernel { entry_point: "start", parts }
+}
+
+/// Finds the nearest sphere of every path's ray.
+pub(super) fn extend_kernel(
+    structure: Structure,
+    exclude_by: ExcludeBy,
+    brick_pass: BrickPass,
+    schedule: Schedule,
+) -> Kernel {
+    let mut parts = base(schedule);
+    parts.extend(excluded_parts(exclude_by));
+    parts.extend([part!("accel/spend.wgsl"), part!("accel/brick.wgsl")]);
+    parts.extend(structure_parts(structure));
+    parts.push(match brick_pass {
+        BrickPass::First => part!("path/hit_before.wgsl", "first-brick"),
+        BrickPass::Later => part!("path/hit_before.wgsl", "later-brick"),
+    });
+    parts.push(part!("path/extend.wgsl"));
+    Kernel { entry_point: "extend", parts }
+}
+
+/// Finds whether anything is between paths' surfaces and lights.
+pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
+    let mut parts = base(Schedule::Queue);
+    parts.extend([
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("scene/emitter.wgsl"),
+    ]);
+    parts.extend(match exclude_by {
+        ExcludeBy::Index => vec![
+            part!("path/departed_shape.wgsl"),
+            part!("accel/excluded.wgsl", "by-index-and-light"),
+        ],
+        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id-and-light")],
+    });
+    parts.extend(structure_parts(structure));
+    parts.push(part!("path/occlude.wgsl"));
+    Kernel { entry_point: "occlude", parts }
+}
+
+/// In a studio, finds whether a light is hidden.
+pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
+    let mut parts = hidden_light(structure, exclude_by);
+    parts.extend([part!("scene/lamp.wgsl"), part!("studio/shadow.wgsl")]);
+    Kernel { entry_point: "shadow", parts }
+}
+
+/// In a studio, finds whether something is near in a direction of ambient light.
+pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
+    let mut parts = hidden_light(structure, exclude_by);
+    parts.push(part!("studio/ambient.wgsl"));
+    Kernel { entry_point: "ambient", parts }
+}
+
+/// How rays that start on a shape are told apart from it.
+fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
+    match exclude_by {
+        ExcludeBy::Index => {
+            vec![part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "by-index")]
+        }
+        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id")],
+    }
+}
+
+fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
+    let mut parts = base(Schedule::Queue);
+    parts.extend(excluded_parts(exclude_by));
+    parts.extend([
+        part!("path/address.wgsl"),
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("math/trigonometry.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("studio/hidden_light.wgsl"),
+    ]);
+    parts.extend(structure_parts(structure));
+    parts
+}
+
+/// In a studio, turns hits into surfaces.
+pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
+    let mut parts = shading(schedule);
+    parts.extend([
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("studio/surface.wgsl"),
+    ]);
+    Kernel { entry_point: "surface", parts }
+}
+
+/// In a studio, adds some lights.
+pub(super) fn illuminate_kernel() -> Kernel {
+    let mut parts = studio_light();
+    parts.extend([
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("path/microfacet.wgsl"),
+        part!("studio/illuminate.wgsl"),
+    ]);
+    Kernel { entry_point: "illuminate", parts }
+}
+
+/// In a studio, adds ambient light from some directions.
+pub(super) fn gather_kernel() -> Kernel {
+    let mut parts = studio_light();
+    parts.push(part!("studio/gather.wgsl"));
+    Kernel { entry_point: "gather", parts }
+}
+
+/// Scatters paths.
+pub(super) fn scatter_kernel(
+    schedule: Schedule,
+    materials: Materials,
+    sources: Sources,
+    sky: SkyKind,
+) -> Kernel {
+    let mut parts = shading(schedule);
+    parts.extend([
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("path/surface_point.wgsl"),
+        part!("scene/emitter.wgsl"),
+        part!("scene/emitters.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("path/by_chance.wgsl"),
+        part!("path/bounce.wgsl"),
+        part!("path/scatter.wgsl"),
+    ]);
+    let mode = Mode::Path(materials, sources, sky);
+    parts.extend([mode.direct_light(), mode.medium()]);
+    match materials {
+        Materials::Matt => parts.push(part!("path/scatter_light.wgsl", "matt")),
+        Materials::Any => parts.extend([
+            part!("path/microfacet.wgsl"),
+            part!("path/bsdf.wgsl"),
+            part!("path/dielectric.wgsl"),
+            part!("path/scatter_light.wgsl", "any"),
+        ]),
+    }
+    parts.push(match sources {
+        Sources::None => part!("path/direct.wgsl", "none"),
+        Sources::Any => part!("path/direct.wgsl", "any"),
+    });
+    match sky {
+        SkyKind::Plain => parts.push(part!("scene/sky.wgsl", "plain")),
+        SkyKind::Image => parts.extend(sky_image()),
+    }
+    Kernel { entry_point: "scatter", parts }
+}
+
+/// Adds samples to pixels.
+pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend([
+        mode.direct_light(),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("path/accumulate.wgsl"),
+    ]);
+    Kernel { entry_point: "accumulate", parts }
+}
+
+/// Says how many workgroups the next dispatches need.
+pub(super) fn advance_kernel() -> Kernel {
+    let mut parts = base(Schedule::Queue);
+    parts.extend([part!("path/advance.wgsl")]);
+    Kernel { entry_point: "advance", parts }
+}
+
+/// Sums up how much samples vary.
+pub(super) fn noise_kernel() -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend([
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("path/noise.wgsl"),
+    ]);
+    Kernel { entry_point: "noise", parts }
+}
+
+fn sky_image() -> Vec<Part> {
+    vec![
+        part!("math/turns.wgsl"),
+        part!("math/trigonometry_inverse.wgsl"),
+        part!("scene/environment.wgsl"),
+        part!("scene/sky.wgsl", "image"),
+    ]
+}
+
+fn base(schedule: Schedule) -> Vec<Part> {
+    vec![
+        part!("scene/records.wgsl"),
+        part!("scene/lighting_records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("camera/ray.wgsl"),
+        part!("scene/enter.wgsl"),
+        part!("scene/sphere.wgsl"),
+        part!("path/state.wgsl"),
+        part!("path/departure.wgsl"),
+        part!("path/queue.wgsl"),
+        part!("primary/schedule.wgsl"),
+        schedule.part(),
+    ]
+}
+
+fn shading(schedule: Schedule) -> Vec<Part> {
+    let mut parts = base(schedule);
+    parts.extend([
+        part!("path/address.wgsl"),
+        part!("math/trigonometry.wgsl"),
+        part!("scene/lighting.wgsl"),
+    ]);
+    parts
+}
+
+fn studio_light() -> Vec<Part> {
+    let mut parts = shading(Schedule::Queue);
+    parts.extend([
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("studio/catcher.wgsl"),
+    ]);
+    parts
+}
+
+/// Every kernel of lit pictures that can be composed.
+pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
+    const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
+    let mut modes = vec![Mode::Studio];
+    for materials in [Materials::Matt, Materials::Any] {
+        for sources in [Sources::None, Sources::Any] {
+            for sky in [SkyKind::Plain, SkyKind::Image] {
+                modes.push(Mode::Path(materials, sources, sky));
+            }
+        }
+    }
+    let mut kernels = vec![advance_kernel(), noise_kernel(), illuminate_kernel(), gather_kernel()];
+    for &mode in &modes {
+        kernels.push(accumulate_kernel(mode));
+        if let Mode::Path(materials, sources, sky) = mode {
+            kernels.extend(SCHEDULES.map(|by| scatter_kernel(by, materials, sources, sky)));
+        }
+        let cameras = CameraKind::ALL.iter();
+        kernels.extend(cameras.map(|camera| start_kernel(*camera, mode)));
+    }
+    for (&structure, exclude_by) in
+        Structure::ALL.iter().flat_map(|of| ExcludeBy::ALL.map(|exclude_by| (of, exclude_by)))
+    {
+        for brick_pass in [BrickPass::First, BrickPass::Later] {
+            kernels
+                .extend(SCHEDULES.map(|by| extend_kernel(structure, exclude_by, brick_pass, by)));
+        }
+        let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
+        kernels.extend(searches.map(|of| of(structure, exclude_by)));
+    }
+    kernels.extend(SCHEDULES.map(surface_kernel));
+    kernels
+}

@@ -1,0 +1,298 @@
+//! A lighting as kernels have it: one record, and one buffer of lights, emitters, materials and energies.
+
+use std::sync::Arc;
+
+use bytemuck::Zeroable;
+use glam::DVec3;
+
+use super::kernels::{Materials, Mode, SkyKind, Sources};
+use super::records::LightingParameters;
+use crate::camera::Camera;
+use crate::geometry::math::unit;
+use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
+use crate::gpu::shader::records::NO_HIT;
+use crate::image::color::LinearRgb;
+use crate::light::codes::{self, lighting as flags};
+use crate::light::emitters::Emitters;
+use crate::light::energy::EnergyTables;
+use crate::light::environment::Environment;
+use crate::light::{LightKind, Sky, SkyLight};
+use crate::render::{Integrator, LightSampling, RenderSettings};
+use crate::scene::material::{Material, SurfaceProperties};
+
+/// What a picture's kernels get to know of its lighting.
+#[derive(Debug)]
+pub(in crate::gpu) struct LightingData {
+    pub(in crate::gpu) mode: Mode,
+    pub(in crate::gpu) parameters: LightingParameters,
+    /// Never empty.
+    pub(in crate::gpu) tables: Vec<[f32; 4]>,
+    /// How many surfaces a ray meets: of a path at most, and one more that it may end on; in a studio one if every
+    /// sphere is opaque.
+    pub(super) most_surfaces: u32,
+    /// In a studio, whether lights cast shadows.
+    pub(super) has_shadows: bool,
+    /// The image that paths are lit by.
+    pub(super) sky: Option<Arc<Environment>>,
+    /// Of each light, whether shadow rays are sent to it.
+    pub(super) casts_shadow: Vec<bool>,
+}
+
+impl LightingData {
+    /// Of a lighting that has been checked, for a scene in its own frame.
+    pub(in crate::gpu) fn new(
+        settings: &RenderSettings,
+        scene: &SceneSummary,
+        camera: &dyn Camera,
+    ) -> Self {
+        let mut tables = Vec::new();
+        let lights: Vec<LightKind> =
+            settings.lights.iter().filter_map(|light| light.in_world(camera)).collect();
+        let emitters = &scene.emitters;
+        let sources = SourceList::of(settings, &lights, emitters);
+        for (index, light) in lights.iter().enumerate() {
+            let source = sources.lamps.get(index).copied().unwrap_or(0);
+            tables.extend(light_record(light, scene.origin, source));
+        }
+        let emitter_first = tables.len() as u32;
+        if sources.emitters {
+            tables.extend(emitter_records(scene));
+        }
+        let material_first = tables.len() as u32;
+        let rows = scene.appearance.material_rows();
+        let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
+        let energies = EnergyTables::of(&surfaces);
+        let energy_first = material_first + 2 * (1 + rows.len()) as u32;
+        tables.extend(material_record(LinearRgb::WHITE, &SurfaceProperties::default(), 0));
+        for (row, start) in rows.iter().zip(energies.starts()) {
+            let energy = energy_first + start.unwrap_or(0) / 4;
+            tables.extend(material_record(row.color, &row.surface, energy));
+        }
+        tables.extend(energies.entries().chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
+        let mut parameters = parameters_of(settings, scene);
+        parameters.light_count = lights.len() as u32;
+        parameters.source_count = sources.count();
+        parameters.lamp_sources = sources.lamps.len() as u32;
+        parameters.emitter_first = emitter_first;
+        parameters.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
+        parameters.material_first = material_first;
+        Self {
+            mode: mode_of(settings, scene, &sources),
+            parameters,
+            tables,
+            most_surfaces: match &settings.integrator {
+                Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
+                Integrator::Primary(_) | Integrator::Studio(_) => 1,
+                Integrator::Path(path) => path.max_depth,
+            },
+            has_shadows: settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
+            sky: match (&settings.sky.light, &settings.integrator) {
+                (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
+                    Some(Arc::clone(environment))
+                }
+                _ => None,
+            },
+            casts_shadow: lights.iter().map(|l| !matches!(l, LightKind::Head { .. })).collect(),
+        }
+    }
+}
+
+impl LightingData {
+    /// What its tables take on the device.
+    pub(in crate::gpu) fn table_bytes(&self) -> u64 {
+        size_of_val(&self.tables[..]) as u64
+    }
+}
+
+/// What direct light is chosen among.
+#[derive(Debug)]
+struct SourceList {
+    /// Which of the lights.
+    lamps: Vec<u32>,
+    emitters: bool,
+    image: bool,
+}
+
+impl SourceList {
+    fn of(settings: &RenderSettings, lights: &[LightKind], emitters: &Emitters) -> Self {
+        let Integrator::Path(path) = &settings.integrator else {
+            return Self { lamps: Vec::new(), emitters: false, image: false };
+        };
+        let is_looked_for = path.light_sampling != LightSampling::Chance;
+        let lamps = lights.iter().zip(0..).filter(|(light, _)| match light {
+            LightKind::Head { .. } => false,
+            LightKind::Directional { angular_radius, .. } => {
+                *angular_radius == 0.0 || is_looked_for
+            }
+            LightKind::Point { .. } | LightKind::Sphere { .. } => true,
+        });
+        let image = match &settings.sky.light {
+            SkyLight::Image { environment, strength, .. } => {
+                environment.has_light() && *strength > 0.0
+            }
+            _ => false,
+        };
+        Self {
+            lamps: lamps.map(|(_, index)| index).collect(),
+            emitters: is_looked_for && !emitters.ids().is_empty(),
+            image: is_looked_for && image,
+        }
+    }
+
+    fn count(&self) -> u32 {
+        self.lamps.len() as u32 + u32::from(self.emitters) + u32::from(self.image)
+    }
+}
+
+fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {
+    if settings.studio_parameters().is_some() {
+        return Mode::Studio;
+    }
+    let is_matt = |surface: &SurfaceProperties| match surface.material {
+        Material::Lambert { specular, .. } => specular == 0.0,
+        Material::Emissive { .. } => true,
+        Material::Conductor { .. } | Material::Dielectric { .. } => false,
+    };
+    Mode::Path(
+        if scene.appearance.surfaces().iter().all(is_matt) {
+            Materials::Matt
+        } else {
+            Materials::Any
+        },
+        if sources.count() == 0 { Sources::None } else { Sources::Any },
+        match settings.sky.light {
+            SkyLight::Image { .. } => SkyKind::Image,
+            _ => SkyKind::Plain,
+        },
+    )
+}
+
+fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingParameters {
+    let mut parameters =
+        LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
+    parameters.background = settings.background.to_array();
+    let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+    parameters.flags = flag(settings.is_transparent, flags::TRANSPARENT)
+        | flag(settings.sky.is_visible, flags::SKY_SEEN);
+    if let Some(ground) = &settings.ground {
+        parameters.flags |= flags::GROUND | flag(ground.is_shadow_catcher, flags::CATCHER);
+        parameters.ground_point = (ground.point - scene.origin).as_vec3().to_array();
+        parameters.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
+        parameters.ground_color = ground.color.to_array();
+    }
+    sky(&settings.sky, &mut parameters);
+    match &settings.integrator {
+        Integrator::Primary(_) => {}
+        Integrator::Path(path) => {
+            parameters.roulette_from = path.roulette_from;
+            parameters.light_sampling = path.light_sampling.code();
+        }
+        Integrator::Studio(studio) => {
+            parameters.ambient = studio.ambient.to_array();
+            parameters.flags |= flag(studio.has_shadows, flags::SHADOWS);
+            if let Some(occlusion) = &studio.occlusion {
+                parameters.occlusion_samples = occlusion.samples;
+                parameters.occlusion_radius =
+                    occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
+            }
+            if let Some(cue) = &studio.depth_cue {
+                parameters.cue_color = cue.color.to_array();
+                parameters.cue_near = cue.near as f32;
+                parameters.cue_scale = (1.0 / (cue.far - cue.near)) as f32;
+            }
+        }
+    }
+    let table = settings.sampling.filter.offset_table();
+    for (index, offset) in table.iter().enumerate() {
+        parameters.filter_table[index / 4][index % 4] = *offset;
+    }
+    parameters
+}
+
+fn sky(sky: &Sky, parameters: &mut LightingParameters) {
+    match &sky.light {
+        SkyLight::Constant(radiance) => {
+            let radiance = radiance.to_array();
+            (parameters.zenith, parameters.horizon, parameters.nadir) =
+                (radiance, radiance, radiance);
+        }
+        SkyLight::Gradient { zenith, horizon, nadir } => {
+            parameters.zenith = zenith.to_array();
+            parameters.horizon = horizon.to_array();
+            parameters.nadir = nadir.to_array();
+        }
+        SkyLight::Image { environment, strength, rotation } => {
+            parameters.environment_size = [environment.width(), environment.height()];
+            parameters.environment_rotation =
+                crate::light::environment::Environment::rotation(*rotation);
+            parameters.environment_strength = *strength;
+        }
+    }
+}
+
+fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
+}
+
+/// As `shaders/scene/lamp.wgsl` reads it.
+fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
+    let kind = f32::from_bits(codes::of_light(light));
+    let near = |position: DVec3| (position - origin).as_vec3().to_array();
+    let [position, power] = match *light {
+        LightKind::Head { strength } => [four([0.0; 3], kind), four(strength.to_array(), 0.0)],
+        LightKind::Directional { toward, strength, angular_radius } => {
+            // 1 minus the cosine, without cancellation.
+            let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
+            [four(toward.as_vec3().to_array(), kind), four(strength.to_array(), k as f32)]
+        }
+        LightKind::Point { position, intensity } => {
+            [four(near(position), kind), four(intensity.to_array(), 0.0)]
+        }
+        LightKind::Sphere { center, radius, radiance } => {
+            [four(near(center), kind), four(radiance.to_array(), radius as f32)]
+        }
+    };
+    [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
+}
+
+/// As `shaders/scene/emitters.wgsl` reads them.
+fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
+    let emitters = &scene.emitters;
+    emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
+        let EmissiveSphere { sphere, color, surface } = *emissive;
+        // A surface that lets light through sends out its share.
+        let strength = match surface.material {
+            Material::Emissive { strength } => strength * surface.opacity,
+            _ => 0.0,
+        };
+        let probability = emitters.probability(*id) as f32;
+        [
+            sphere,
+            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
+            four(color.to_array().map(|c| c * strength), 0.0),
+        ]
+    })
+}
+
+/// As `shaders/scene/material.wgsl` reads it.
+fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32) -> [[f32; 4]; 2] {
+    let kind = codes::of_material(&surface.material);
+    let record = |parameter: f32, roughness: f32, absorption: [f32; 3]| {
+        let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
+        [[kind, parameter, roughness * roughness, energies], four(absorption, surface.opacity)]
+    };
+    match surface.material {
+        Material::Lambert { specular, roughness } => record(specular, roughness, [0.0; 3]),
+        Material::Conductor { roughness } => record(1.0, roughness, [0.0; 3]),
+        Material::Dielectric { ior, roughness, attenuation_distance } => {
+            let absorption = attenuation_distance.map_or([0.0; 3], |distance| {
+                color.to_array().map(|c| {
+                    let share = f64::from(c).max(1e-4);
+                    (-share.ln() / f64::from(distance)) as f32
+                })
+            });
+            record(ior, roughness, absorption)
+        }
+        Material::Emissive { strength } => record(strength, 0.0, [0.0; 3]),
+    }
+}

@@ -1,0 +1,89 @@
+//! Lit pictures: many samples of every pixel, surface by surface.
+//!
+//! Between two dispatches a path is in a buffer (`shaders/path/state.wgsl`). A sample starts at the camera; then one
+//! pass finds what all rays meet, one shades it and makes new rays, one finds whether lights are hidden. Which paths
+//! go on, and how many they are, only the device knows: passes write lists of them, and dispatches are as large as the
+//! lists are long. The sums of samples stay on the device, each pixel's in the order of its samples, so that a picture
+//! depends on nothing but scene, size, samples and seed.
+//!
+//! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] writes them
+//! into whatever encoder it is given.
+
+mod frame;
+mod kernels;
+mod lighting;
+mod pass;
+mod passes;
+mod plan;
+mod recorder;
+pub(in crate::gpu) mod records;
+mod round;
+mod sizes;
+pub(in crate::gpu) mod sums;
+
+use crate::camera::View;
+use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::gpu::passes::visible_region::VisibleRegion;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::records::FrameParameters;
+use crate::render::RenderSettings;
+
+pub(in crate::gpu) use frame::{Frames, LitFrame, MOST_DISPATCHES};
+pub(in crate::gpu) use kernels::Mode;
+pub(in crate::gpu) use kernels::all_kernels;
+pub(in crate::gpu) use lighting::LightingData;
+pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitPasses};
+pub(in crate::gpu) use recorder::Recorder;
+pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
+pub(in crate::gpu) use sizes::LitSizes;
+
+/// What a lit picture is made of, on the device.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct LitScene<'a> {
+    pub(in crate::gpu) all: &'a SceneBuffers,
+    /// What casts shadows.
+    pub(in crate::gpu) occluders: &'a SceneBuffers,
+}
+
+impl LitScene<'_> {
+    /// Which passes it needs.
+    pub(in crate::gpu) fn key(&self, view: &View<'_>, lighting: &LightingData) -> LitKey {
+        LitKey {
+            camera: view.camera.kind(),
+            mode: lighting.mode,
+            structure: self.all.structure(),
+            occluders: self.occluders.structure(),
+            exclude_by: [self.all, self.occluders].map(SceneBuffers::exclude_by),
+            several_bricks: self.all.bricks().len() > 1,
+        }
+    }
+
+    /// Where the scene may be seen; `None` for everywhere.
+    pub(in crate::gpu) fn visible_region(
+        &self,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Option<VisibleRegion> {
+        // Wherever there is ground there is something to be seen.
+        settings.ground.is_none().then(|| {
+            let around = settings.sampling.filter.radius();
+            VisibleRegion::of(view, self.all.space()).widened(around)
+        })
+    }
+
+    /// The records of a tile.
+    pub(in crate::gpu) fn frames(
+        &self,
+        view: &View<'_>,
+        region: Option<VisibleRegion>,
+        tile: Tile,
+        iteration_limit: u32,
+    ) -> Frames {
+        let all = Groups::of_size(tile.size);
+        let traced = region.map_or(all, |region| region.groups_of(tile));
+        let [scene, occluders] = [self.all, self.occluders].map(SceneBuffers::space);
+        [(scene, all), (scene, traced), (occluders, traced)].map(|(space, groups)| {
+            FrameParameters::of_tile(view, space, tile, groups, iteration_limit)
+        })
+    }
+}

@@ -1,0 +1,227 @@
+//! All passes that a lit picture needs.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+
+use wgpu::{BindGroupLayout, BindingType, Device};
+
+use super::kernels::{self, Mode, Schedule, SkyKind};
+use super::pass::Pass;
+use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::edit::ShaderEdit;
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
+use crate::gpu::shader::records;
+use crate::gpu::shader::{BrickPass, Kernel};
+
+/// What sets of passes differ in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) struct LitKey {
+    pub(in crate::gpu) camera: CameraKind,
+    pub(in crate::gpu) mode: Mode,
+    pub(in crate::gpu) structure: Structure,
+    /// Of what casts shadows.
+    pub(in crate::gpu) occluders: Structure,
+    /// How rays are kept from what they start on: in all of the scene, and in what casts shadows.
+    pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
+    /// Whether the scene has several bricks.
+    pub(in crate::gpu) several_bricks: bool,
+}
+
+/// Group 0 of most passes, of `advance`, and of those that work on sums; groups 2 and 3.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitLayouts {
+    pub(super) frame: BindGroupLayout,
+    pub(super) advance: BindGroupLayout,
+    pub(super) film: BindGroupLayout,
+    pub(super) lighting: BindGroupLayout,
+    pub(super) sky: BindGroupLayout,
+}
+
+/// A pass for the rays that start at the camera, and one for the lists of those that go on.
+#[derive(Debug)]
+pub(super) struct BySchedule {
+    pub(super) pixels: Pass,
+    pub(super) queue: Pass,
+}
+
+/// Passes. Long-lived: one set per device, camera, kind of lighting and structure.
+#[derive(Debug)]
+pub(in crate::gpu) struct LitPasses {
+    pub(super) layouts: LitLayouts,
+    pub(super) start: Pass,
+    /// For the first brick, and for those behind it.
+    pub(super) extend: (BySchedule, Option<BySchedule>),
+    pub(super) shade: ShadePasses,
+    pub(super) advance: Pass,
+    pub(super) accumulate: Pass,
+    pub(super) noise: Pass,
+}
+
+#[derive(Debug)]
+pub(super) enum ShadePasses {
+    Studio { surface: BySchedule, shadow: Pass, illuminate: Pass, ambient: Pass, gather: Pass },
+    Path { scatter: BySchedule, occlude: Pass },
+}
+
+impl LitLayouts {
+    fn new(device: &Device) -> Self {
+        let frame = uniform::<records::FrameParameters>();
+        let queue = storage_of(QUEUE_HEAD + 4);
+        let paths = storage::<[f32; 4]>(false);
+        let film = storage::<[f32; 4]>(false);
+        let dispatch = BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: true,
+            min_binding_size: NonZeroU64::new(size_of::<DispatchParameters>() as u64),
+        };
+        let read = storage::<[f32; 4]>(true);
+        let layout = |label, kinds: &[(u32, BindingType)]| layout_of(device, label, kinds);
+        let common = [(0, frame), (2, queue), (3, paths), (4, dispatch)];
+        let with = |more: &[(u32, BindingType)]| [&common, more].concat();
+        Self {
+            frame: layout("pinhole frame", &common),
+            advance: layout("pinhole advance", &with(&[(5, storage_of(GROUPS_NEEDED))])),
+            film: layout("pinhole film", &with(&[(5, film), (6, storage::<[f32; 2]>(false))])),
+            lighting: layout(
+                "pinhole lighting",
+                &[(0, uniform::<LightingParameters>()), (1, read)],
+            ),
+            sky: layout("pinhole sky", &[(0, read), (1, storage::<f32>(true))]),
+        }
+    }
+}
+
+/// A buffer that is read and written, of at least so many bytes.
+fn storage_of(bytes: u64) -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(bytes),
+    }
+}
+
+impl LitPasses {
+    /// Builds all pipelines.
+    pub(in crate::gpu) fn new(
+        device: &Device,
+        key: LitKey,
+        edits: &[ShaderEdit],
+    ) -> Result<Self, GpuError> {
+        let options = RendererOptions {
+            cameras: Vec::new(),
+            structures: vec![key.structure, key.occluders],
+            ..RendererOptions::default()
+        };
+        let scene = scoped(device, || Layouts::new(device, &options))?;
+        let layouts = scoped(device, || LitLayouts::new(device))?;
+        let build =
+            |kernel: Kernel, groups: &[&BindGroupLayout]| Pass::new(device, kernel, groups, edits);
+        let both = |kernel: &dyn Fn(Schedule) -> Kernel, groups: &[&BindGroupLayout]| {
+            Ok::<_, GpuError>(BySchedule {
+                pixels: build(kernel(Schedule::Pixels), groups)?,
+                queue: build(kernel(Schedule::Queue), groups)?,
+            })
+        };
+        let brick = |index: usize| &scene.brick[index].1;
+        let surfaces = &scene.surface;
+        let LitLayouts { frame, advance, film, lighting, sky } = &layouts;
+        let [exclude_by, light_exclude_by] = key.exclude_by;
+        let (occluders, lit_brick) = (key.occluders, [frame, brick(1), lighting]);
+        let extend = |brick_pass| {
+            let kernel = |by| kernels::extend_kernel(key.structure, exclude_by, brick_pass, by);
+            both(&kernel, &[frame, brick(0)])
+        };
+        let shade = match key.mode {
+            Mode::Studio => ShadePasses::Studio {
+                surface: both(&kernels::surface_kernel, &[frame, surfaces, lighting])?,
+                shadow: build(kernels::shadow_kernel(occluders, light_exclude_by), &lit_brick)?,
+                illuminate: build(kernels::illuminate_kernel(), &[frame, surfaces, lighting])?,
+                ambient: build(kernels::ambient_kernel(occluders, light_exclude_by), &lit_brick)?,
+                gather: build(kernels::gather_kernel(), &[frame, surfaces, lighting])?,
+            },
+            Mode::Path(surface, sources, kind) => {
+                let kernel = |by| kernels::scatter_kernel(by, surface, sources, kind);
+                let mut groups = vec![frame, surfaces, lighting];
+                if kind == SkyKind::Image {
+                    groups.push(sky);
+                }
+                ShadePasses::Path {
+                    scatter: both(&kernel, &groups)?,
+                    occlude: build(
+                        kernels::occlude_kernel(occluders, light_exclude_by),
+                        &lit_brick,
+                    )?,
+                }
+            }
+        };
+        let start = kernels::start_kernel(key.camera, key.mode);
+        Ok(Self {
+            start: build(start, &[frame, surfaces, lighting])?,
+            extend: (
+                extend(BrickPass::First)?,
+                key.several_bricks.then(|| extend(BrickPass::Later)).transpose()?,
+            ),
+            shade,
+            advance: build(kernels::advance_kernel(), &[advance])?,
+            accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
+            noise: build(kernels::noise_kernel(), &[film])?,
+            layouts,
+        })
+    }
+}
+
+impl LitPasses {
+    /// Says how many workgroups dispatches need.
+    pub(in crate::gpu) fn advance(&self) -> &Pass {
+        &self.advance
+    }
+
+    /// Sums up how much samples vary.
+    pub(in crate::gpu) fn noise(&self) -> &Pass {
+        &self.noise
+    }
+}
+
+/// The passes of a device, each set built when it is first wanted.
+pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
+
+#[cfg(test)]
+mod tests {
+    use super::super::kernels::{Materials, Sources};
+    use super::*;
+    use crate::accel::ListLayout;
+
+    /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
+    /// device offers, with no driver at all.
+    #[test]
+    fn every_pass_is_accepted_by_a_device_with_webgpu_limits() {
+        let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
+        assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
+        let mut modes = vec![Mode::Studio];
+        for surfaces in [Materials::Matt, Materials::Any] {
+            for sources in [Sources::None, Sources::Any] {
+                for sky in [SkyKind::Plain, SkyKind::Image] {
+                    modes.push(Mode::Path(surfaces, sources, sky));
+                }
+            }
+        }
+        for mode in modes {
+            for &camera in CameraKind::ALL {
+                // The structure with the most buffers.
+                let structure = Structure::NestedGrid(ListLayout::Referenced);
+                let (occluders, several_bricks) = (structure, true);
+                for exclude_by in ExcludeBy::ALL {
+                    let exclude_by = [exclude_by; 2];
+                    let key =
+                        LitKey { camera, mode, structure, occluders, exclude_by, several_bricks };
+                    LitPasses::new(&device, key, &[]).unwrap();
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Writes dispatches into an encoder, and remembers the records that they read.
+
+use wgpu::CommandEncoder;
+
+use super::frame::{Area, LitFrame, LitTile};
+use super::pass::{Bound, Extent, Pass};
+use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
+use super::round::{Step, Work};
+use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
+
+/// How many paths a workgroup works on.
+const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
+
+/// Of one submission: what is recorded holds once [`Recorder::take_parameters`] has been queued.
+#[derive(Debug)]
+pub(in crate::gpu) struct Recorder<'a> {
+    frame: &'a LitFrame,
+    /// Which of the frame's tiles.
+    pub(in crate::gpu) tile: usize,
+    advance: &'a Pass,
+    /// Whether the device can be told by a buffer how many workgroups a dispatch has.
+    is_indirect: bool,
+    parameters: Vec<DispatchParameters>,
+}
+
+impl<'a> Recorder<'a> {
+    pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
+        Self { frame, tile: 0, advance, is_indirect, parameters: Vec::new() }
+    }
+
+    /// How many dispatches there are since the last [`Recorder::take_parameters`].
+    pub(in crate::gpu) fn dispatches(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// What the dispatches read, in their order.
+    pub(in crate::gpu) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
+        std::mem::take(&mut self.parameters)
+    }
+
+    /// The most workgroups that a dispatch may have, in each of its [`Step::layers`].
+    pub(in crate::gpu) fn groups(&self, step: &Step<'_>) -> Groups {
+        let tile = &self.frame.tiles[self.tile];
+        match step.work {
+            Work::Pixels(area) => {
+                Groups { first: [0, 0], size: tile.frames[area as usize].traced_size }
+            }
+            Work::List(_) => {
+                // What goes on has met something where there is something to be seen.
+                let [x, y] = tile.frames[Area::Visible as usize].traced_size;
+                Groups { first: [0, 0], size: [x * y * step.turns, 1] }
+            }
+            Work::Advance => Groups { first: [0, 0], size: [1, 1] },
+            Work::Sums => {
+                Groups { first: [0, 0], size: tile.frames[Area::Whole as usize].traced_size }
+            }
+        }
+    }
+
+    /// Records a dispatch, or only some of its workgroups.
+    pub(in crate::gpu) fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        step: &Step<'a>,
+        slice: Option<Groups>,
+    ) {
+        let groups = slice.unwrap_or_else(|| self.groups(step));
+        if groups.count() == 0 {
+            return;
+        }
+        let tile = &self.frame.tiles[self.tile];
+        let dispatch = DispatchParameters { first: groups.first, ..step.dispatch };
+        let [x, y] = groups.size;
+        let (group, extent) = match step.work {
+            Work::Pixels(area) => {
+                (&tile.groups[area as usize], Extent::Groups([x, y, step.layers()]))
+            }
+            Work::List(area) => {
+                let group = &tile.groups[area as usize];
+                let needed = &self.frame.groups_needed;
+                match (self.is_indirect, slice) {
+                    (false, _) => (group, Extent::Groups([x, y, 1])),
+                    (true, None) => (group, Extent::Indirect(needed, 0)),
+                    (true, Some(_)) => {
+                        let slice = DispatchParameters { count: x, is_new: 0, ..dispatch };
+                        let extent = Extent::Groups([1, 1, 1]);
+                        self.dispatch(encoder, self.advance, slice, &tile.advance, None, extent);
+                        (group, Extent::Indirect(needed, GROUPS_OF_ONE))
+                    }
+                }
+            }
+            Work::Advance if !self.is_indirect && dispatch.is_new == 0 => return,
+            Work::Advance => (&tile.advance, Extent::Groups([1, 1, 1])),
+            Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
+        };
+        self.dispatch(encoder, step.pass, dispatch, group, step.brick, extent);
+    }
+
+    /// Records the sums of how much the samples of a tile vary, of which every pixel has so many. Gives how many sums
+    /// there will be.
+    pub(in crate::gpu) fn record_noise(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        noise: &Pass,
+        samples: u32,
+    ) -> usize {
+        let tile = &self.frame.tiles[self.tile];
+        let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
+        let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
+        // Fewer than there are pixels, so it fits.
+        let extent = Extent::Groups([groups as u32, 1, 1]);
+        self.dispatch(encoder, noise, dispatch, &tile.sums, None, extent);
+        (groups * WORKGROUP_SIZE) as usize
+    }
+
+    fn dispatch(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        pass: &Pass,
+        dispatch: DispatchParameters,
+        group: &wgpu::BindGroup,
+        brick: Option<&wgpu::BindGroup>,
+        extent: Extent<'_>,
+    ) {
+        let number = self.frame.parameter_offset(self.parameters.len());
+        self.parameters.push(dispatch);
+        let LitFrame { lighting, sky, .. } = self.frame;
+        let bound = Bound { frame: group, dispatch: number, brick, lighting, sky: sky.as_ref() };
+        pass.record(encoder, bound, extent);
+    }
+}
+
+fn pixels(tile: &LitTile) -> u64 {
+    u64::from(tile.tile.size[0]) * u64::from(tile.tile.size[1])
+}

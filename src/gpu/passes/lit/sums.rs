@@ -1,0 +1,79 @@
+//! From the sums of a tile's pixels to a picture.
+
+use super::records::FILM_SLOTS;
+use crate::gpu::passes::tiles::Tile;
+use crate::image::color::luminance;
+use crate::image::{Averages, Image};
+
+/// Sums of one pixel: the three vectors of `shaders/path/film_sums.wgsl`.
+type Sums = [[f32; 4]; FILM_SLOTS as usize];
+
+/// Sums over all pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::gpu) struct Totals {
+    /// Of all samples.
+    pub(in crate::gpu) opacity: f64,
+    /// Of pixels' means.
+    pub(in crate::gpu) variance: f64,
+    /// Luminance of pixels.
+    pub(in crate::gpu) light: f64,
+    pub(in crate::gpu) pixels: u64,
+}
+
+impl Totals {
+    pub(in crate::gpu) fn add(&mut self, more: &Self) {
+        self.opacity += more.opacity;
+        self.variance += more.variance;
+        self.light += more.light;
+        self.pixels += more.pixels;
+    }
+
+    /// The noise that is left: the root of the mean variance of pixels, over the mean luminance. `None` while nothing
+    /// can be said.
+    pub(in crate::gpu) fn noise(&self, samples: u32) -> Option<f64> {
+        let count = self.pixels as f64;
+        let is_known = samples > 1 && self.light > 0.0;
+        is_known.then(|| (self.variance / count).sqrt() / (self.light / count))
+    }
+}
+
+/// Writes a tile's means into the layers that an image has.
+pub(in crate::gpu) fn write(
+    image: &mut Image,
+    tile: Tile,
+    sums: &[[f32; 4]],
+    samples: u32,
+) -> Totals {
+    let (pixels, _) = sums.as_chunks::<{ FILM_SLOTS as usize }>();
+    let [x, y] = tile.origin.map(|start| start as usize);
+    let [width, height] = tile.size.map(|side| side as usize);
+    let mut rows = image.rows_mut(y..y + height);
+    let mut totals = Totals::default();
+    for (row, pixels) in rows.iter_mut().zip(pixels.chunks(width)) {
+        for (i, pixel) in (x..).zip(pixels) {
+            let (averages, light, variance) = means(pixel, samples);
+            totals.add(&Totals { opacity: pixel[0][3].into(), variance, light, pixels: 1 });
+            row.set_averages(i, &averages);
+        }
+    }
+    totals
+}
+
+/// A pixel's means, its luminance, and the variance of that.
+fn means(pixel: &Sums, samples: u32) -> (Averages, f64, f64) {
+    let [[r, g, b, alpha], rest, [red, green, blue, square]] = pixel.map(|v| v.map(f64::from));
+    let count = f64::from(samples.max(1));
+    let sum = [r + rest[0], g + rest[1], b + rest[2]];
+    let light = luminance(sum) / count;
+    let spread = ((square + rest[3]) / count - light * light).max(0.0);
+    let variance = if samples > 1 { spread / (count - 1.0) } else { 0.0 };
+    let narrow = |sum: f64| (sum / count) as f32;
+    let averages = Averages {
+        color: sum.map(narrow),
+        alpha: narrow(alpha).clamp(0.0, 1.0),
+        albedo: [red, green, blue].map(narrow),
+        samples,
+        variance: variance as f32,
+    };
+    (averages, light, variance)
+}

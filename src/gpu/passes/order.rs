@@ -1,0 +1,95 @@
+//! The order in which bricks are traced.
+
+use glam::{DVec2, Vec3};
+
+use crate::accel::Brick;
+use crate::camera::Camera;
+use crate::gpu::shader::records::SceneSpace;
+
+/// About the box of a brick's centres, in the scene's frame; empty for no spheres.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct CenterBox {
+    min: Vec3,
+    max: Vec3,
+}
+
+impl CenterBox {
+    const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
+
+    /// From some of the spheres: a hint needs no more.
+    pub(in crate::gpu) fn of(brick: &Brick) -> Self {
+        const SAMPLES: usize = 4096;
+        let stride = brick.spheres.len().div_ceil(SAMPLES).max(1);
+        brick.spheres.iter().step_by(stride).fold(Self::EMPTY, |all, [x, y, z, _]| {
+            let center = Vec3::new(*x, *y, *z);
+            Self { min: all.min.min(center), max: all.max.max(center) }
+        })
+    }
+
+    /// How far a point is from the box, squared; 0 in it.
+    fn distance_squared(&self, point: Vec3) -> f32 {
+        (point - point.max(self.min).min(self.max)).length_squared()
+    }
+}
+
+/// The nearest to the camera first: its rays then pass the others by, because what they hit is nearer. No
+/// answer depends on it.
+pub(in crate::gpu) fn nearest_first(
+    boxes: impl Iterator<Item = CenterBox>,
+    camera: &dyn Camera,
+    space: &SceneSpace,
+) -> Vec<usize> {
+    let eye = (camera.ray_in_world(DVec2::ZERO).origin - space.origin).as_vec3();
+    let mut order: Vec<(f32, usize)> =
+        boxes.map(|center_box| center_box.distance_squared(eye)).zip(0..).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order.into_iter().map(|(_, brick)| brick).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::accel::Index;
+    use crate::camera::{OrthographicCamera, PinholeCamera, Pose};
+
+    #[test]
+    fn from_every_side() {
+        // Three along x; a hundred spheres between 10 i and 10 i + 9.9.
+        let boxes = [2.0_f32, 0.0, 1.0].map(|i| {
+            let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]).collect();
+            CenterBox::of(&Brick { index: Index::List, spheres, ids: Vec::new() })
+        });
+        let space = SceneSpace {
+            origin: DVec3::new(1e6, 0.0, 0.0),
+            min: Vec3::splat(-1.0),
+            max: Vec3::new(30.9, 1.0, 1.0),
+        };
+        let order = |eye: [f64; 3]| {
+            let eye = [1e6 + eye[0], eye[1], eye[2]];
+            let pose = Pose::looking_at(eye, [1e6 + 12.0, 0.0, 0.1], [0.0, 1.0, 0.1]).unwrap();
+            let pinhole = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
+            let orthographic = OrthographicCamera::new(pose, [5.0, 5.0]).unwrap();
+            let orders: [_; 2] = [&pinhole as &dyn Camera, &orthographic]
+                .map(|camera| nearest_first(boxes.into_iter(), camera, &space));
+            assert_eq!(orders[0], orders[1]);
+            orders[0].clone()
+        };
+        assert_eq!(order([-50.0, 1.0, 0.0]), [1, 2, 0]);
+        assert_eq!(order([50.0, 1.0, 0.0]), [0, 2, 1]);
+        // From the middle one, nearer to the last.
+        assert_eq!(order([19.0, 0.0, 0.0]), [2, 0, 1]);
+    }
+
+    /// As a scene without spheres has, and one next to it.
+    #[test]
+    fn an_empty_brick_is_the_last() {
+        let brick = |spheres| Brick { index: Index::List, spheres, ids: Vec::new() };
+        let boxes = [brick(Vec::new()), brick(vec![[1.0; 4]])].map(|brick| CenterBox::of(&brick));
+        let pose = Pose::looking_along([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
+        let space = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ONE };
+        assert_eq!(nearest_first(boxes.into_iter(), &camera, &space), [1, 0]);
+    }
+}

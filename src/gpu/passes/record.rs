@@ -1,0 +1,101 @@
+//! Recording a frame of primary rays.
+
+use wgpu::ComputePass;
+
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::tiles::Groups;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+
+impl Renderer {
+    /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
+    ///
+    /// Nothing is submitted. The frame's targets hold the picture once the caller's queue has run the
+    /// encoder; they are overwritten whole.
+    ///
+    /// # Errors
+    /// If the frame has no view of this scene, was made for other targets, or has a camera that this
+    /// renderer was not built for.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &SceneBuffers,
+        frame: &Frame,
+    ) -> Result<(), GpuError> {
+        frame.view(self, scene)?;
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("pinhole"),
+            timestamp_writes: None,
+        });
+        for part in frame.parts() {
+            self.record_trace(&mut pass, scene, frame, part)?;
+            if part.is_last_of_band {
+                self.record_shade(&mut pass, scene, frame, part.band)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the tracing of a brick for a band, or a slice of it; the band's record must name its first group.
+    pub(in crate::gpu) fn record_trace(
+        &self,
+        pass: &mut ComputePass<'_>,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        part: BandBrick,
+    ) -> Result<(), GpuError> {
+        let camera = frame.view(self, scene)?.camera;
+        if part.groups.count() == 0 {
+            return Ok(());
+        }
+        let brick = &scene.bricks()[part.brick];
+        let kind = brick.kind;
+        let pipeline = self
+            .trace
+            .iter()
+            .find(|(of, searched, _)| *of == camera && *searched == kind)
+            .and_then(|(_, _, pipelines)| match part.is_first_of_band {
+                true => Some(&pipelines.first),
+                false => pipelines.later.as_ref(),
+            })
+            .ok_or(GpuError::NoPipeline { camera, kind })?;
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
+        pass.set_bind_group(1, &brick.trace_group, &[]);
+        pass.dispatch_workgroups(part.groups.size[0], part.groups.size[1], 1);
+        Ok(())
+    }
+
+    /// Records the shading of a band whose hits are complete.
+    pub(in crate::gpu) fn record_shade(
+        &self,
+        pass: &mut ComputePass<'_>,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        band: usize,
+    ) -> Result<(), GpuError> {
+        let view = frame.view(self, scene)?;
+        let camera = view.camera;
+        let [width, height] = Groups::of_size(view.bands[band]).size;
+        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        pass.set_bind_group(2, frame.target_group(), &[]);
+        let mut bound = None;
+        for brick in scene.bricks() {
+            let kind = brick.kind;
+            if bound != Some(kind.primitive) {
+                let pipeline = self
+                    .shade
+                    .iter()
+                    .find(|(of, primitive, _)| *of == camera && *primitive == kind.primitive)
+                    .map(|(_, _, pipeline)| pipeline)
+                    .ok_or(GpuError::NoPipeline { camera, kind })?;
+                pass.set_pipeline(pipeline);
+                bound = Some(kind.primitive);
+            }
+            pass.set_bind_group(1, &brick.surface_group, &[]);
+            pass.dispatch_workgroups(width, height, 1);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,167 @@
+//! The part of a picture in which the scene's box lies.
+
+use crate::camera::View;
+use crate::camera::film::YAxis;
+use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::records::SceneSpace;
+
+/// A rectangle of the film, in pixels, outside of which no ray meets the scene's box; perhaps empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::gpu) struct VisibleRegion {
+    first: [f64; 2],
+    /// Behind the last.
+    end: [f64; 2],
+}
+
+/// How much larger the rectangle is on each side: the rounding of a kernel moves no ray so far.
+const PIXELS_AROUND: f64 = 2.0;
+
+impl VisibleRegion {
+    /// The rectangle around the box's eight corners; all of the film, if a corner is not before the camera.
+    ///
+    /// Where straight lines are straight in the picture, and rays go through one point, the box lies within its
+    /// corners; of other cameras it is all of the film.
+    pub(in crate::gpu) fn of(&View { camera, film }: &View<'_>, space: &SceneSpace) -> Self {
+        let size = [f64::from(film.width()), f64::from(film.height())];
+        let all = Self { first: [0.0; 2], end: size };
+        if !camera.kind().is_linear() || camera.has_lens() {
+            return all;
+        }
+        let mut region = Self { first: size, end: [0.0; 2] };
+        for corner in space.corners() {
+            let Some(location) = camera.location_of(space.origin + corner) else {
+                return all;
+            };
+            let down = match film.y_axis() {
+                YAxis::Up => -location.y,
+                YAxis::Down => location.y,
+            };
+            for (axis, along) in [location.x, down].into_iter().enumerate() {
+                let pixel = (along + 1.0) / 2.0 * size[axis];
+                region.first[axis] = region.first[axis].min(pixel - PIXELS_AROUND);
+                region.end[axis] = region.end[axis].max(pixel + PIXELS_AROUND);
+            }
+        }
+        region
+    }
+
+    /// As seen by rays that may be so many pixels beside their pixels' centres.
+    pub(in crate::gpu) fn widened(mut self, pixels: f64) -> Self {
+        self.first.iter_mut().for_each(|first| *first -= pixels);
+        self.end.iter_mut().for_each(|end| *end += pixels);
+        self
+    }
+
+    /// The workgroups of a tile in which the rectangle lies; none have the size zero.
+    pub(in crate::gpu) fn groups_of(&self, tile: Tile) -> Groups {
+        let side = f64::from(WORKGROUP_SIDE);
+        let mut groups = Groups::of_size(tile.size);
+        for axis in 0..2 {
+            let count = f64::from(groups.size[axis]);
+            let origin = f64::from(tile.origin[axis]);
+            // A float is cast to the nearest whole number that there is.
+            let first = ((self.first[axis] - origin) / side).floor().clamp(0.0, count);
+            let end = ((self.end[axis] - origin) / side).ceil().clamp(0.0, count);
+            groups.first[axis] = first as u32;
+            groups.size[axis] = (end - first).max(0.0) as u32;
+        }
+        if groups.count() == 0 {
+            groups.size = [0, 0];
+        }
+        groups
+    }
+}
+
+/// How many pixels of a film are traced in tiles of a size, in whole workgroups, once for every brick.
+pub(in crate::gpu) fn traced_pixels(
+    scene: &SceneBuffers,
+    view: &View<'_>,
+    tile_size: [u32; 2],
+) -> u64 {
+    let region = VisibleRegion::of(view, scene.space());
+    let pixels: u64 =
+        tiles(&view.film, tile_size).map(|tile| region.groups_of(tile).pixels()).sum();
+    pixels * scene.bricks().len() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+
+    use super::*;
+    use crate::camera::film::Film;
+    use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+
+    fn space() -> SceneSpace {
+        let origin = DVec3::new(10.0, 0.0, 0.0);
+        SceneSpace { origin, min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
+    }
+
+    fn tile(origin: [u32; 2], size: [u32; 2]) -> Tile {
+        Tile { origin, size, in_target: [0, 0] }
+    }
+
+    /// Ten pixels a unit: the box is 20 pixels wide, in the middle of 160 by 80.
+    #[test]
+    fn a_box_in_the_middle() {
+        let film = Film::new(160, 80).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 0.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = OrthographicCamera::new(pose, [8.0, 4.0]).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region, VisibleRegion { first: [68.0, 28.0], end: [92.0, 52.0] });
+        let all = region.groups_of(tile([0, 0], [160, 80]));
+        assert_eq!(all, Groups { first: [8, 3], size: [4, 4] });
+        let lower = region.groups_of(tile([0, 48], [160, 32]));
+        assert_eq!(lower, Groups { first: [8, 0], size: [4, 1] });
+        assert_eq!(region.groups_of(tile([0, 56], [160, 24])).count(), 0);
+        assert_eq!(region.groups_of(tile([96, 0], [64, 80])).count(), 0);
+    }
+
+    #[test]
+    fn y_down_is_the_other_way_round() {
+        let film = Film::new(80, 80).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 2.0, 9.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = OrthographicCamera::new(pose, [4.0, 4.0]).unwrap();
+        let up = VisibleRegion::of(&View::new(&camera, film), &space());
+        let down = VisibleRegion::of(&View::new(&camera, film.with_y_axis(YAxis::Down)), &space());
+        assert_eq!((up.first[1], up.end[1]), (48.0, 72.0));
+        assert_eq!((down.first[1], down.end[1]), (8.0, 32.0));
+    }
+
+    #[test]
+    fn from_inside_all_is_seen() {
+        let film = Film::new(80, 40).unwrap();
+        let pose =
+            Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 2.0).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
+    }
+
+    /// Every ray that meets the box is in the rectangle, and the rectangle is not much larger.
+    #[test]
+    fn a_ray_at_each_corner_is_seen() {
+        let film = Film::new(200, 100).unwrap();
+        let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();
+        let region = VisibleRegion::of(&View::new(&camera, film), &space());
+        for i in 0..8_u8 {
+            let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let corner = DVec3::new(10.0 + sign(0), sign(1), sign(2));
+            let location = camera.location_of(corner).unwrap();
+            let ray = camera.ray_in_world(location);
+            let along = (corner - ray.origin).dot(ray.direction);
+            assert!((ray.at(along) - corner).length() < 1e-9);
+            let (x, y) = ((location.x + 1.0) * 100.0, (1.0 - location.y) * 50.0);
+            assert!(
+                region.first[0] < x
+                    && x < region.end[0]
+                    && region.first[1] < y
+                    && y < region.end[1]
+            );
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The bricks of a scene on a device.
+
+use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
+
+use crate::accel::{Brick, BrickKind, Index};
+use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::passes::order::CenterBox;
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::scene::appearance::AppearanceWords;
+use crate::gpu::shader::records;
+use crate::scene::SceneAppearance;
+
+/// A brick, bound for the kernels.
+#[derive(Debug)]
+pub(in crate::gpu) struct BrickBuffers {
+    /// What searches and shades it.
+    pub(in crate::gpu) kind: BrickKind,
+    /// Where it is, to tell which is nearer.
+    pub(in crate::gpu) center_box: CenterBox,
+    /// Group 1 of `trace` and `occluded`.
+    pub(in crate::gpu) trace_group: BindGroup,
+    /// Group 1 of `shade`.
+    pub(in crate::gpu) surface_group: BindGroup,
+    /// Of every sphere, in the order of the structure.
+    pub(in crate::gpu) ids: Buffer,
+    /// What every sphere looks like.
+    pub(in crate::gpu) appearances: Buffer,
+    pub(in crate::gpu) shape_count: u32,
+}
+
+/// What of a brick is copied.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct BrickContents<'a> {
+    kind: BrickKind,
+    center_box: CenterBox,
+    /// As the primitive's WGSL part reads them, in the order of the structure.
+    shapes: &'a [u8],
+    /// Of each.
+    ids: &'a [u32],
+    index: &'a Index,
+}
+
+impl<'a> BrickContents<'a> {
+    pub(in crate::gpu) fn of_spheres(brick: &'a Brick, ids: &'a [u32], kind: BrickKind) -> Self {
+        let Brick { index, spheres, .. } = brick;
+        let shapes = bytemuck::cast_slice(spheres);
+        Self { kind, center_box: CenterBox::of(brick), shapes, ids, index }
+    }
+}
+
+/// No primitive's shape has more bytes.
+const LARGEST_SHAPE: usize = 64;
+
+/// A copy in progress.
+pub(in crate::gpu) struct Upload<'a> {
+    pub(in crate::gpu) renderer: &'a Renderer,
+    pub(in crate::gpu) device: &'a Device,
+    pub(in crate::gpu) queue: &'a Queue,
+    pub(in crate::gpu) appearance: &'a SceneAppearance,
+    pub(in crate::gpu) first_shape: u32,
+    pub(in crate::gpu) bytes: u64,
+}
+
+impl Upload<'_> {
+    pub(in crate::gpu) fn brick(
+        &mut self,
+        brick: &BrickContents<'_>,
+        palette: &Buffer,
+    ) -> Result<BrickBuffers, GpuError> {
+        let BrickContents { kind, center_box, shapes, ids, index } = *brick;
+        let layouts = &self.renderer.layouts;
+        let trace_layout = layouts
+            .brick
+            .iter()
+            .find(|(of, _)| *of == kind)
+            .map(|(_, layout)| layout)
+            .ok_or(GpuError::NoStructure { kind })?;
+        let appearances = AppearanceWords::of(self.appearance, ids);
+        let mut record = records::Brick {
+            shape_count: ids.len() as u32,
+            first_shape: self.first_shape,
+            is_first: u32::from(self.first_shape == 0),
+            last_appearance: appearances.words.len() as u32 - 1,
+            color_shift: appearances.color_shift,
+            color_mask: appearances.color_mask,
+            material_first: appearances.material_first,
+            material_mask: appearances.material_mask,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        // A binding must not be empty.
+        let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
+        let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
+        let ids = if ids.is_empty() { &no_word[..] } else { ids };
+        let mut words: Vec<&[u32]> = Vec::new();
+        match index {
+            Index::List => {}
+            Index::Grid(grid) => {
+                record.min = grid.min.to_array();
+                record.cell_size = grid.cell_size;
+                record.cell_counts = grid.cell_counts;
+                words.push(&grid.cells);
+                words.extend(grid.references.as_deref());
+            }
+            Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
+            Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
+        }
+        self.first_shape += record.shape_count;
+        for (what, bytes) in [
+            ("the buffer of spheres", shapes.len()),
+            ("the buffer of colors", size_of_val(&appearances.words[..])),
+        ]
+        .into_iter()
+        .chain(words.iter().map(|words| ("the buffer of the structure", size_of_val(*words))))
+        {
+            check_storage_size(self.device, what, bytes as u64)?;
+        }
+        scoped(self.device, || {
+            let shape_count = record.shape_count;
+            let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
+            let shapes = self.storage("pinhole shapes", shapes);
+            let ids = self.storage("pinhole ids", ids);
+            let appearances = self.storage("pinhole appearances", &appearances.words);
+            let words: Vec<Buffer> =
+                words.iter().map(|words| self.storage("pinhole structure", words)).collect();
+            let group = |label, layout, buffers: &[&Buffer]| {
+                let entries: Vec<_> = (0..)
+                    .zip(buffers)
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                        binding,
+                        resource: buffer.as_entire_binding(),
+                    })
+                    .collect();
+                let descriptor =
+                    wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
+                self.device.create_bind_group(&descriptor)
+            };
+            let mut traced = vec![&record, &shapes, &ids];
+            traced.extend(&words);
+            BrickBuffers {
+                kind,
+                center_box,
+                trace_group: group("pinhole brick", trace_layout, &traced),
+                surface_group: group(
+                    "pinhole surface",
+                    layouts.surface_of(kind.primitive),
+                    &[&record, &shapes, &appearances, palette],
+                ),
+                ids,
+                appearances,
+                shape_count,
+            }
+        })
+    }
+
+    pub(in crate::gpu) fn storage<T: bytemuck::Pod>(
+        &mut self,
+        label: &'static str,
+        contents: &[T],
+    ) -> Buffer {
+        self.buffer(label, BufferUsages::STORAGE, contents)
+    }
+
+    fn buffer<T: bytemuck::Pod>(
+        &mut self,
+        label: &'static str,
+        usage: BufferUsages,
+        contents: &[T],
+    ) -> Buffer {
+        let contents: &[u8] = bytemuck::cast_slice(contents);
+        let size = contents.len() as u64;
+        let descriptor = |usage, mapped_at_creation| wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
+            mapped_at_creation,
+        };
+        // Where the device's memory is the host's, contents are written where they stay.
+        let is_shared = self.device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
+        if is_shared {
+            let buffer =
+                self.device.create_buffer(&descriptor(usage | BufferUsages::MAP_WRITE, true));
+            if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
+                target.copy_from_slice(contents);
+                drop(target);
+                buffer.unmap();
+                self.bytes += size;
+                return buffer;
+            }
+            // It could not be created, which the error scope around us has noted.
+            return buffer;
+        }
+        let buffer = self.device.create_buffer(&descriptor(usage | BufferUsages::COPY_DST, false));
+        self.queue.write_buffer(&buffer, 0, contents);
+        self.bytes += contents.len() as u64;
+        buffer
+    }
+}

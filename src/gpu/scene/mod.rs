@@ -1,0 +1,10 @@
+//! A scene on a device: its buffers, and how they change.
+
+pub(in crate::gpu) mod appearance;
+pub(in crate::gpu) mod brick_buffers;
+pub(in crate::gpu) mod recolor;
+pub(in crate::gpu) mod scene_buffers;
+pub(in crate::gpu) mod scene_summary;
+pub(in crate::gpu) mod shape_ids;
+pub(in crate::gpu) mod structures;
+pub(in crate::gpu) mod update;

@@ -1,0 +1,160 @@
+//! Gives spheres of a scene on a device other colours, in the buffers that it has.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device, Queue};
+
+use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::scene::appearance::color_words;
+use crate::gpu::scene::brick_buffers::BrickBuffers;
+use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
+use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::shader::layouts::{layout_of, storage, uniform};
+use crate::gpu::shader::pipeline;
+use crate::gpu::shader::{Kernel, part};
+use crate::scene::material::{Material, SurfaceProperties};
+use crate::scene::{Colors, Scene, SceneUpdate};
+
+/// The spheres that a dispatch is of.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct RecolorRange {
+    pub(in crate::gpu) first: u32,
+    pub(in crate::gpu) count: u32,
+    pub(in crate::gpu) shape_count: u32,
+    pub(in crate::gpu) zero: u32,
+}
+
+/// How many workgroups a row of a dispatch has at most; WebGPU's least limit is 65,535.
+const ROW: u32 = 1 << 15;
+
+/// The pass that writes new colours. Long-lived: one per device.
+#[derive(Debug)]
+pub struct Recolor {
+    layout: BindGroupLayout,
+    pipeline: ComputePipeline,
+}
+
+pub(in crate::gpu) fn recolor_kernel() -> Kernel {
+    Kernel { entry_point: "recolor", parts: vec![part!("scene/recolor.wgsl")] }
+}
+
+impl Recolor {
+    /// Builds the pipeline on a device that the caller keeps.
+    ///
+    /// # Errors
+    /// If the device refuses the kernel, which is a defect of this crate or of the driver.
+    pub fn new(device: &Device) -> Result<Self, GpuError> {
+        let words = storage::<u32>(true);
+        let kinds =
+            [(0, uniform::<RecolorRange>()), (1, words), (2, words), (3, storage::<u32>(false))];
+        let layout = scoped(device, || layout_of(device, "pinhole recolor", &kinds))?;
+        let pipeline = pipeline(device, &recolor_kernel(), &[&layout])?;
+        Ok(Self { layout, pipeline })
+    }
+
+    /// Records the colours of an update, which the scene has been given with [`Scene::apply`], into the caller's
+    /// encoder. No buffer is replaced: what is bound stays bound, and frames keep their views.
+    ///
+    /// The new colours are queued on `queue`; they hold for what comes behind in the encoder, or is submitted later.
+    ///
+    /// # Errors
+    /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] says no, or if the device has no memory left.
+    pub fn record(
+        &self,
+        device: &Device,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        buffers: &mut SceneBuffers,
+        scene: &Scene,
+        update: &SceneUpdate<'_>,
+    ) -> Result<(), GpuError> {
+        if !buffers.takes_in_place(scene, update) {
+            return Err(GpuError::NotInPlace);
+        }
+        // Four bytes each fit into a binding.
+        let most = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
+        let range = update.range();
+        for first in range.clone().step_by(most as usize) {
+            let ids = first..range.end.min(first.saturating_add(most));
+            let words = color_words(scene.appearance().colors(), ids);
+            self.record_range((device, queue), encoder, buffers, first, &words)?;
+        }
+        buffers.set_summary(SceneSummary::of(scene));
+        Ok(())
+    }
+
+    fn record_range(
+        &self,
+        (device, queue): (&Device, &Queue),
+        encoder: &mut CommandEncoder,
+        buffers: &SceneBuffers,
+        first: u32,
+        words: &[u32],
+    ) -> Result<(), GpuError> {
+        scoped(device, || {
+            let of_contents = |contents: &[u8], usage| {
+                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("pinhole recolor"),
+                    size: contents.len() as u64,
+                    usage: usage | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                queue.write_buffer(&buffer, 0, contents);
+                buffer
+            };
+            let new_words = of_contents(bytemuck::cast_slice(words), BufferUsages::STORAGE);
+            for brick in buffers.bricks() {
+                let BrickBuffers { ids, appearances, shape_count, .. } = brick;
+                let (count, shape_count) = (words.len() as u32, *shape_count);
+                let record = RecolorRange { first, count, shape_count, zero: 0 };
+                let range = of_contents(bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
+                let entries: Vec<_> = (0..)
+                    .zip([&range, &new_words, ids, appearances].map(Buffer::as_entire_binding))
+                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                    .collect();
+                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("pinhole recolor"),
+                    layout: &self.layout,
+                    entries: &entries,
+                });
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("pinhole recolor"),
+                    timestamp_writes: None,
+                });
+                pass.set_pipeline(&self.pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                let groups = shape_count.div_ceil(64);
+                pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
+            }
+        })
+    }
+}
+
+impl SceneBuffers {
+    /// Whether [`Recolor`] can bring these buffers up to date with an update that the scene has been given: it can
+    /// where no sphere moves or grows, unless colours decide more than how a sphere looks. That is where glass absorbs
+    /// light by its colour, and where a studio was planned for and spheres become opaque, or cease to be.
+    #[must_use]
+    pub fn takes_in_place(&self, scene: &Scene, update: &SceneUpdate<'_>) -> bool {
+        let absorbs = |surface: &SurfaceProperties| {
+            matches!(surface.material, Material::Dielectric { attenuation_distance: Some(_), .. })
+        };
+        let (before, after) = (self.appearance(), scene.appearance());
+        let is_same_kind = match (before.colors(), after.colors()) {
+            (Colors::Palette { palette, .. }, Colors::Palette { palette: other, .. }) => {
+                palette == other
+            }
+            (Colors::Scalars { map, .. }, Colors::Scalars { map: other, .. }) => map == other,
+            (before, after) => std::mem::discriminant(before) == std::mem::discriminant(after),
+        };
+        let is_opaque = |alpha: f32| alpha >= 1.0;
+        let hides_the_same =
+            || update.range().all(|id| is_opaque(before.alpha(id)) == is_opaque(after.alpha(id)));
+        !update.changes_shape()
+            && is_same_kind
+            && before.sphere_count() == scene.len()
+            && before.surfaces() == after.surfaces()
+            && !after.surfaces().iter().any(absorbs)
+            && (!self.has_occluders() || hides_the_same())
+    }
+}

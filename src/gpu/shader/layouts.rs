@@ -1,0 +1,150 @@
+//! Bind group layouts. `shaders/README.md` lists the same bindings.
+
+use std::num::NonZeroU64;
+
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
+
+use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
+use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use crate::gpu::shader::records;
+
+/// The layouts of all groups that the kernels use.
+#[derive(Debug)]
+pub(in crate::gpu) struct Layouts {
+    /// Group 0 of every kernel.
+    pub(in crate::gpu) frame: BindGroupLayout,
+    /// Group 1 of `trace` and `occluded`: brick, shapes, ids, and the words of the structure.
+    pub(in crate::gpu) brick: Vec<(BrickKind, BindGroupLayout)>,
+    /// Group 1 of `shade`, for spheres.
+    pub(in crate::gpu) surface: BindGroupLayout,
+    /// Group 2 of `shade`.
+    pub(in crate::gpu) targets: BindGroupLayout,
+}
+
+impl Layouts {
+    pub(in crate::gpu) fn new(device: &Device, options: &RendererOptions) -> Self {
+        let RendererOptions {
+            color, data_layers, keeps_rays, ref structures, ref primitives, ..
+        } = *options;
+        let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
+        let mut targets = vec![target(color.texture_format())];
+        if data_layers {
+            targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
+        }
+        let mut frame = vec![
+            uniform::<records::FrameParameters>(),
+            storage::<records::Hit>(false),
+            storage::<records::Status>(false),
+        ];
+        if keeps_rays {
+            frame.push(storage::<records::TracedRay>(false));
+        }
+        Self {
+            frame: layout("pinhole frame", &frame),
+            brick: BrickKind::of(structures, primitives)
+                .map(|kind| {
+                    let mut kinds = vec![
+                        uniform::<records::Brick>(),
+                        shapes(kind.primitive),
+                        storage::<u32>(true),
+                    ];
+                    kinds.extend(word_buffers(kind.structure));
+                    (kind, layout("pinhole brick", &kinds))
+                })
+                .collect(),
+            surface: layout(
+                "pinhole surface",
+                &[
+                    uniform::<records::Brick>(),
+                    shapes(Primitive::Sphere),
+                    storage::<u32>(true),
+                    storage::<records::Color>(true),
+                ],
+            ),
+            targets: layout("pinhole targets", &targets),
+        }
+    }
+}
+
+impl Layouts {
+    /// Group 1 of `shade`.
+    pub(in crate::gpu) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
+        match primitive {
+            Primitive::Sphere => &self.surface,
+        }
+    }
+}
+
+/// The shapes of a brick.
+fn shapes(primitive: Primitive) -> BindingType {
+    match primitive {
+        Primitive::Sphere => storage::<records::Sphere>(true),
+    }
+}
+
+/// A layout of bindings that are numbered from 0 on.
+pub(in crate::gpu) fn layout(
+    device: &Device,
+    label: &str,
+    kinds: &[BindingType],
+) -> BindGroupLayout {
+    let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
+    layout_of(device, label, &kinds)
+}
+
+/// A layout of some bindings.
+pub(in crate::gpu) fn layout_of(
+    device: &Device,
+    label: &str,
+    kinds: &[(u32, BindingType)],
+) -> BindGroupLayout {
+    let entries: Vec<_> = kinds.iter().map(|(binding, ty)| entry(*binding, *ty)).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &entries,
+    })
+}
+
+/// What a structure consists of beside its spheres, from binding 3 on.
+fn word_buffers(structure: Structure) -> Vec<BindingType> {
+    match structure {
+        Structure::List => vec![],
+        Structure::WideTree | Structure::BinaryTree => vec![storage::<[u32; 4]>(true)],
+        Structure::Grid(ListLayout::Copied) | Structure::NestedGrid(ListLayout::Copied) => {
+            vec![storage::<u32>(true)]
+        }
+        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
+            vec![storage::<u32>(true), storage::<u32>(true)]
+        }
+    }
+}
+
+fn entry(binding: u32, ty: BindingType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
+}
+
+/// With a minimum size, wgpu compares record and WGSL when a pipeline is created.
+pub(in crate::gpu) fn uniform<Record>() -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(size_of::<Record>() as u64),
+    }
+}
+
+pub(in crate::gpu) fn storage<Element>(read_only: bool) -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(size_of::<Element>() as u64),
+    }
+}
+
+fn target(format: wgpu::TextureFormat) -> BindingType {
+    BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}

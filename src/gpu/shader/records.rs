@@ -1,0 +1,425 @@
+//! Records that cross to WGSL. Twins: the structs of the same names in `shaders/`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+
+use crate::camera::View;
+use crate::camera::film::{Film, YAxis};
+use crate::geometry::bounds::Bounds;
+use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::render::{PrimarySettings, Shading};
+use crate::verify::RequestedCamera;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct Camera {
+    pub(in crate::gpu) origin: [f32; 3],
+    pub(in crate::gpu) advance: f32,
+    pub(in crate::gpu) right: [f32; 3],
+    pub(in crate::gpu) first: f32,
+    pub(in crate::gpu) up: [f32; 3],
+    pub(in crate::gpu) second: f32,
+    pub(in crate::gpu) forward: [f32; 3],
+    pub(in crate::gpu) third: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct FrameParameters {
+    camera: Camera,
+    background: [f32; 3],
+    shading: u32,
+    scene_min: [f32; 3],
+    iteration_limit: u32,
+    scene_max: [f32; 3],
+    y_sign: f32,
+    film_size: [u32; 2],
+    tile_origin: [u32; 2],
+    tile_size: [u32; 2],
+    target_origin: [u32; 2],
+    pub(in crate::gpu) traced_first: [u32; 2],
+    pub(in crate::gpu) traced_size: [u32; 2],
+    pub(in crate::gpu) first_group: [u32; 2],
+    row_step: u32,
+    zero: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct Brick {
+    pub(in crate::gpu) min: [f32; 3],
+    pub(in crate::gpu) cell_size: f32,
+    pub(in crate::gpu) cell_counts: [u32; 3],
+    pub(in crate::gpu) shape_count: u32,
+    pub(in crate::gpu) first_shape: u32,
+    pub(in crate::gpu) is_first: u32,
+    pub(in crate::gpu) last_appearance: u32,
+    pub(in crate::gpu) color_shift: u32,
+    pub(in crate::gpu) color_mask: u32,
+    pub(in crate::gpu) material_first: u32,
+    pub(in crate::gpu) material_mask: u32,
+    pub(in crate::gpu) _pad: u32,
+}
+
+/// Whether an invocation was given up.
+pub(in crate::gpu) type Status = u32;
+
+/// The bits of t, id and place, and of where the ray starts: one `vec4u`.
+pub(in crate::gpu) type Hit = [u32; 4];
+
+/// Origin and distance, direction and a number that is not 0 if there is one: two `vec4f`.
+pub(in crate::gpu) type TracedRay = [f32; 8];
+
+/// Where a scene lies: its frame in the world, and in it the box that rays are moved to.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gpu) struct SceneSpace {
+    pub(in crate::gpu) origin: DVec3,
+    pub(in crate::gpu) min: Vec3,
+    pub(in crate::gpu) max: Vec3,
+}
+
+impl SceneSpace {
+    /// The box's corners, in the scene's frame.
+    pub(in crate::gpu) fn corners(&self) -> [DVec3; 8] {
+        Bounds::between(self.min.as_dvec3(), self.max.as_dvec3()).corners()
+    }
+}
+
+/// Centre in the scene's frame, and radius: one `vec4f`.
+pub(in crate::gpu) type Sphere = [f32; 4];
+
+/// Linear red, green and blue, and alpha: one `vec4f`.
+pub(in crate::gpu) type Color = [f32; 4];
+
+/// `NO_HIT` in `shaders/scene/frame.wgsl`.
+pub(in crate::gpu) use crate::verify::NO_HIT;
+
+impl Camera {
+    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box if
+    /// its rays can start there, then narrows.
+    pub(in crate::gpu) fn new(camera: &RequestedCamera, scene: &SceneSpace) -> Self {
+        let RequestedCamera { kind, vectors } = camera;
+        let narrow = |v: DVec3| v.as_vec3().to_array();
+        let origin = vectors.origin - scene.origin;
+        let forward = vectors.forward;
+        // How many times `forward` it is to the plane across the view of the box's nearest corner.
+        let across = vectors.right.cross(vectors.up);
+        let nearest = scene
+            .corners()
+            .map(|corner| (corner - origin).dot(across) / forward.dot(across))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let nearest = if kind.is_linear() { nearest.max(0.0) } else { 0.0 };
+        let advance = f64::from(nearest as f32);
+        let [first, second, third] = vectors.numbers.map(|number| number as f32);
+        Self {
+            origin: narrow(origin + advance * forward),
+            advance: advance as f32,
+            right: narrow(vectors.right),
+            up: narrow(vectors.up),
+            forward: narrow(forward),
+            first,
+            second,
+            third,
+        }
+    }
+}
+
+impl FrameParameters {
+    pub(in crate::gpu) fn new(
+        camera: &RequestedCamera,
+        scene: &SceneSpace,
+        film: &Film,
+        tile: Tile,
+        traced: Groups,
+        primary: &PrimarySettings,
+        iteration_limit: u32,
+    ) -> Self {
+        Self {
+            camera: Camera::new(camera, scene),
+            scene_min: scene.min.to_array(),
+            scene_max: scene.max.to_array(),
+            iteration_limit,
+            traced_first: traced.first,
+            traced_size: traced.size,
+            first_group: [0, 0],
+            row_step: row_step(traced.size[1]),
+            zero: 0,
+            background: primary.background.to_array(),
+            shading: match primary.shading {
+                Shading::Flat => 0,
+                Shading::Headlight => 1,
+            },
+            film_size: [film.width(), film.height()],
+            tile_origin: tile.origin,
+            tile_size: tile.size,
+            target_origin: tile.in_target,
+            y_sign: match film.y_axis() {
+                YAxis::Up => 1.0,
+                YAxis::Down => -1.0,
+            },
+        }
+    }
+}
+
+impl FrameParameters {
+    /// For lit pictures, whose colours other records decide.
+    pub(in crate::gpu) fn of_tile(
+        view: &View<'_>,
+        scene: &SceneSpace,
+        tile: Tile,
+        traced: Groups,
+        iteration_limit: u32,
+    ) -> Self {
+        let (camera, primary) = (RequestedCamera::of(view.camera), PrimarySettings::default());
+        Self::new(&camera, scene, &view.film, tile, traced, &primary, iteration_limit)
+    }
+}
+
+/// The step with which rows of workgroups are taken: about the golden ratio of their number, so that any
+/// run of rows is spread evenly over the picture, and without a common factor, so that none is left out.
+fn row_step(row_count: u32) -> u32 {
+    let has_common_factor = |step: u32| {
+        let (mut a, mut b) = (row_count, step);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a != 1
+    };
+    if row_count <= 1 {
+        return 1;
+    }
+    let golden = (f64::from(row_count) * 0.618_033_988_75) as u32;
+    (golden.max(1)..).find(|step| !has_common_factor(*step)).unwrap_or(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::camera::{CameraKind, CameraVectors};
+    use crate::gpu::headless::denoise::Denoise;
+    use crate::gpu::kernels;
+    use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
+    use crate::gpu::scene::recolor::RecolorRange;
+    use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
+
+    /// Name, offset and size of every field, and the size of the whole.
+    type Layout = (Vec<(String, usize, usize)>, usize);
+
+    /// Fields are listed once, in the order of the struct; padding is left out.
+    macro_rules! layout {
+        ($record:ident { $($field:ident),+ }) => {{
+            let record = $record::zeroed();
+            let fields = vec![$((
+                stringify!($field).to_owned(),
+                std::mem::offset_of!($record, $field),
+                std::mem::size_of_val(&record.$field),
+            )),+];
+            (stringify!($record), (fields, size_of::<$record>()))
+        }};
+    }
+
+    fn layout_in_wgsl(module: &naga::Module, name: &str) -> Layout {
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))
+            .unwrap_or_else(|| panic!("WGSL has no struct {name}"));
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct in WGSL");
+        };
+        let fields = members
+            .iter()
+            .map(|member| {
+                let size = module.types[member.ty].inner.size(module.to_ctx());
+                (member.name.clone().unwrap(), member.offset as usize, size as usize)
+            })
+            .collect();
+        (fields, *span as usize)
+    }
+
+    #[test]
+    fn records_are_the_same_in_rust_and_wgsl() {
+        let records = [
+            layout!(Camera { origin, advance, right, first, up, second, forward, third }),
+            layout!(FrameParameters {
+                camera,
+                background,
+                shading,
+                scene_min,
+                iteration_limit,
+                scene_max,
+                y_sign,
+                film_size,
+                tile_origin,
+                tile_size,
+                target_origin,
+                traced_first,
+                traced_size,
+                first_group,
+                row_step,
+                zero
+            }),
+            layout!(Brick {
+                min,
+                cell_size,
+                cell_counts,
+                shape_count,
+                first_shape,
+                is_first,
+                last_appearance,
+                color_shift,
+                color_mask,
+                material_first,
+                material_mask
+            }),
+            layout!(SelfTest { zero, single, outer, inner }),
+            layout!(Operands { a, b, p, q, factor, dividend, divisor, radicand, u, v }),
+            layout!(Arithmetic {
+                sum,
+                back,
+                error,
+                unfenced_error,
+                scaled,
+                difference,
+                product,
+                quotient,
+                root,
+                inverse_root,
+                dot
+            }),
+            layout!(Values { f, g, whole, i, j, small, other, scale, tiny, speck }),
+            layout!(Exact {
+                from_whole,
+                truncated,
+                unsigned,
+                floored,
+                smaller,
+                larger,
+                selected,
+                comparisons,
+                bits,
+                from_bits,
+                added,
+                subtracted,
+                multiplied,
+                divided,
+                remainder,
+                shifted_left,
+                shifted_right,
+                ones,
+                lowest,
+                tiny_difference,
+                tiny_product,
+                tiny_sum
+            }),
+            layout!(Looped { count, state }),
+            layout!(Denoise { size, step, zero }),
+            layout!(DispatchParameters {
+                sample,
+                surface,
+                is_last,
+                light,
+                count,
+                list,
+                is_new,
+                paths,
+                first
+            }),
+            layout!(RecolorRange { first, count, shape_count, zero }),
+            layout!(LightingParameters {
+                background,
+                flags,
+                ambient,
+                light_count,
+                zenith,
+                roulette_from,
+                horizon,
+                source_count,
+                nadir,
+                light_sampling,
+                cue_color,
+                cue_near,
+                ground_normal,
+                cue_scale,
+                ground_point,
+                occlusion_radius,
+                ground_color,
+                occlusion_samples,
+                seed,
+                emitter_first,
+                emitter_count,
+                material_first,
+                environment_size,
+                environment_rotation,
+                environment_strength,
+                lamp_sources,
+                filter_table
+            }),
+        ];
+        let mut declared = BTreeSet::new();
+        for kernel in kernels::all_kernels() {
+            let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
+            for (name, in_rust) in &records {
+                // A kernel that does not use a record has no part that declares it.
+                if kernel.source().contains(&format!("struct {name} ")) {
+                    declared.insert(*name);
+                    assert_eq!(
+                        *in_rust,
+                        layout_in_wgsl(&module, name),
+                        "{name} of {}",
+                        kernel.name()
+                    );
+                }
+            }
+        }
+        for (name, _) in &records {
+            assert!(declared.contains(name), "no kernel declares {name}");
+        }
+    }
+
+    #[test]
+    fn shading_numbers_are_the_same_in_rust_and_wgsl() {
+        let film = Film::new(1, 1).unwrap();
+        let tile = Tile { origin: [0, 0], size: [1, 1], in_target: [0, 0] };
+        let vectors = CameraVectors {
+            origin: DVec3::ZERO,
+            right: DVec3::X,
+            up: DVec3::Y,
+            forward: DVec3::NEG_Z,
+            numbers: [0.0; 3],
+        };
+        let source = include_str!("../../../shaders/primary/shading.wgsl");
+        for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
+            let primary = PrimarySettings { shading, ..PrimarySettings::default() };
+            let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };
+            let camera = RequestedCamera { kind: CameraKind::Pinhole, vectors };
+            let frame = FrameParameters::new(
+                &camera,
+                &scene,
+                &film,
+                tile,
+                Groups::of_size([1, 1]),
+                &primary,
+                0,
+            );
+            let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
+            assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
+        }
+    }
+
+    #[test]
+    fn rows_are_a_permutation() {
+        for count in (1..300).chain([1024, 4096]) {
+            let step = row_step(count);
+            assert!(count * step < 1 << 24, "the kernel's remainder is exact below 2^24");
+            let mut seen = vec![false; count as usize];
+            for row in 0..count {
+                seen[(row * step % count) as usize] = true;
+            }
+            assert!(seen.iter().all(|s| *s), "{count}");
+        }
+    }
+}
