@@ -31,8 +31,10 @@ pub(crate) mod sampling {
 pub(crate) mod lighting {
     pub(crate) const TRANSPARENT: u32 = 1;
     pub(crate) const SKY_SEEN: u32 = 2;
+    #[cfg(feature = "gpu")]
     pub(crate) const SHADOWS: u32 = 4;
     pub(crate) const GROUND: u32 = 8;
+    #[cfg(feature = "gpu")]
     pub(crate) const CATCHER: u32 = 16;
 }
 
