@@ -7,10 +7,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options};
+use pinhole::load::{self, FORMATS, Format, LoadError, Loaded, Options};
 
 use super::failure::Failure;
-use super::memory;
+use super::{input, memory};
 
 /// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Copy, Debug, Default)]
@@ -61,24 +61,36 @@ impl DataOptions {
     }
 }
 
-/// Reads spheres from the contents of the file `path`. Errors and notes get the path in front.
-pub(super) fn read(
-    bytes: &[u8],
-    path: &Path,
-    format: &Format,
-    options: &DataOptions,
-) -> Result<Loaded> {
+/// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
+/// path in front.
+pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
+    let file_name = || path.display().to_string();
+    let mut loaded = if format.has_frames() && path.is_file() {
+        let read = load::open(path, &options.to_read().with_format(format));
+        read.map_err(|error| match error {
+            LoadError::File { error, .. } => {
+                Error::new(error).context(format!("{}: cannot be read", path.display()))
+            }
+            other => Error::new(other).context(file_name()),
+        })?
+    } else {
+        read_whole(path, format, options)?
+    };
+    for note in &mut loaded.notes {
+        *note = format!("{}: {note}", path.display());
+    }
+    Ok(loaded)
+}
+
+fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {
+    let bytes = &input::read(path)?;
     let file_name = || path.display().to_string();
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
         let what = format!("{}: reading an array of {extra} bytes needs", path.display());
         memory::check_reading(&what, extra).map_err(Error::msg)?;
     }
-    let mut loaded = format.read(bytes, &options.to_read()).with_context(file_name)?;
-    for note in &mut loaded.notes {
-        *note = format!("{}: {note}", path.display());
-    }
-    Ok(loaded)
+    format.read(bytes, &options.to_read()).with_context(file_name)
 }
 
 /// Turns an error into a failure. An array without a radius, or with two, is wrong usage, because a flag corrects it.

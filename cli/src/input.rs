@@ -61,7 +61,11 @@ impl Format {
     fn of(path: &Path) -> Result<Self> {
         let extension = extension(path);
         let format = extension.as_deref().and_then(load::Format::of_extension);
-        match (format, extension.as_deref()) {
+        let is_scene = extension.as_deref() == Some("toml");
+        match (
+            format.or_else(|| format_of_content(path).filter(|_| !is_scene)),
+            extension.as_deref(),
+        ) {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
             (None, Some("bin")) => bail!(
@@ -177,10 +181,8 @@ impl Source {
             })?;
             return self.scene_from_text(&text);
         };
-        let bytes = read(path)?;
-        let mut loaded = data::read(&bytes, path, format, &self.options).map_err(as_usage)?;
+        let mut loaded = data::read(path, format, &self.options).map_err(as_usage)?;
         let mut notes = std::mem::take(&mut loaded.notes);
-        drop(bytes);
         let file_name = || path.display().to_string();
         let (film, size_from) = self.film(Film::default())?;
         let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
@@ -265,7 +267,10 @@ impl Source {
         let path = self.resolve(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let extension = extension(&path);
-        let Some(format) = extension.as_deref().and_then(load::Format::of_extension) else {
+        let format = extension.as_deref().and_then(load::Format::of_extension);
+        let is_scene = extension.as_deref() == Some("toml");
+        let sniffed = || format_of_content(&path).filter(|_| !is_scene);
+        let Some(format) = format.or_else(sniffed) else {
             let problem = if extension.as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else {
@@ -281,9 +286,8 @@ impl Source {
         flags.check(format, "--").map_err(Failure::usage)?;
         keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
         let options = flags.or(keys);
-        let bytes = read(&path).with_context(in_scene)?;
         let loaded =
-            data::read(&bytes, &path, format, &options).with_context(in_scene).map_err(as_usage)?;
+            data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
         let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
         Ok((spheres, options.color.unwrap_or_else(default_color), notes))
     }
@@ -322,6 +326,15 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
         || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
     )
+}
+
+/// Returns the format that the first bytes of a file show, if it is a regular file.
+fn format_of_content(path: &Path) -> Option<&'static load::Format> {
+    const FIRST_BYTES: u64 = 1 << 12;
+    let mut first = Vec::new();
+    let file = std::fs::File::open(path).ok().filter(|_| path.is_file())?;
+    file.take(FIRST_BYTES).read_to_end(&mut first).ok()?;
+    load::Format::of_content(&first)
 }
 
 /// Bytes that are read first from a file whose size is not known, such as a pipe.

@@ -24,6 +24,23 @@ pub enum LoadError {
         /// The names of all formats.
         formats: String,
     },
+    /// The format has no frames.
+    #[error("a file of the format {format} has no frames; read it as a whole")]
+    NoFrames {
+        /// Name of the format.
+        format: &'static str,
+    },
+    /// The file has fewer frames.
+    #[error(
+        "there is no frame {wanted}; the file has {frames} {}, counted from 0",
+        if *frames == 1 { "frame" } else { "frames" }
+    )]
+    NoSuchFrame {
+        /// The frame that was asked for.
+        wanted: usize,
+        /// Number of frames in the file.
+        frames: usize,
+    },
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),

@@ -1,8 +1,11 @@
 //! The table of file formats, and reading a file with one of them.
 
+use std::path::Path;
+
 use super::error::{LoadError, OptionError};
 use super::loaded::Loaded;
 use super::raw;
+use super::trajectory::Frames;
 
 /// A file format for spheres.
 #[derive(Debug)]
@@ -14,8 +17,8 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Contents of such a file, in a few words for users.
     pub about: &'static str,
-    /// Whether a file can have several frames.
-    pub has_frames: bool,
+    /// How the frames of a file are found and read, if a file can have several.
+    pub(super) frames: Option<Frames>,
     /// Whether a file can lack radii, so that [`Options::radius`] gives one for all spheres.
     pub may_lack_radii: bool,
     /// Whether a file gives colours, either directly or through the elements of its atoms.
@@ -45,7 +48,7 @@ pub static FORMATS: &[Format] = &[
         name: "xyz",
         extensions: &["xyz"],
         about: "Text with one atom on each line (XYZ)",
-        has_frames: true,
+        frames: Some(super::xyz::FRAMES),
         may_lack_radii: false,
         has_colors: true,
         starts: super::xyz::starts,
@@ -57,7 +60,7 @@ pub static FORMATS: &[Format] = &[
         name: "extxyz",
         extensions: &["extxyz"],
         about: "Text with one atom on each line and named columns (extended XYZ)",
-        has_frames: true,
+        frames: Some(super::xyz::FRAMES),
         may_lack_radii: false,
         has_colors: true,
         starts: never,
@@ -69,7 +72,7 @@ pub static FORMATS: &[Format] = &[
         name: "pdb",
         extensions: &["pdb", "ent"],
         about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
-        has_frames: true,
+        frames: Some(super::pdb::FRAMES),
         may_lack_radii: false,
         has_colors: true,
         starts: super::pdb::starts,
@@ -81,7 +84,7 @@ pub static FORMATS: &[Format] = &[
         name: "npy",
         extensions: &["npy"],
         about: "A NumPy array of shape (n, 4) or, with a radius, (n, 3)",
-        has_frames: false,
+        frames: None,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
@@ -93,7 +96,7 @@ pub static FORMATS: &[Format] = &[
         name: "npz",
         extensions: &["npz"],
         about: "A NumPy archive with an array of shape (n, 4) or, with a radius, (n, 3)",
-        has_frames: false,
+        frames: None,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
@@ -104,7 +107,7 @@ pub static FORMATS: &[Format] = &[
         name: "raw-f32x4",
         extensions: &[],
         about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
-        has_frames: false,
+        frames: None,
         may_lack_radii: false,
         has_colors: false,
         starts: never,
@@ -141,6 +144,22 @@ impl Format {
         FORMATS.iter().find(|format| (format.starts)(bytes))
     }
 
+    /// Whether a file can have several frames, which [`Trajectory`](super::Trajectory) reads one by one.
+    #[must_use]
+    pub const fn has_frames(&self) -> bool {
+        self.frames.is_some()
+    }
+
+    /// Returns the format of a file by its extension or else by its first bytes.
+    pub(super) fn of_file(path: &Path, first: &[u8]) -> Result<&'static Self, LoadError> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let format = extension.and_then(Self::of_extension).or_else(|| Self::of_content(first));
+        format.ok_or_else(|| {
+            let names = FORMATS.iter().map(|format| format.name);
+            LoadError::UnknownFormat { formats: names.collect::<Vec<_>>().join(", ") }
+        })
+    }
+
     /// Lists the extensions of all formats for which `is_wanted` returns true, such as `.npy, .npz`.
     #[must_use]
     pub fn extensions_of(is_wanted: impl Fn(&Self) -> bool) -> String {
@@ -154,9 +173,9 @@ impl Format {
     /// # Errors
     /// Returns the first option that does not apply.
     pub fn check(&self, options: &Options) -> Result<(), OptionError> {
-        if options.frame.is_some() && !self.has_frames {
+        if options.frame.is_some() && !self.has_frames() {
             let what =
-                format!("trajectories ({})", Self::extensions_of(|format| format.has_frames));
+                format!("trajectories ({})", Self::extensions_of(|format| format.has_frames()));
             return Err(OptionError { option: "frame", what });
         }
         if options.radius.is_some() && !self.may_lack_radii {

@@ -31,6 +31,7 @@ mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
 pub mod raw;
+mod trajectory;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
@@ -38,3 +39,4 @@ pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
+pub use trajectory::Trajectory;

@@ -1,21 +1,57 @@
 //! Opens files of spheres, and chooses their format.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 
 use super::error::LoadError;
-use super::format::{FORMATS, Format, Options};
+use super::format::{Format, Options};
 use super::loaded::Loaded;
+use super::trajectory::Trajectory;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
-/// content.
+/// content. Of a file with several frames only the one that is asked for is in memory; [`Trajectory`] reads several.
 ///
 /// # Errors
 /// If the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
-    let bytes =
-        std::fs::read(path).map_err(|error| LoadError::File { path: path.to_path_buf(), error })?;
-    from_bytes(&bytes, path, options)
+    let failed = |error| LoadError::File { path: path.to_path_buf(), error };
+    let first = || -> std::io::Result<Vec<u8>> {
+        let mut first = Vec::new();
+        File::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
+        Ok(first)
+    };
+    // A pipe can be read once only, and not from the middle.
+    if path.is_file() {
+        let format = match options.format {
+            Some(format) => format,
+            None => Format::of_file(path, &first().map_err(failed)?)?,
+        };
+        if format.has_frames() {
+            format.check(options)?;
+            return open_frame(path, format, options.frame.unwrap_or_default());
+        }
+    }
+    from_bytes(&std::fs::read(path).map_err(failed)?, path, options)
+}
+
+/// How much of a file shows its format.
+const FIRST_BYTES: u64 = 1 << 12;
+
+/// Reads one frame of a file. What comes after the frame must be another frame or the end of the file.
+fn open_frame(path: &Path, format: &'static Format, frame: usize) -> Result<Loaded, LoadError> {
+    let mut trajectory = Trajectory::open_up_to(path, Some(format), Some(frame))?;
+    let frames = trajectory.len();
+    if frame >= frames {
+        let none = LoadError::NoSuchFrame { wanted: frame, frames };
+        return Err(trajectory.into_problem().unwrap_or(none));
+    }
+    let loaded = trajectory.frame(frame)?;
+    match trajectory.into_problem() {
+        Some(problem) => Err(problem),
+        None => Ok(loaded),
+    }
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
@@ -28,15 +64,10 @@ pub fn from_bytes(
     name: impl AsRef<Path>,
     options: &Options,
 ) -> Result<Loaded, LoadError> {
-    let extension = name.as_ref().extension().and_then(|extension| extension.to_str());
-    let format = options
-        .format
-        .or_else(|| extension.and_then(Format::of_extension))
-        .or_else(|| Format::of_content(bytes))
-        .ok_or_else(|| {
-            let names = FORMATS.iter().map(|format| format.name);
-            LoadError::UnknownFormat { formats: names.collect::<Vec<_>>().join(", ") }
-        })?;
+    let format = match options.format {
+        Some(format) => format,
+        None => Format::of_file(name.as_ref(), bytes)?,
+    };
     format.read(bytes, options)
 }
 

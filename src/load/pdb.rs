@@ -21,11 +21,20 @@ mod record;
 #[cfg(test)]
 mod tests;
 
+use std::io;
+
 use atoms::Atoms;
 pub use error::PdbError;
 use record::{Kind, Lines, Record};
 
 use super::Loaded;
+use super::error::LoadError;
+use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
+
+/// The text without the byte order mark that some editors put before UTF-8.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
 
 /// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.
 ///
@@ -35,13 +44,66 @@ use super::Loaded;
 /// # Errors
 /// If the text is not a valid PDB file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
-    // Some editors put a byte order mark before UTF-8.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let mut reader = Reader { frame, ..Reader::default() };
     for (line, text) in Lines::new(bytes) {
         reader.take(line, text)?;
     }
     reader.finish()
+}
+
+/// How frames are found and read one by one.
+pub(super) const FRAMES: Frames = Frames { find, read: read_frame };
+
+/// Finds frames by their MODEL records, of all of which the order is checked. What stands before the first of them is
+/// needed by all.
+fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> {
+    let mut found = FrameIndex { is_whole: true, ..FrameIndex::default() };
+    // No frame is read.
+    let mut reader = Reader { frame: usize::MAX, ..Reader::default() };
+    loop {
+        let (offset, lines_before) = (lines.offset, lines.line);
+        let Some(text) = lines.next()? else { break };
+        let text = if lines_before == 0 { without_mark(text) } else { text };
+        let models = reader.models;
+        if let Err(problem) = reader.take(lines_before + 1, text) {
+            found.problem = Some(problem.into());
+            found.frames.pop();
+            return Ok(found);
+        }
+        if reader.models > models {
+            match found.frames.last_mut() {
+                Some(before) => before.bytes.end = offset,
+                None => found.head = 0..offset,
+            }
+            found.frames.push(FrameSpan { bytes: offset..offset, lines_before });
+        }
+    }
+    match found.frames.last_mut() {
+        Some(last) => last.bytes.end = lines.offset,
+        // A file without models is one frame.
+        None => found.frames.push(FrameSpan { bytes: 0..lines.offset, lines_before: 0 }),
+    }
+    if reader.first_atom.is_none() {
+        found.frames.clear();
+        found.problem = Some(PdbError::NoAtoms.into());
+    }
+    Ok(found)
+}
+
+fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
+    let head = without_mark(frame.head);
+    let text = without_mark(frame.text);
+    let mut reader = Reader::default();
+    let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
+    for (line, text) in Lines::new(head).chain(text) {
+        reader.take(line, text)?;
+    }
+    let loaded = reader.finish().map_err(|error| match error {
+        PdbError::EmptyFrame { line, .. } => PdbError::EmptyFrame { frame: frame.index, line },
+        other => other,
+    });
+    Ok(loaded?)
 }
 
 /// Whether the first line is one of those that PDB files start with.

@@ -3,14 +3,21 @@
 //! A frame of an XYZ file is a line with the number of atoms, a comment line, and a line `species x y z …` for each
 //! atom. A trajectory is several frames, one after the other. In an extended XYZ file the comment line names the
 //! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. Of these columns `species` (or `Z`), `pos`,
-//! `radius` and `color` are used. Lengths are taken as they are, in Å.
+//! `radius` and `color` make the spheres; all others become columns of [`Loaded`], those of several numbers one for each:
+//! `forces:R:3` is `forces.x`, `forces.y` and `forces.z`. `Lattice` is the cell. Lengths are taken as they are, in Å.
 
 use std::collections::HashMap;
+use std::io;
+
+mod columns;
+
+use columns::{OtherColumn, OtherValues, cell_of};
 
 use super::elements::{Appearance, appearance, unknown_note};
 use super::error::LoadError;
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
+use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::{Sphere, SphereError};
 use crate::scene::sphere_array::SphereArray;
@@ -27,6 +34,10 @@ pub struct Atoms {
     pub species: Labels,
     /// Species that are not chemical elements, each once, in order of first appearance.
     pub unknown_species: Vec<String>,
+    /// The other columns that the frame declares.
+    pub columns: Vec<Column>,
+    /// The three edge vectors of the periodic cell, if the frame has one.
+    pub cell: Option<[[f64; 3]; 3]>,
 }
 
 /// An error of reading an XYZ file. Lines are counted from 1.
@@ -71,7 +82,7 @@ pub enum XyzError {
         /// Number of the line.
         line: usize,
         /// Name of the value.
-        what: &'static str,
+        what: String,
         /// Number of columns of the line.
         columns: usize,
     },
@@ -81,7 +92,7 @@ pub enum XyzError {
         /// Number of the line.
         line: usize,
         /// Name of the value.
-        what: &'static str,
+        what: String,
         /// The text that was found.
         found: String,
     },
@@ -145,6 +156,9 @@ fn atoms(count: usize) -> String {
     if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") }
 }
 
+/// Some editors put it before UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Reads one frame, counted from 0.
 ///
 /// The lines before the frame are counted but not checked. After the frame, the file must end or another frame must
@@ -153,8 +167,7 @@ fn atoms(count: usize) -> String {
 /// # Errors
 /// If the text is not a valid XYZ file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
-    // Some editors put a byte order mark before UTF-8.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let mut lines = Lines { rest: bytes, line: 0 };
     let mut previous = None;
     let mut index = 0;
@@ -176,7 +189,7 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
 
 /// Whether the first line that is not blank is a number, as in an XYZ file.
 pub(super) fn starts(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let first = bytes.trim_ascii_start().split(|byte| *byte == b'\n').next().unwrap_or_default();
     let first = first.trim_ascii_end();
     !first.is_empty() && first.iter().all(u8::is_ascii_digit)
@@ -184,15 +197,65 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 
 /// Reads the frame that the options name, for [`crate::load`].
 pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    let Atoms { spheres, colors, species, unknown_species } =
-        read(bytes, options.frame.unwrap_or_default())?;
+    Ok(loaded(read(bytes, options.frame.unwrap_or_default())?))
+}
+
+/// How frames are found and read one by one.
+pub(super) const FRAMES: Frames = Frames { find, read: read_frame };
+
+/// Finds frames by their numbers of atoms; the lines of atoms are only counted.
+fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameIndex> {
+    let mut found = FrameIndex::default();
+    let mut previous = None;
+    let problem = loop {
+        let (start, lines_before, index) = (lines.offset, lines.line, found.frames.len());
+        let Some(text) = lines.next()? else {
+            found.is_whole = true;
+            break (index == 0).then_some(XyzError::Empty);
+        };
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let line = lines_before + 1;
+        let Ok(text) = std::str::from_utf8(text).map(str::trim) else {
+            break Some(XyzError::NotText { line });
+        };
+        if text.is_empty() {
+            continue;
+        }
+        let Ok(atoms) = text.parse() else {
+            break Some(XyzError::Count { line, found: shortened(text), previous });
+        };
+        if last.is_some_and(|last| index > last) {
+            break None;
+        }
+        let frame = DeclaredFrame { index, line, atoms };
+        let _comment = lines.skip(1)?;
+        let skipped = lines.skip(atoms)?;
+        if skipped < atoms {
+            break Some(XyzError::TooFewAtoms { frame, found: skipped });
+        }
+        found.frames.push(FrameSpan { bytes: start..lines.offset, lines_before });
+        previous = Some(frame);
+    };
+    found.problem = problem.map(LoadError::from);
+    Ok(found)
+}
+
+fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
+    let text = frame.text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(frame.text);
+    let mut lines = Lines { rest: text, line: frame.lines_before };
+    let head = next_head(&mut lines, frame.index, None)?.ok_or(XyzError::Empty)?;
+    Ok(loaded(read_atoms(&mut lines, head)?))
+}
+
+fn loaded(atoms: Atoms) -> Loaded {
+    let Atoms { spheres, colors, species, unknown_species, columns, cell } = atoms;
     let mut loaded = Loaded::new(SphereArray::F64(spheres));
     loaded.colors = Some(colors);
-    loaded
-        .columns
-        .push(Column { name: "species".to_owned(), values: ColumnValues::Labels(species) });
+    let species = Column { name: "species".to_owned(), values: ColumnValues::Labels(species) };
+    loaded.columns = std::iter::once(species).chain(columns).collect();
+    loaded.cell = cell;
     loaded.notes.extend(unknown_note(&unknown_species, "the file gives a color or radius or "));
-    Ok(loaded)
+    loaded
 }
 
 /// The lines of a text, which it counts.
@@ -255,8 +318,10 @@ fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzErro
 fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzError> {
     // The comment may have any encoding; the part that is read is ASCII.
     let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
-    let columns = Columns::from_comment(&comment)
-        .map_err(|message| XyzError::Properties { line: lines.line, message })?;
+    let refused = |message| XyzError::Properties { line: lines.line, message };
+    let columns = Columns::from_comment(&comment).map_err(refused)?;
+    let cell = cell_of(&comment).map_err(refused)?;
+    let mut others: Vec<OtherValues> = columns.others.iter().map(OtherValues::new).collect();
     let (mut spheres, mut colors) = (Vec::new(), Vec::new());
     let (mut names, mut species_indices) = (Vec::new(), Vec::new());
     let mut unknown_species = Vec::new();
@@ -301,9 +366,13 @@ fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzE
         spheres.push([x, y, z, radius]);
         colors.push(color);
         species_indices.push(index);
+        for values in &mut others {
+            values.push(&atom)?;
+        }
     }
     let species = Labels { names, indices: species_indices };
-    Ok(Atoms { spheres, colors, species, unknown_species })
+    let columns = others.into_iter().map(OtherValues::into_column).collect();
+    Ok(Atoms { spheres, colors, species, unknown_species, columns, cell })
 }
 
 /// The columns of an atom's line that hold its values, counted from 0.
@@ -312,16 +381,24 @@ struct Columns {
     position: usize,
     radius: Option<usize>,
     color: Option<usize>,
+    others: Vec<OtherColumn>,
 }
 
 impl Columns {
     fn from_comment(comment: &str) -> Result<Self, String> {
         let Some(properties) = value_of("Properties", comment) else {
-            return Ok(Self { species: 0, position: 1, radius: None, color: None });
+            return Ok(Self {
+                species: 0,
+                position: 1,
+                radius: None,
+                color: None,
+                others: Vec::new(),
+            });
         };
         let fields: Vec<&str> = properties.split(':').collect();
         let mut column = 0_usize;
         let (mut species, mut position, mut radius, mut color) = (None, None, None, None);
+        let mut others = Vec::new();
         for field in fields.chunks(3) {
             let &[name, kind, count] = field else {
                 return Err(format!(
@@ -339,7 +416,7 @@ impl Columns {
                 ("pos", "R", 3) => position = Some(column),
                 ("radius", "R", 1) => radius = Some(column),
                 ("color", "R", 3) => color = Some(column),
-                _ => {}
+                _ => others.extend(OtherColumn::of_field(name, kind, column, count)?),
             }
             column = column
                 .checked_add(count)
@@ -352,6 +429,7 @@ impl Columns {
             position: position.ok_or("Properties has no pos:R:3, which must name the positions")?,
             radius,
             color,
+            others,
         })
     }
 }
@@ -391,18 +469,18 @@ struct Atom<'a> {
 }
 
 impl<'a> Atom<'a> {
-    fn text(&self, column: usize, what: &'static str) -> Result<&'a str, XyzError> {
+    pub(super) fn text(&self, column: usize, what: &str) -> Result<&'a str, XyzError> {
         let Self { frame, line, ref values } = *self;
         let columns = values.len();
-        let missing = XyzError::MissingColumn { frame, line, what, columns };
-        values.get(column).copied().ok_or(missing)
+        let missing = || XyzError::MissingColumn { frame, line, what: what.to_owned(), columns };
+        values.get(column).copied().ok_or_else(missing)
     }
 
-    fn number(&self, column: usize, what: &'static str) -> Result<f64, XyzError> {
+    pub(super) fn number(&self, column: usize, what: &str) -> Result<f64, XyzError> {
         let text = self.text(column, what)?;
         parse_number(text).ok_or_else(|| XyzError::Number {
             line: self.line,
-            what,
+            what: what.to_owned(),
             found: shortened(text),
         })
     }

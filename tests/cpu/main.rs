@@ -46,6 +46,7 @@ mod settings;
 mod soundness;
 mod stereo;
 mod structures;
+mod trajectory;
 mod update;
 mod verify;
 mod xyz;

@@ -1,6 +1,7 @@
 //! Tests of the XYZ reader: good files, bad files and noise.
 
 use pinhole::load::xyz::{self, XyzError};
+use pinhole::load::{self, ColumnValues, Options};
 use pinhole::{LinearRgb, Sphere};
 
 const WATER: &str = "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n";
@@ -15,7 +16,7 @@ struct Atoms {
 }
 
 fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
-    let xyz::Atoms { spheres, colors, species, unknown_species } = xyz::read(bytes, frame)?;
+    let xyz::Atoms { spheres, colors, species, unknown_species, .. } = xyz::read(bytes, frame)?;
     assert_eq!((spheres.len(), spheres.len()), (colors.len(), species.indices.len()));
     let sphere = |(&[x, y, z, radius], color): (&[f64; 4], &LinearRgb)| {
         Sphere::new([x, y, z], radius, *color)
@@ -186,4 +187,49 @@ fn noise_never_panics() {
             let _ = read(&bytes, random.usize(..3));
         }
     }
+}
+
+fn loaded(text: &str) -> load::Loaded {
+    load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
+}
+
+#[test]
+fn every_declared_column_and_the_cell_are_kept() {
+    let text = "2\nLattice=\"4 0 0 0 5 0 1 0 6\" Properties=id:I:1:species:S:1:pos:R:3:forces:R:3:site:S:1:fixed:L:1:q:R:4\n\
+        7 H 0 0 0 0.5 -1 2e3 top T 1 2 3 4\n9 O 1 1 1 1D2 0 0 hollow F 5 6 7 8\n";
+    let loaded = loaded(text);
+    assert_eq!(loaded.cell, Some([[4.0, 0.0, 0.0], [0.0, 5.0, 0.0], [1.0, 0.0, 6.0]]));
+    let names: Vec<&str> = loaded.columns.iter().map(|column| column.name.as_str()).collect();
+    let expected = "species id forces.x forces.y forces.z site fixed q.0 q.1 q.2 q.3";
+    assert_eq!(names.join(" "), expected);
+    let numbers = |name: &str| match loaded.column(name) {
+        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
+        other => panic!("{name}: {other:?}"),
+    };
+    assert_eq!(numbers("id"), [7.0, 9.0]);
+    assert_eq!(numbers("forces.x"), [0.5, 100.0]);
+    assert_eq!(numbers("q.3"), [4.0, 8.0]);
+    assert_eq!(loaded.labels("site").unwrap().names, ["top", "hollow"]);
+    assert_eq!(loaded.labels("fixed").unwrap().indices, [0, 1]);
+}
+
+#[test]
+fn a_bad_column_or_cell_is_named() {
+    let one = |comment: &str, values: &str| message(&format!("1\n{comment}\n{values}\n"));
+    let declared = "Properties=species:S:1:pos:R:3:charge:R:1";
+    assert!(
+        one(declared, "H 0 0 0").contains("line 3: the charge is missing; the line has 4 columns")
+    );
+    assert!(
+        one(declared, "H 0 0 0 x").contains("line 3: the charge is `x`, which is not a finite")
+    );
+    let unknown = one("Properties=species:S:1:pos:R:3:charge:Q:1", "H 0 0 0 1");
+    assert!(
+        unknown.contains("line 2: Properties: charge has the type `Q`, which is none of"),
+        "{unknown}"
+    );
+    let many = one("Properties=species:S:1:pos:R:3:charge:R:99999999", "H 0 0 0 1");
+    assert!(many.contains("1024 are the most"), "{many}");
+    let cell = one("Lattice=\"1 2 3\"", "H 0 0 0");
+    assert!(cell.contains("line 2: Lattice=1 2 3 is not a list of nine finite numbers"), "{cell}");
 }

@@ -75,7 +75,7 @@ fn pdb_files_with_errors() {
         &[("one.pdb", atom)],
         "render one.pdb -o out.png --frame 2 --backend cpu",
         1,
-        &["one.pdb: there is no frame 2; the file has 1 model"],
+        &["one.pdb: there is no frame 2; the file has 1 frame"],
     );
 }
 

@@ -225,3 +225,19 @@ fn help_and_version_go_to_standard_output() {
         assert!(!run.stdout.is_empty() && run.stderr.is_empty(), "{arguments}");
     }
 }
+
+/// Files of other programs have all kinds of names.
+#[test]
+fn the_content_shows_the_format_where_the_name_does_not() {
+    let folder = Folder::with(&[
+        ("water.xyz", WATER),
+        ("water.dat", WATER),
+        ("water", WATER),
+        ("scene.toml", "data = \"water.dat\"\n"),
+    ]);
+    folder.run("render water.xyz -o wanted.png --backend cpu --size 20x16").succeeded();
+    for file in ["water.dat", "water", "scene.toml"] {
+        folder.run(&format!("render {file} -o a.png --backend cpu --size 20x16")).succeeded();
+        assert_eq!(folder.read("a.png"), folder.read("wanted.png"), "{file}");
+    }
+}
