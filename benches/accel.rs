@@ -9,12 +9,11 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use pinhole::accel::{
-    AccelChoice, AccelPlan, BinaryTree, GridBudget, ListLayout, RayF32, WideTree, build_grid,
-};
+use pinhole::accel::{AccelChoice, AccelPlan, ListLayout};
 use pinhole::camera::Camera;
 use pinhole::generate::Standard;
 use pinhole::gpu::{Headless, HeadlessOptions, Query};
+use pinhole::internals::{BinaryTree, GridBudget, RayF32, WideTree, build_grid};
 use pinhole::{Film, LinearRgb, Scene, View};
 
 const CHOICES: [AccelChoice; 3] = [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree];

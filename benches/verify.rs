@@ -16,7 +16,8 @@ use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::generate::{Kind, Standard};
 use pinhole::glam::DVec3;
 use pinhole::gpu::wgpu::DeviceType;
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, ShaderEdit, Structures};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, Structures};
+use pinhole::internals::ShaderEdit;
 use pinhole::verify::{Certificate, Checker, PathCertificate, Recording, Verdict};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 

@@ -134,6 +134,8 @@ pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
+#[doc(hidden)]
+pub mod internals;
 pub mod light;
 pub mod load;
 mod parallel;
@@ -142,8 +144,7 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
-#[doc(hidden)]
-pub mod text;
+mod text;
 pub mod verify;
 pub mod write;
 

@@ -15,9 +15,9 @@ use pinhole::camera::Camera;
 use pinhole::camera::film::Film;
 use pinhole::generate::{BYTES_PER_SPHERE, Standard};
 use pinhole::image::color::LinearRgb;
+use pinhole::internals::text::one_line;
 use pinhole::scene::Scene;
 use pinhole::scene_file::DEFAULT_COLOR;
-use pinhole::text::one_line;
 
 /// The scenes to measure by default; any machine has enough memory for them.
 pub(super) const DEFAULT: [Standard; 3] = [Standard::R1M, Standard::L1M, Standard::C200k];

@@ -161,7 +161,7 @@ impl LightFlags {
                      remove {flag} or choose --integrator studio"
                 )));
             }
-            Integrator::Primary(_) | Integrator::Path(_) => {}
+            _ => {}
         }
         Ok(settings)
     }

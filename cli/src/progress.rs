@@ -47,7 +47,7 @@ pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
-        bar.set_message(pinhole::text::one_line(&text.into()));
+        bar.set_message(pinhole::internals::text::one_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, Write};
 
 use super::progress;
-use pinhole::text::one_line;
+use pinhole::internals::text::one_line;
 
 /// Prints one line on standard error, with control characters escaped.
 pub(super) fn tell(line: impl fmt::Display) {

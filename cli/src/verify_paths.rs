@@ -39,14 +39,14 @@ struct Listed {
 }
 
 impl From<StageCounts> for Counts {
-    fn from(StageCounts { checked, decided, open, undecided }: StageCounts) -> Self {
+    fn from(StageCounts { checked, decided, open, undecided, .. }: StageCounts) -> Self {
         Self { checked, decided, open, undecided }
     }
 }
 
 impl From<&PathViolation> for Listed {
     fn from(violation: &PathViolation) -> Self {
-        let PathViolation { pixel, sample, surface, stage, message } = violation;
+        let PathViolation { pixel, sample, surface, stage, message, .. } = violation;
         let (stage, message) = (stage.name(), message.clone());
         Self { pixel: *pixel, sample: *sample, surface: *surface, stage, message }
     }

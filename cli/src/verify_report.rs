@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::adapter::AdapterReport;
 use super::verify_paths::PathReport;
-use pinhole::text::one_line;
+use pinhole::internals::text::one_line;
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{Certificate, PathCertificate, Verdict, Violation};
 

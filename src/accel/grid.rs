@@ -10,7 +10,7 @@ pub(crate) mod word {
     /// The kind of a cell with a list. The other bits are the start of the list.
     pub(crate) const LIST: u32 = 1 << 30;
     /// The kind of a cell with a grid inside. Bits 27 to 29 are the base-2 logarithm of the number of its cells along
-    /// an axis. The lower bits are the start of its words in [`super::Grid::cells`], in units of eight.
+    /// an axis. The lower bits are the start of its words in [`super::grid::Grid::cells`], in units of eight.
     pub(crate) const GRID: u32 = 2 << 30;
     /// The bits of the kind.
     pub(crate) const KIND: u32 = 3 << 30;
@@ -55,6 +55,7 @@ pub(super) const MAX_CELLS: usize = 1 << 24;
 
 /// How lists store their spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ListLayout {
     /// A list is a range of spheres, so that each sphere is stored once for every cell that it overlaps. A test loads
     /// one vector.

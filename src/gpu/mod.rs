@@ -8,19 +8,18 @@
 pub use wgpu;
 
 pub mod adapter;
-mod edit;
+pub(crate) mod edit;
 mod error;
 mod faults;
 mod headless;
 mod kernels;
 mod options;
-mod passes;
+pub(crate) mod passes;
 mod quirks;
 mod scene;
 mod self_test;
 mod shader;
 
-pub use edit::ShaderEdit;
 pub use error::GpuError;
 pub use headless::Headless;
 pub use headless::plan::{DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans};
@@ -29,8 +28,6 @@ pub use headless::timer::TraceTime;
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::{DataTargets, Frame, Targets};
-#[doc(hidden)]
-pub use passes::hosted::{HostedPicture, HostedSums};
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::{Query, RendererOptions};
 pub use scene::recolor::Recolor;

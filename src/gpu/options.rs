@@ -25,6 +25,7 @@ pub struct HeadlessOptions {
 
 /// Which limits a device is opened with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LimitChoice {
     /// What the adapter has.
     #[default]

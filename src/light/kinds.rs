@@ -17,6 +17,7 @@ pub struct Light {
 
 /// The kind of a light and its parameters. Colours are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LightKind {
     /// A light at the eye without shadows: each surface is lit along the ray that sees it.
     Head {
@@ -54,6 +55,7 @@ pub enum LightKind {
 /// The frame of a light's position or direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum LightFrame {
     /// World space.
     #[default]

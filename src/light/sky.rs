@@ -18,6 +18,7 @@ pub struct Sky {
 
 /// The radiance of a sky.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SkyLight {
     /// The same radiance in all directions; black for no light.
     Constant(LinearRgb),

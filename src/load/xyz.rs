@@ -10,8 +10,10 @@ use std::collections::HashMap;
 use std::io;
 
 mod columns;
+mod error;
 
 use columns::{OtherColumn, OtherValues, cell_of};
+pub use error::{DeclaredFrame, XyzError};
 
 use super::elements::{Appearance, appearance, unknown_note};
 use super::error::LoadError;
@@ -19,7 +21,7 @@ use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::image::color::LinearRgb;
-use crate::scene::sphere::{Sphere, SphereError};
+use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::text::shortened;
 
@@ -38,122 +40,6 @@ pub struct Atoms {
     pub columns: Vec<Column>,
     /// The three edge vectors of the periodic cell, if the frame has one.
     pub cell: Option<[[f64; 3]; 3]>,
-}
-
-/// An error of reading an XYZ file. Lines are counted from 1.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum XyzError {
-    /// A frame does not start with a valid number of atoms.
-    #[error(
-        "line {line}: `{found}` is not a valid number of atoms, which must begin a frame{}",
-        after_frame(previous)
-    )]
-    Count {
-        /// Number of the line.
-        line: usize,
-        /// The text of the line.
-        found: String,
-        /// The frame before this line, if there is one.
-        previous: Option<DeclaredFrame>,
-    },
-    /// The file has no frame.
-    #[error("the file is empty; an XYZ file starts with the number of its atoms")]
-    Empty,
-    /// The file ends before the frame does.
-    #[error(
-        "line {}: frame {} declares {}, but the file ends after {found}",
-        frame.line, frame.index, atoms(frame.atoms)
-    )]
-    TooFewAtoms {
-        /// The frame that is affected.
-        frame: DeclaredFrame,
-        /// Number of atoms that the file has in this frame.
-        found: usize,
-    },
-    /// An atom's line has too few columns.
-    #[error(
-        "line {line}: the {what} is missing; the line has {columns} {} (frame {} declares {} on line {})",
-        if *columns == 1 { "column" } else { "columns" }, frame.index, atoms(frame.atoms), frame.line
-    )]
-    MissingColumn {
-        /// The frame that is affected.
-        frame: DeclaredFrame,
-        /// Number of the line.
-        line: usize,
-        /// Name of the value.
-        what: String,
-        /// Number of columns of the line.
-        columns: usize,
-    },
-    /// A value is not a finite number.
-    #[error("line {line}: the {what} is `{found}`, which is not a finite number")]
-    Number {
-        /// Number of the line.
-        line: usize,
-        /// Name of the value.
-        what: String,
-        /// The text that was found.
-        found: String,
-    },
-    /// An atom is out of range.
-    #[error("line {line}: atom {atom}: {error}")]
-    Sphere {
-        /// Number of the line.
-        line: usize,
-        /// Index of the atom in its frame, from 0.
-        atom: usize,
-        /// What is wrong with the atom.
-        error: SphereError,
-    },
-    /// The list of properties of an extended XYZ frame cannot be used.
-    #[error("line {line}: {message}")]
-    Properties {
-        /// Number of the line.
-        line: usize,
-        /// What is wrong with the list.
-        message: String,
-    },
-    /// A line is not UTF-8 text.
-    #[error("line {line}: this line is not UTF-8 text; an XYZ file is plain text")]
-    NotText {
-        /// Number of the line.
-        line: usize,
-    },
-    /// The file has fewer frames.
-    #[error(
-        "there is no frame {wanted}; the file has {frames} {}, counted from 0",
-        if *frames == 1 { "frame" } else { "frames" }
-    )]
-    NoSuchFrame {
-        /// The frame that was asked for.
-        wanted: usize,
-        /// Number of frames in the file.
-        frames: usize,
-    },
-}
-
-/// A frame as its first line declares it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DeclaredFrame {
-    /// Index of the frame, from 0.
-    pub index: usize,
-    /// Number of the line with the number of atoms, from 1.
-    pub line: usize,
-    /// The number of atoms that the line declares.
-    pub atoms: usize,
-}
-
-/// The end of a sentence about the line after a frame, which is wrong if the frame's number of atoms is.
-fn after_frame(previous: &Option<DeclaredFrame>) -> String {
-    previous.map_or_else(String::new, |frame| {
-        let DeclaredFrame { index, line, atoms: count } = frame;
-        format!("; frame {index} before it declares {} on line {line}", atoms(count))
-    })
-}
-
-fn atoms(count: usize) -> String {
-    if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") }
 }
 
 /// Some editors put it before UTF-8.

@@ -6,6 +6,7 @@ use crate::light::codes;
 
 /// The algorithm that turns rays into colours.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Integrator {
     /// Colours the surface that the ray through a pixel's centre hits first, without lights.
     Primary(Shading),
@@ -112,6 +113,7 @@ impl LightSampling {
 /// How emissive spheres, a sun and the image of a sky are sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum LightSampling {
     /// Only by scattered rays that happen to hit a light.
     Chance,

@@ -7,6 +7,7 @@ use crate::scene::material::SurfaceProperties;
 
 /// The colours of a scene's spheres, in input order.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Colors {
     /// All spheres have the same colour.
     One(LinearRgb),

@@ -6,6 +6,7 @@ use crate::scene::sphere::Sphere;
 /// Spheres (x, y, z, radius) in the precision of their source, not yet checked.
 /// [`Scene::from_parts`](crate::Scene::from_parts) checks them.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SphereArray {
     /// Spheres in f32.
     F32(Vec<[f32; 4]>),
@@ -28,6 +29,7 @@ pub enum Radii<'a, T> {
     "{}: there are {radii} radii for {positions} positions",
     if radii < positions { format!("position {radii} has no radius") } else { format!("radius {positions} has no position") }
 )]
+#[non_exhaustive]
 pub struct RadiiError {
     /// The number of positions.
     pub positions: usize,

@@ -35,6 +35,7 @@ pub struct SceneUpdate<'a> {
 
 /// Centres of spheres in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Centers<'a> {
     /// Centres in f32.
     F32(&'a [[f32; 3]]),
@@ -44,6 +45,7 @@ pub enum Centers<'a> {
 
 /// New colours; the colours of the scene must be of the same kind, see [`Colors`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NewColors<'a> {
     /// Indices into the scene's palette.
     Palette(&'a [u32]),

@@ -39,6 +39,7 @@ pub(super) const KEPT: usize = 1000;
 
 /// Whether a device rendered a picture as a conforming WGSL implementation may.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Width and height in pixels.
     pub size: [u32; 2],

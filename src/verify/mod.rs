@@ -44,7 +44,7 @@ mod choices;
 mod hit;
 mod line;
 mod number;
-mod paths;
+pub(crate) mod paths;
 mod pixel;
 mod recording;
 mod rendered;
@@ -61,9 +61,10 @@ pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
 pub use paths::{
-    PathCertificate, PathRecording, PathStage, PathState, PathUploadError, PathViolation,
-    RecordedSample, RecordedSurface, StageCounts, UploadedLighting, UploadedSky,
+    PathCertificate, PathRecording, PathStage, PathUploadError, PathViolation, StageCounts,
 };
+#[cfg(feature = "gpu")]
+pub(crate) use paths::{PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky};
 pub use recording::{
     NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,
 };

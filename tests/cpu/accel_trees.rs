@@ -1,7 +1,7 @@
 //! Both trees against trying every sphere, in f32 and to the bit.
 
 use fastrand::Rng;
-use pinhole::accel::{BinaryTree, NO_HIT, Nearest, WideTree};
+use pinhole::internals::{BinaryTree, NO_HIT, Nearest, WideTree};
 
 use crate::rays::{assert_same, brute, corners, rays};
 use crate::support::spheres::{self, Spheres, random, scaled};

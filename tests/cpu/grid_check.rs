@@ -1,9 +1,7 @@
 //! Grids are what their check says, and the check finds what is planted.
 
-use pinhole::accel::{
-    AccelChoice, AccelPlan, BuiltGrid, Grid, GridBudget, GridError, ListLayout, SceneStatistics,
-    Structure, build_grid,
-};
+use pinhole::accel::{AccelChoice, AccelPlan, ListLayout, SceneStatistics, Structure};
+use pinhole::internals::{BuiltGrid, Grid, GridBudget, GridError, build_grid};
 
 use crate::support::spheres::{self, Spheres};
 
@@ -19,7 +17,7 @@ const GRID: u32 = 2 << 30;
 fn budget(layout: ListLayout, spheres: &Spheres) -> GridBudget {
     let (rays, listed, bytes) = match layout {
         ListLayout::Copied => (u64::MAX, "spheres", 16),
-        ListLayout::Referenced => (1, "references", 4),
+        _ => (1, "references", 4),
     };
     let plan = AccelPlan::for_rays(spheres, AccelChoice::Grid, 1 << 30, rays);
     assert_eq!((plan.structure, plan.brick_count), (Structure::Grid(layout), 1));

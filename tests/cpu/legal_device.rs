@@ -4,7 +4,8 @@ use fastrand::Rng;
 use pinhole::camera::CameraKind;
 use pinhole::camera::film::YAxis;
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::verify::{NO_HIT, Recording, TracedPixel, TracedRay, UploadedView};
+use pinhole::internals::NO_HIT;
+use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
 /// How it rounds.

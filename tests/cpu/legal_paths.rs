@@ -5,12 +5,10 @@ use std::f64::consts::PI;
 use pinhole::camera::sampling::{pair, pixel_seed, unit};
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::image::NO_ID;
+use pinhole::internals::{NO_HIT, PathState, RecordedSample, RecordedSurface, UploadedLighting};
 use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::verify::{
-    Checker, NO_HIT, PathRecording, PathState, RecordedSample, RecordedSurface, TracedRay,
-    UploadedLighting,
-};
+use pinhole::verify::{Checker, PathRecording, TracedRay};
 use pinhole::{Film, LinearRgb, Scene, Sphere};
 
 use crate::legal_device::{Habit, LegalDevice};

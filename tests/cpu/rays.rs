@@ -1,8 +1,8 @@
 //! Rays that a structure may lose a sphere along, and the answer of trying every sphere.
 
 use fastrand::Rng;
-use pinhole::accel::{NO_HIT, Nearest, RayF32, intersect_sphere};
 use pinhole::glam::Vec3;
+use pinhole::internals::{NO_HIT, Nearest, RayF32, intersect_sphere};
 
 use crate::support::spheres::Spheres;
 

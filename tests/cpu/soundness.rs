@@ -4,7 +4,8 @@
 use dashu_float::round::mode;
 use dashu_float::{Context, FBig};
 use fastrand::Rng;
-use pinhole::verify::{Checker, LegalHits, NO_HIT, TracedRay};
+use pinhole::internals::NO_HIT;
+use pinhole::verify::{Checker, LegalHits, TracedRay};
 use pinhole::{LinearRgb, Scene};
 
 use crate::hostile_rays::{Case, case};

@@ -2,10 +2,9 @@
 //! takes more memory than was planned.
 
 use fastrand::Rng;
-use pinhole::accel::{
-    Accel, AccelChoice, AccelPlan, Brick, Index, NO_HIT, RayF32, Structure, intersect_sphere,
-};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
 use pinhole::glam::Vec3;
+use pinhole::internals::{NO_HIT, RayF32, intersect_sphere};
 
 use crate::rays::{assert_same, brute, rays};
 use crate::support::spheres::{self, Spheres};

@@ -35,7 +35,7 @@ fn updates_are_as_a_scene_that_was_made_so() {
                 Colors::One(_) => None,
                 Colors::Palette { .. } => Some(NewColors::Palette(&places)),
                 Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
-                Colors::Scalars { .. } => Some(NewColors::Scalars(&radii)),
+                _ => Some(NewColors::Scalars(&radii)),
             };
             let update = SceneUpdate {
                 first: first as u32,

@@ -11,8 +11,9 @@ use pinhole::camera::{
 };
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
+use pinhole::internals::NO_HIT;
 use pinhole::verify::{
-    Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadError,
+    Certificate, Checker, Recording, Rendered, RequestedCamera, TracedPixel, UploadError,
     UploadedView, Verdict, ViolationKind,
 };
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere};

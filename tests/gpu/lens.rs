@@ -4,7 +4,8 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
 use pinhole::glam::{DVec2, DVec3};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, ShaderEdit};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions};
+use pinhole::internals::ShaderEdit;
 use pinhole::verify::{LegalCameraRay, Recording};
 
 use crate::verify_views as views;

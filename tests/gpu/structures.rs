@@ -9,13 +9,14 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use libtest_mimic::Trial;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, NO_HIT, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
     Query, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
 };
 use pinhole::image::NO_ID;
+use pinhole::internals::NO_HIT;
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, glam};
 
 use crate::embedding::{Host, size_of_film, view_of};

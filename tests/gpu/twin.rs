@@ -2,12 +2,13 @@
 //! stricter wall than legality, where it stands.
 
 use libtest_mimic::{Failed, Trial};
-use pinhole::accel::{Accel, AccelChoice, Nearest, RayF32};
+use pinhole::accel::{Accel, AccelChoice};
 use pinhole::camera::CameraKind;
 use pinhole::camera::film::YAxis;
 use pinhole::glam::{UVec2, Vec2, Vec3};
 use pinhole::gpu::{Decision, Headless};
 use pinhole::image::NO_ID;
+use pinhole::internals::{Nearest, RayF32};
 use pinhole::render::PrimarySettings;
 use pinhole::verify::{Recording, TracedRay, UploadedView};
 use pinhole::{Film, LayerSet, LinearRgb, Shading};

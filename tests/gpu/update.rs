@@ -76,7 +76,7 @@ fn updated(mut scene: Scene) -> Result<(), Failed> {
             Colors::One(_) => None,
             Colors::Palette { .. } => Some(NewColors::Palette(&places)),
             Colors::Rgba8(_) => Some(NewColors::Rgba8(&rgba)),
-            Colors::Scalars { .. } => Some(NewColors::Scalars(&radii)),
+            _ => Some(NewColors::Scalars(&radii)),
         };
         let update = SceneUpdate {
             first: first as u32,

@@ -6,8 +6,9 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelPlan};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, ShaderEdit};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions};
 use pinhole::image::NO_ID;
+use pinhole::internals::ShaderEdit;
 use pinhole::verify::{Certificate, Checker, Recording};
 use pinhole::{Integrator, LinearRgb, Scene, Shading, Sphere};
 

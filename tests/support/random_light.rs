@@ -40,6 +40,8 @@ pub(crate) fn view(seed: u64) -> RandomView {
             SkyLight::Constant(_) => "a constant sky",
             SkyLight::Gradient { .. } => "a gradient",
             SkyLight::Image { .. } => "an image",
+            #[allow(unreachable_patterns, reason = "from inside of the crate there is no other")]
+            _ => "another sky",
         }
     );
     let scene = random.scene(&spheres);

@@ -152,7 +152,7 @@ impl Headless {
     }
 
     /// Copies a scene to the device, brick by brick, with structures that were built of it: by
-    /// [`RenderPlan::build`](super::RenderPlan::build), or from one that was built alone.
+    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from one that was built alone.
     ///
     /// # Errors
     /// If it does not fit the device, or if the device fails.

@@ -15,7 +15,7 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::{Checker, TracedPixel, Verdict};
 
-/// What a render by [`Headless`](super::Headless) takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
+/// What a render by [`Headless`](crate::gpu::Headless) takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
 /// records for each brick come on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {

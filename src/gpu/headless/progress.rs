@@ -6,6 +6,7 @@ use crate::image::Image;
 
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Progress {
     /// Samples that every pixel has.
     pub samples: u32,
@@ -20,6 +21,7 @@ pub struct Progress {
 
 /// What is to be done about a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Decision {
     /// Go on.
     GoOn,
@@ -41,6 +43,7 @@ pub(in crate::gpu) fn go_on(_: &Progress) -> Decision {
 
 /// What became of a picture.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Picture {
     /// The image, with the layers that were asked for.
     pub image: Image,

@@ -8,6 +8,7 @@ use crate::gpu::error::GpuError;
 
 /// How long tracing took, over all submissions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct TraceTime {
     /// From submitting to having waited, by the host's clock.
     pub wall: Duration,

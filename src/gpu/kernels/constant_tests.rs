@@ -5,8 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Expression, Handle, Literal, Module};
 
 use super::all_kernels;
+use crate::accel::binary_tree::BinaryChild;
+use crate::accel::binary_tree::BinaryNode;
 use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_ROOT, word};
-use crate::accel::{self, BinaryChild, BinaryNode, WideNode};
+use crate::accel::wide_node::WideNode;
+use crate::accel::{self};
 use crate::gpu::passes::{lit, tiles};
 use crate::gpu::shader::records;
 use crate::image::NO_ID;
@@ -35,10 +38,10 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("SHAPE_INDEX", !LAST),
         ("LEAF_FIRST", LEAF_FIRST),
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
-        ("WIDE_LEVELS", accel::WIDE_LEVELS),
+        ("WIDE_LEVELS", accel::wide_tree::WIDE_LEVELS),
         ("WIDE_NODE_VECTORS", vectors(size_of::<WideNode>())),
-        ("BINARY_LEVELS", accel::BINARY_LEVELS),
-        ("BINARY_INNER", accel::BINARY_INNER),
+        ("BINARY_LEVELS", accel::binary_tree::BINARY_LEVELS),
+        ("BINARY_INNER", accel::binary_tree::BINARY_INNER),
         ("BINARY_NODE_VECTORS", vectors(size_of::<BinaryNode>())),
         ("BINARY_CHILD_VECTORS", vectors(size_of::<BinaryChild>())),
         ("LIGHTING_TRANSPARENT", codes::lighting::TRANSPARENT),
@@ -73,9 +76,9 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
     let floats = [
         // Each has a name of its own for it.
         ("NO_HIT", records::NO_HIT),
-        ("NO_HIT", accel::NO_HIT),
+        ("NO_HIT", accel::query::NO_HIT),
         ("NO_ENTRY", NO_ENTRY),
-        ("SMALLEST_COMPONENT", accel::SMALLEST_COMPONENT),
+        ("SMALLEST_COMPONENT", accel::slab::SMALLEST_COMPONENT),
         ("PI", std::f32::consts::PI),
     ];
     words

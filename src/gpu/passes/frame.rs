@@ -18,7 +18,7 @@ use crate::verify::RequestedCamera;
 /// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
-    /// Of the format that the renderer's [`ColorTarget`](super::ColorTarget) names.
+    /// Of the format that the renderer's [`ColorTarget`](crate::gpu::ColorTarget) names.
     pub color: &'a TextureView,
     /// Present exactly if the renderer was built with `data_layers`.
     pub data: Option<DataTargets<'a>>,

@@ -1,6 +1,6 @@
 //! Lit pictures in an encoder of somebody else's.
 //!
-//! What [`Headless`](super::Headless) paces, submits and reads back is recorded here as it is: a host that gathers
+//! What [`Headless`](crate::gpu::Headless) paces, submits and reads back is recorded here as it is: a host that gathers
 //! samples in its own frame records the same passes.
 
 use std::ops::Range;

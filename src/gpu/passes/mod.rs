@@ -2,7 +2,7 @@
 
 pub(in crate::gpu) mod bands;
 pub(in crate::gpu) mod frame;
-pub(in crate::gpu) mod hosted;
+pub(crate) mod hosted;
 pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod order;
 pub(in crate::gpu) mod record;

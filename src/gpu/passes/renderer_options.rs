@@ -47,6 +47,7 @@ impl Default for RendererOptions {
 
 /// What a ray is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Query {
     /// Which sphere is the nearest.
     #[default]

@@ -142,7 +142,7 @@ impl SceneBuffers {
 
     /// Becomes a copy of the same scene with its spheres elsewhere: what [`SceneBuffers::new`] or
     /// [`SceneBuffers::with_accel`] made of it after [`Scene::apply`]. Frames that show the scene then need
-    /// [`Frame::set_view`](super::Frame::set_view).
+    /// [`Frame::set_view`](crate::gpu::Frame::set_view).
     pub fn replace(&mut self, copy: Self) {
         let SceneId { scene, shape } = self.id;
         let is_like = copy.structure == self.structure;

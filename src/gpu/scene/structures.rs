@@ -55,7 +55,7 @@ pub struct Retry {
 /// too many steps in what suits the data ([`GpuError::Steps`]), it is done once more with another, and `retrying` is
 /// told before.
 ///
-/// `plan` plans for a choice, as [`Headless::plan`](super::Headless::plan) does; `work` builds, uploads and renders.
+/// `plan` plans for a choice, as [`Headless::plan`](crate::gpu::Headless::plan) does; `work` builds, uploads and renders.
 ///
 /// # Errors
 /// The outer one is the caller's own, and ends the work at once; the inner one is the device's.

@@ -12,7 +12,7 @@ impl Headless {
     ///
     /// Colours alone are written into the buffers that there are. Where spheres move or grow, the structure is built
     /// anew on the host, of the same kind as before, and copied to the device; frames that show the scene then need
-    /// [`Frame::set_view`](super::Frame::set_view). `docs/performance.md` says what both cost.
+    /// [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` says what both cost.
     ///
     /// # Errors
     /// If it does not fit the device, or if the device fails; then the scene on the device is to be uploaded again.

@@ -45,6 +45,7 @@ impl PathStage {
 
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PathViolation {
     /// Column and row in the film, from the top left.
     pub pixel: [u32; 2],
@@ -69,6 +70,7 @@ impl fmt::Display for PathViolation {
 
 /// The number of stages that were judged, by verdict. A stage counts once for each path that passes through it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StageCounts {
     /// All stages that were judged.
     pub checked: u64,
@@ -83,6 +85,7 @@ pub struct StageCounts {
 
 /// Whether a device followed paths as a conforming WGSL implementation may.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct PathCertificate {
     /// The number of paths, which are samples of pixels.
     pub paths: u64,

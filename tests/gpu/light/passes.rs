@@ -3,10 +3,11 @@
 use libtest_mimic::Trial;
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::gpu::{
-    Decision, GpuError, Headless, HeadlessOptions, HostedPicture, Progress, Renderer,
-    RendererOptions, SceneBuffers, wgpu,
+    Decision, GpuError, Headless, HeadlessOptions, Progress, Renderer, RendererOptions,
+    SceneBuffers, wgpu,
 };
 use pinhole::image::Layer;
+use pinhole::internals::HostedPicture;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 

@@ -10,7 +10,8 @@ use std::path::Path;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, ShaderEdit};
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions};
+use pinhole::internals::ShaderEdit;
 use pinhole::verify::{Checker, PathCertificate, PathRecording};
 use pinhole::{Film, RenderSettings};
 

@@ -1,0 +1,31 @@
+//! What tests, benchmarks and the program need of the inside. It may change in any version.
+
+pub use crate::accel::binary_tree::{
+    BINARY_INNER, BINARY_LEAF, BINARY_LEVELS, BinaryChild, BinaryNode, BinaryTree,
+};
+pub use crate::accel::grid::{Grid, GridStatistics};
+pub use crate::accel::grid_build::{BuiltGrid, GridBudget, build_grid};
+pub use crate::accel::grid_check::GridError;
+pub use crate::accel::query::{NO_HIT, Nearest, RayF32};
+pub use crate::accel::slab::SMALLEST_COMPONENT;
+pub use crate::accel::sphere::intersect_sphere;
+pub use crate::accel::tree_check::{TreeError, TreeStatistics};
+pub use crate::accel::wide_node::{WIDE_LEAF, WideNode};
+pub use crate::accel::wide_tree::{WIDE_LEVELS, WideTree};
+#[cfg(feature = "gpu")]
+pub use crate::gpu::edit::ShaderEdit;
+#[cfg(feature = "gpu")]
+pub use crate::gpu::passes::hosted::{HostedPicture, HostedSums};
+pub use crate::verify::paths::{
+    PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
+};
+
+/// Walks of a list of spheres.
+pub mod list {
+    pub use crate::accel::list::*;
+}
+
+/// Foreign text in messages.
+pub mod text {
+    pub use crate::text::*;
+}
