@@ -125,12 +125,19 @@ impl From<Tone> for ToneCurve {
 /// The scene and the view of it. [`super::input::Source`] checks them.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// File to render: a scene file (.toml), or a data file (.xyz, .extxyz, .pdb, .ent, .npy, .npz; .bin with
-    /// --format), which the camera frames automatically
-    #[arg(value_name = "SCENE_OR_DATA")]
+    #[arg(value_name = "SCENE_OR_DATA", help = input_help())]
     pub(super) path: PathBuf,
     #[command(flatten)]
     pub(super) view: ViewArgs,
+}
+
+/// The help of the input, which lists the extensions of all formats.
+fn input_help() -> String {
+    format!(
+        "File to render: a scene file (.toml), or a data file ({}; .bin with --format), which the camera frames \
+         automatically",
+        Format::extensions_of(|_| true)
+    )
 }
 
 /// Flags for reading the input, and for the camera.

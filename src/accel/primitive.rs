@@ -1,4 +1,4 @@
-//! Primitives: the shapes of which bricks consist. `ARCHITECTURE.md` explains how to add one.
+//! Primitives: the shapes of which bricks consist. `docs/extending.md` explains how to add one.
 
 use super::brick::Structure;
 
