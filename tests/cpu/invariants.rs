@@ -144,3 +144,34 @@ fn files_are_short() {
         assert!(lines <= 450, "{} has {lines} lines; one idea per file", path.display());
     }
 }
+
+/// A shader that a comment names is there: by its path below `shaders`, or by its file's name.
+#[test]
+fn shaders_that_are_named_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut known = BTreeSet::new();
+    for folder in fs::read_dir(&root).unwrap().map(|entry| entry.unwrap().path()) {
+        if folder.is_dir() {
+            for file in fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()) {
+                known
+                    .insert(file.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/"));
+                known.insert(file.file_name().unwrap().to_str().unwrap().to_owned());
+            }
+        }
+    }
+    let mut count = 0;
+    for (path, text) in sources("src").into_iter().chain(sources("tests")) {
+        for line in text.lines().filter(|line| line.trim_start().starts_with("//")) {
+            for word in line.split(|c: char| c.is_whitespace() || "`,;()[]\"".contains(c)) {
+                let word = word.trim_end_matches(['.', ':']).trim_start_matches("shaders/");
+                if word.ends_with(".wgsl") && word.len() > 5 {
+                    let place = path.display();
+                    let is_example = word.contains("NAME") || word.contains('#');
+                    assert!(is_example || known.contains(word), "{place}: {word} is not there");
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count > 60, "{count}");
+}

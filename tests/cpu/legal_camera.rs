@@ -16,7 +16,7 @@ pub(crate) struct LegalRay {
 }
 
 impl LegalDevice {
-    /// `camera_ray` of shaders/camera_*.wgsl.
+    /// `camera_ray` of the cameras in `shaders/camera`.
     pub(crate) fn camera_ray(
         &mut self,
         kind: CameraKind,

@@ -1,5 +1,5 @@
 //! The check of cameras whose rays intersect at one point or are parallel. The WGSL twins are
-//! `shaders/camera/pinhole.wgsl`, `camera_orthographic.wgsl`, `camera_thin-lens.wgsl` and `disk.wgsl`.
+//! `shaders/camera/pinhole.wgsl`, `orthographic.wgsl`, `thin-lens.wgsl` and `disk.wgsl`.
 
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 

@@ -1,5 +1,5 @@
 //! The check of camera rays: bounds of the error of a device's rays. The WGSL twins are `shaders/camera/film.wgsl` and
-//! `camera_*.wgsl`.
+//! the cameras beside it.
 
 mod any;
 mod entered;

@@ -1,5 +1,5 @@
 //! The check of cameras whose rays are computed from angles. The WGSL twins are `shaders/camera/panorama.wgsl` and
-//! `camera_fisheye.wgsl`.
+//! `fisheye.wgsl`.
 
 use glam::{DVec2, DVec3};
 

@@ -1,5 +1,5 @@
-//! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl`, `scatter_any.wgsl`
-//! and `scatter_matt.wgsl`.
+//! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl` and
+//! `scatter_light.wgsl`.
 
 use super::kernel::{Kernel, Surface};
 use super::material::{

@@ -1,6 +1,5 @@
 //! The check of searches: the nearest hit of a path's ray, and the occlusion of a light. The WGSL twins are
-//! `shaders/primary/trace.wgsl`, `entry_path.wgsl`, `first_segment.wgsl`, `occlude.wgsl` and the parts whose names contain
-//! `origin`.
+//! `shaders/path/extend.wgsl`, `path/hit_before.wgsl`, `path/occlude.wgsl` and `accel/excluded.wgsl`.
 
 use glam::{DVec3, Vec4};
 

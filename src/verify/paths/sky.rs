@@ -1,5 +1,5 @@
-//! The check of light from infinitely far away. The WGSL twins are `shaders/path/by_chance.wgsl`, `sky_plain.wgsl`,
-//! `sky_image.wgsl` and `environment.wgsl`.
+//! The check of light from infinitely far away. The WGSL twins are `shaders/path/by_chance.wgsl`, `sky.wgsl` and
+//! `environment.wgsl`.
 
 use super::kernel::Kernel;
 use super::recording::{UploadedSky, flag, slot};
