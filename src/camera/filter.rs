@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-/// A pixel filter: how much the samples around a pixel's centre count for it. Distances are in pixels, along each axis.
+/// A pixel filter: how densely samples are placed around a pixel's centre. Distances are in pixels, along each axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]

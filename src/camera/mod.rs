@@ -1,6 +1,6 @@
 //! Cameras: each says which ray belongs to a relative location in the picture.
 //!
-//! Each camera is one Rust file here, one WGSL part `shaders/camera_NAME.wgsl`, and one row of `camera_table`.
+//! Each camera is one Rust file here, one WGSL part `shaders/camera/NAME.wgsl`, and one row of `camera_table`.
 //! `docs/extending.md` explains how to add one.
 
 use glam::{DVec2, DVec3};

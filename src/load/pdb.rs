@@ -55,8 +55,8 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
 /// How frames are found and read one by one.
 pub(super) const FRAMES: Frames = Frames { find, read: read_frame };
 
-/// Finds frames by their MODEL records, of all of which the order is checked. What stands before the first of them is
-/// needed by all.
+/// Finds frames by their MODEL records, and checks the order of all of them. The lines before the first are read with
+/// every frame.
 fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> {
     let mut found = FrameIndex { is_whole: true, ..FrameIndex::default() };
     // No frame is read.

@@ -103,7 +103,7 @@ impl Trajectory {
         self.index.frames.len()
     }
 
-    /// Whether there is no frame, which is never so.
+    /// Always false: a trajectory has at least one frame.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.index.frames.is_empty()

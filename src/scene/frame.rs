@@ -56,7 +56,7 @@ pub(super) fn moved([x, y, z, radius]: [f64; 4], origin: DVec3) -> [f32; 4] {
 }
 
 /// The origin of a scene's frame. Along each axis it is zero if the centre of the data is no farther from the world's
-/// origin than the data is wide; otherwise it is the centre of the data.
+/// origin than the longest side of its bounding box; otherwise it is the centre of the data.
 ///
 /// The centre is rounded to f32. Coordinates that are exact in f32 then stay exact after the move, because neither of
 /// the two f32 numbers is more than twice the other (Sterbenz).

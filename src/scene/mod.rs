@@ -35,8 +35,9 @@ pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
-/// The frame is that of the world unless the data lies farther from the world's origin, along an axis, than it is wide;
-/// then the origin is the centre of the data along that axis, so that f32 offsets preserve its shape. The GPU and the
+/// The frame is that of the world unless the centre of the data is farther from the world's origin, along an axis, than
+/// the longest side of the data's bounding box; then the origin is that centre, along that axis, so that f32 offsets
+/// preserve the shape of the data. The GPU and the
 /// CPU reference see the same f32 numbers.
 #[derive(Clone, Debug)]
 pub struct Scene {

@@ -82,6 +82,33 @@ fn links_lead_somewhere() {
     assert!(count > 60, "{count}");
 }
 
+/// Files of Rust and WGSL that a page names in backticks are there: by their path from the top, or in one of the folders
+/// that a page may leave out.
+#[test]
+fn named_files_exist() {
+    let mut count = 0;
+    for page in pages().iter().filter(|page| !page.ends_with("CHANGELOG.md")) {
+        let text = fs::read_to_string(page).unwrap();
+        for line in lines(&text) {
+            for name in line.split('`').skip(1).step_by(2) {
+                let is_file = name.ends_with(".rs") || name.ends_with(".wgsl");
+                if !is_file
+                    || !name.contains('/')
+                    || name.contains(['*', ' '])
+                    || name.contains("NAME")
+                {
+                    continue;
+                }
+                let folders = ["", "src", "shaders", "cli", "cli/src"];
+                let is_there = folders.iter().any(|folder| root().join(folder).join(name).exists());
+                assert!(is_there, "{}: {name} is not there", page.display());
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 100, "{count}");
+}
+
 #[test]
 fn broken_links_are_found() {
     let page = root().join("README.md");
