@@ -89,15 +89,15 @@ pub struct AccelPlan {
 }
 
 impl AccelPlan {
-    /// Makes a plan for the spheres of a scene and a device whose bindings hold up to `binding_bytes`. Assumes that
+    /// Makes a plan for the spheres of a scene, in the scene's frame, and a device whose bindings hold up to `binding_bytes`. Assumes that
     /// many pictures will be rendered.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
         Self::for_rays(spheres, choice, binding_bytes, u64::MAX)
     }
 
-    /// Makes a plan like [`AccelPlan::new`], for a known number of rays: if there are few, a structure that is slower
-    /// but faster to build may be better.
+    /// Makes a plan like [`AccelPlan::new`], for a known number of rays in all pictures together: if there are few, a
+    /// structure that is slower to trace but faster to build may be better.
     #[must_use]
     pub fn for_rays(
         spheres: &[[f32; 4]],

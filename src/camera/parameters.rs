@@ -6,7 +6,8 @@ use super::{Camera, CameraError, camera_table};
 use crate::exact::Table;
 use crate::geometry::bounds::Bounds;
 
-/// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file.
+/// The parameters of a camera of any kind: the table `[camera.NAME]` of a scene file, from which it is deserialized. The
+/// default is a pinhole camera that frames the scene.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(transparent)]
 pub struct CameraParameters(ByKind);

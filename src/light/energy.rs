@@ -18,7 +18,7 @@ use crate::scene::material::{Material, SurfaceProperties};
 /// of the entries themselves is below 0.0005 and 0.001.
 pub const ENTRIES: usize = 256;
 
-/// A lobe that has a table. Its normals follow the GGX distribution (Trowbridge and Reitz), with α = roughness².
+/// A lobe of reflected or refracted light, for which a table says how much energy a single scattering loses. Its normals follow the GGX distribution (Trowbridge and Reitz), with α = roughness².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
     /// All light is reflected. The weight of a sample is G2/G1, with the height-correlated G2.

@@ -5,7 +5,9 @@ use super::line::Line;
 use super::rounding::Interval;
 use super::sphere::{Slack, SphereTest};
 
-/// The legal answers of a device to a ray.
+/// All answers to a ray that are legal: that a device which conforms to WGSL may give, however it rounds.
+///
+/// A hit is legal if its sphere is listed, and its distance is one of that sphere and at most `limit`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LegalHits {
     /// The spheres that may be the nearest, in no particular order.
