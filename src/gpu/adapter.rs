@@ -1,10 +1,10 @@
-//! Which adapters there are, and which one to use.
+//! Enumerating adapters, and choosing one.
 
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPreference};
 
 use crate::gpu::error::GpuError;
 
-/// More than one would cost start-up time, and list each GPU more than once.
+/// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than once.
 const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
     Backends::METAL
 } else if cfg!(windows) {
@@ -13,16 +13,17 @@ const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
     Backends::VULKAN
 };
 
-/// Every adapter, the best first: real GPUs before software, and of real GPUs the discrete before the
-/// integrated (the other way round if `WGPU_POWER_PREF=low`).
+/// Returns all adapters, the best first: GPUs before software, and discrete GPUs before integrated ones (the other way
+/// round if `WGPU_POWER_PREF=low`).
 ///
-/// One backend is asked, the platform's own: Metal, DX12, or elsewhere Vulkan. `WGPU_BACKEND` names
-/// others, such as `vulkan` on Windows. Validation layers are loaded only if `WGPU_VALIDATION=1`.
+/// Only the backend of the platform is used: Metal, DX12, or Vulkan on all other systems. The environment variable
+/// `WGPU_BACKEND` names other backends, such as `vulkan` on Windows. Validation layers are loaded only if
+/// `WGPU_VALIDATION=1`.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
-        // Not the default, which loads validation layers in debug builds: they cost start-up time,
-        // and the same layers would have to be installed everywhere.
+        // The default would load validation layers in debug builds: they cost start-up time, and would have to be
+        // installed on every machine.
         flags: wgpu::InstanceFlags::empty(),
         ..InstanceDescriptor::new_without_display_handle()
     };
@@ -33,7 +34,7 @@ pub fn adapters() -> Vec<Adapter> {
     let instance = Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(Backends::all()));
     let low_power = PowerPreference::from_env() == Some(PowerPreference::LowPower);
-    // Stable, so that equals stay in the driver's order.
+    // The sort is stable, so adapters of equal rank keep the order of the driver.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type, low_power));
     adapters
 }
@@ -50,10 +51,10 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
     }
 }
 
-/// The adapters to try, the best first: one, if it is named, or all.
+/// Returns the adapters to try, the best first: the one with the given name, or all if there is no name.
 ///
 /// # Errors
-/// As [`index_of_choice`].
+/// The same as for [`index_of_choice`].
 pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     let mut adapters = adapters();
     let index = index_of_choice(&adapters, name)?;
@@ -63,19 +64,19 @@ pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     Ok(adapters)
 }
 
-/// The first of the [`candidates`].
+/// Returns the first of the [`candidates`].
 ///
 /// # Errors
-/// As [`index_of_choice`].
+/// The same as for [`index_of_choice`].
 pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
     candidates(name)?.into_iter().next().ok_or(GpuError::NoAdapter)
 }
 
-/// Which of [`adapters`] to use: the best whose name contains `name`, or else the value of
-/// `WGPU_ADAPTER_NAME`, regardless of case; without either, the best of all.
+/// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment variable
+/// `WGPU_ADAPTER_NAME` if `name` is `None`. Upper and lower case are not distinguished. Without either, it is the first.
 ///
 /// # Errors
-/// If there is no adapter, or none has such a name.
+/// If there is no adapter, or none with such a name.
 pub fn index_of_choice(adapters: &[Adapter], name: Option<&str>) -> Result<usize, GpuError> {
     if adapters.is_empty() {
         if let Some(value) = variable("WGPU_BACKEND") {
@@ -100,7 +101,7 @@ fn name_in_environment() -> Option<String> {
     variable("WGPU_ADAPTER_NAME")
 }
 
-/// A variable that is set to nothing counts as not set.
+/// The value of an environment variable. A variable with an empty value counts as not set.
 fn variable(name: &str) -> Option<String> {
     std::env::var(name).ok().filter(|value| !value.is_empty())
 }

@@ -1,13 +1,13 @@
-//! Changes of shaders.
+//! Edits of the shader source.
 
-/// A change of a shader: for experiments, and for tests that a fault is found.
+/// Replacement of text in a shader. It is meant for experiments, and for tests that insert a fault that must be found.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ShaderEdit {
-    /// A file of the folder `shaders`, as `math/fence.wgsl`; of a file with variants also `#` and the variant's name, as
-    /// `primary/entry.wgsl#made`.
+    /// Path of the file relative to the folder `shaders`, such as `math/fence.wgsl`. For a file with variants, `#` and the
+    /// name of the variant follow, such as `primary/entry.wgsl#made`.
     pub file: String,
-    /// What is replaced, wherever it stands in the file.
+    /// The text that is replaced. Every occurrence in the file is replaced.
     pub find: String,
-    /// What it is replaced by.
+    /// The text that replaces it.
     pub replace: String,
 }

@@ -1,4 +1,4 @@
-//! What can go wrong on a device, and turning wgpu's errors into values.
+//! Errors of the GPU renderer, and functions that turn errors of wgpu into values.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::image::denoise::MissingGuide;
 use crate::render::SettingsError;
 use crate::scene::SceneError;
 
-/// Why the GPU path cannot do what it was asked.
+/// The reason why the GPU renderer failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -19,127 +19,131 @@ pub enum GpuError {
         "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
     )]
     NoAdapter,
-    /// `WGPU_BACKEND` names backends that have no adapter.
+    /// The environment variable `WGPU_BACKEND` names backends that have no adapter.
     #[error("WGPU_BACKEND={value} leaves no adapter; unset it, or name vulkan, metal or dx12")]
     NoAdapterOfBackend {
-        /// The variable's value.
+        /// The value of the variable.
         value: String,
     },
-    /// No adapter has a name that contains the wanted text.
+    /// No adapter's name contains the requested text.
     #[error("no adapter's name contains `{wanted}`; {}", list(available))]
     UnknownAdapter {
         /// The text as given.
         wanted: String,
-        /// Names of the adapters that exist.
+        /// The names of the adapters that were found.
         available: Vec<String>,
     },
-    /// The adapter gives no device with the limits that the kernels need.
-    #[error("adapter {adapter} gives no device: {message}")]
+    /// The adapter could not open a device with the requested limits and features.
+    #[error("adapter {adapter} could not open a device: {message}")]
     NoDevice {
-        /// Name of the adapter.
+        /// The name of the adapter.
         adapter: String,
-        /// wgpu's reason.
+        /// The reason that wgpu gave.
         message: String,
     },
-    /// A buffer would be larger than a limit of the device.
+    /// A buffer would be larger than a limit of the device allows.
     #[error("{what} needs {needed} bytes, but {limit_name} of this device is {limit}")]
     Limit {
-        /// What the buffer holds.
+        /// Description of the buffer.
         what: &'static str,
-        /// Bytes needed.
+        /// Size of the buffer in bytes.
         needed: u64,
         /// wgpu's name of the limit.
         limit_name: &'static str,
-        /// The limit's value in bytes.
+        /// Value of the limit in bytes.
         limit: u64,
     },
-    /// The host's memory is too small.
+    /// The host does not have enough free memory.
     #[error(
         "{what} needs {needed} bytes of host memory, but {available} are free; choose {instead}"
     )]
     HostMemory {
-        /// What takes it.
+        /// What needs the memory.
         what: &'static str,
-        /// Bytes needed.
+        /// Number of bytes that are needed.
         needed: u64,
-        /// Bytes that are free.
+        /// Number of bytes that are free.
         available: u64,
-        /// What would need less.
+        /// An alternative that would need less memory.
         instead: &'static str,
     },
-    /// A target texture is not what the renderer was built for.
+    /// A target texture does not have the format, size or usage that the renderer needs.
     #[error("the {layer} target is {found}; it must be {expected}")]
     Target {
-        /// Which target.
+        /// Name of the target's layer.
         layer: &'static str,
-        /// What was given.
+        /// Description of the texture that was given.
         found: String,
-        /// What is needed.
+        /// Description of the texture that is needed.
         expected: String,
     },
-    /// The renderer was built without this camera or structure, or for one brick only.
+    /// The renderer was built without this camera or structure, or for scenes of a single brick only.
     #[error(
-        "this renderer has no pipeline for the {} camera and a {} of {}s, perhaps in several bricks; name them in RendererOptions",
+        "this renderer has no pipeline for the {} camera and a {} of {}s; name both in RendererOptions, and set \
+         `several_bricks` if the scene consists of several bricks",
         camera.name(), kind.structure.name(), kind.primitive.name()
     )]
     NoPipeline {
-        /// The camera's kind.
+        /// The kind of the camera.
         camera: CameraKind,
         /// The kind of the scene's bricks.
         kind: BrickKind,
     },
     /// The renderer was built without this structure.
     #[error(
-        "this renderer was not built for a {} of {}s; name them in RendererOptions",
+        "this renderer was not built for a {} of {}s; name the structure and the primitive in RendererOptions",
         kind.structure.name(), kind.primitive.name()
     )]
     NoStructure {
         /// The kind of the scene's bricks.
         kind: BrickKind,
     },
-    /// A ray took more steps than a kernel may.
+    /// A ray needed more loop iterations than a kernel may execute on this device.
     #[error(
-        "a ray takes more steps than this device may loop for; choose the structure `list`, which is slow \
-         and always ends"
+        "a ray needs more loop iterations than this device allows; choose the structure `list`, which is slow but \
+         always stays within the limit"
     )]
     Steps,
-    /// The host asked to stop.
+    /// The caller asked to stop the render.
     #[error("stopped before the picture was finished")]
     Stopped,
-    /// Only the integrator `path` has paths that can be recorded.
+    /// A recording of paths was requested for settings of another integrator than `path`.
     #[error(
-        "primary rays and studios have no paths that could be recorded; choose the integrator `path`"
+        "the integrators `primary` and `studio` trace no paths that could be recorded; choose the integrator `path`"
     )]
     NotPaths,
-    /// Only primary rays can be recorded here.
+    /// A function that supports primary rays only was called with another integrator.
     #[error(
-        "frames and recordings have primary rays only, for now, and not those of the integrator `{integrator}`; choose \
-         `primary`, or render with `Headless::render`"
+        "frames and recordings do not support the integrator `{integrator}` yet; choose `primary`, or render with \
+         `Headless::render`"
     )]
     NotPrimary {
-        /// The integrator that was asked for.
+        /// The integrator that was requested.
         integrator: &'static str,
     },
-    /// A studio needs a structure of its own for shadows, and the scene has none.
+    /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded without.
     #[error(
-        "some spheres of this scene are not opaque, and it was uploaded without the structure of those that cast shadows \
-         in a studio; upload what `RenderPlan::build` gives of a plan for these settings"
+        "some spheres of this scene are not opaque, and the scene was uploaded without the structure of the spheres that \
+         cast shadows in a studio; upload the structures that `RenderPlan::build` returns for a plan with these settings"
     )]
     NoOccluders,
-    /// `record` was called before `Frame::set_view`.
+    /// `Renderer::record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
     /// The frame was made for a renderer with other targets.
-    #[error("the frame was made for a renderer with other targets; make it for this one")]
-    OtherRenderer,
-    /// The frame's view is of another scene, or of this one before its spheres moved.
     #[error(
-        "the frame's view is of another scene, or of other spheres; call Frame::set_view with this one"
+        "the frame was made for a renderer with other targets; create a frame for this renderer"
+    )]
+    OtherRenderer,
+    /// The view of the frame belongs to another scene, or was set before the spheres of this scene moved.
+    #[error(
+        "the frame's view belongs to another scene, or was set before this scene's spheres moved; call Frame::set_view \
+         with this scene"
     )]
     OtherScene,
-    /// An update of a scene changes more than colours.
+    /// An update of a scene changes more than colours, so the existing buffers cannot be updated.
     #[error(
-        "this update cannot be made in place; build the structure anew, and call SceneBuffers::replace"
+        "this update cannot be made in place; build a new structure, upload it and call SceneBuffers::replace"
     )]
     NotInPlace,
     /// The device ran out of memory.
@@ -148,25 +152,25 @@ pub enum GpuError {
     /// The device did not finish in time.
     #[error("the device did not finish within {} seconds", waited.as_secs())]
     Timeout {
-        /// How long was waited.
+        /// The time that the host waited.
         waited: Duration,
     },
-    /// The device is gone.
+    /// The device was lost, for example because the driver crashed.
     #[error("the device was lost: {message}")]
     DeviceLost {
-        /// The driver's reason.
+        /// The reason that the driver gave.
         message: String,
     },
-    /// A shader or a command was refused: a defect of this crate or of a driver.
+    /// wgpu rejected a shader or a command, which is a defect of this crate or of a driver.
     #[error("wgpu reports: {message}")]
     Device {
-        /// wgpu's message; places in shaders are given as file and line.
+        /// The message of wgpu. Locations in shaders are given as file and line.
         message: String,
     },
-    /// A shader is to be edited where it has no such text.
-    #[error("shaders/{} has no text `{}`, which is to be replaced", edit.file, edit.find)]
+    /// The text that a shader edit should replace does not occur in the shader.
+    #[error("shaders/{} does not contain the text `{}`, which should be replaced", edit.file, edit.find)]
     NoSuchText {
-        /// The edit.
+        /// The edit that could not be applied.
         edit: ShaderEdit,
     },
     /// The picture does not fit into host memory.
@@ -175,10 +179,10 @@ pub enum GpuError {
     /// The scene does not fit into host memory.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A picture lacks a layer by which it could be denoised.
+    /// A picture lacks a layer that the denoiser needs.
     #[error(transparent)]
     Guide(#[from] MissingGuide),
-    /// Settings, or a material, are refused.
+    /// The settings or a material are not valid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
 }
@@ -200,15 +204,15 @@ impl GpuError {
     }
 }
 
-/// Runs `create` so that errors of the device come back as values, and never reach the handler of a
-/// host that lent us the device.
+/// Runs `create` in error scopes, so that errors of the device are returned as values and never reach the error handler
+/// of the application that owns the device.
 pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, GpuError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let created = create();
-    // Scopes nest, so they are popped in reverse. What lacks memory is then invalid for all that uses
-    // it, so that the last one popped, memory, comes first as a reason.
+    // Scopes nest, so they are popped in reverse order. A resource without memory also causes validation errors wherever
+    // it is used, so the scope that is popped last, the one for memory, is reported first.
     let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
     match errors.iter().rev().flatten().next() {
         Some(error) => Err(GpuError::from_wgpu(error)),
@@ -216,7 +220,7 @@ pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Re
     }
 }
 
-/// Refuses a buffer that the device could not create or bind.
+/// Returns an error if the device could not create or bind a buffer of this size.
 pub(super) fn check_storage_size(
     device: &wgpu::Device,
     what: &'static str,

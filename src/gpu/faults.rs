@@ -1,17 +1,18 @@
-//! What goes wrong on a device outside any call of ours.
+//! Errors that wgpu reports by callback, outside of any call.
 
 use std::sync::{Mutex, PoisonError};
 
 use crate::gpu::error::GpuError;
 
-/// What wgpu reported outside any call.
+/// Errors that wgpu reported by callback.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     first: Mutex<Option<GpuError>>,
 }
 
 impl Faults {
-    /// Keeps the first fault, unless this one explains it: what follows a lost device is noise.
+    /// Stores a fault, unless an earlier one is stored. The loss of the device replaces all others, because it is their
+    /// cause.
     pub(super) fn report(&self, fault: GpuError) {
         let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         if first.is_none() || matches!(fault, GpuError::DeviceLost { .. }) {
@@ -19,7 +20,7 @@ impl Faults {
         }
     }
 
-    /// Forgets what an earlier render or the caller's own commands met; a lost device stays lost.
+    /// Removes the fault of an earlier render or of the caller's own commands, unless it is the loss of the device.
     pub(super) fn forget(&self) {
         let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         first.take_if(|fault| !matches!(fault, GpuError::DeviceLost { .. }));

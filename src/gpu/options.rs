@@ -1,4 +1,4 @@
-//! How a headless device is opened.
+//! Options for opening a headless device.
 
 use std::time::Duration;
 
@@ -6,36 +6,37 @@ use wgpu::Limits;
 
 use crate::gpu::edit::ShaderEdit;
 
-/// How a device is opened.
+/// Options for opening a headless device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
-    /// The adapter whose name contains this text, as in [`candidates`](crate::gpu::adapter::candidates).
+    /// Selects the adapter whose name contains this text, as [`candidates`](crate::gpu::adapter::candidates) does. `None`
+    /// selects the best adapter.
     pub adapter: Option<String>,
-    /// What the device may use.
+    /// The limits that the device is opened with.
     pub limits: LimitChoice,
-    /// How long one submission may take before it is given up. Submissions adapt to the device and take
-    /// about 60 milliseconds.
+    /// The time that one submission may take before the render fails. The size of submissions adapts to the device, so
+    /// that each takes about 60 milliseconds.
     pub timeout: Duration,
-    /// Whether the device itself may say how many workgroups a dispatch has, where it can; off only in experiments
-    /// and tests. The picture does not depend on it.
+    /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off. The
+    /// picture does not depend on this option.
     pub indirect: bool,
-    /// Changes of shaders; none, but in experiments and tests.
+    /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
 
-/// Which limits a device is opened with.
+/// The limits that a device is opened with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LimitChoice {
-    /// What the adapter has.
+    /// The limits of the adapter.
     #[default]
     Adapter,
-    /// WebGPU's defaults, or less where the adapter has less: what every browser guarantees.
+    /// The default limits of WebGPU, which every browser guarantees, or those of the adapter where they are lower.
     WebGpu,
 }
 
 impl Default for HeadlessOptions {
-    /// The best adapter with its own limits; ten minutes.
+    /// Returns options for the best adapter with its own limits and a timeout of ten minutes.
     fn default() -> Self {
         let timeout = Duration::from_secs(600);
         let edits = Vec::new();
@@ -43,7 +44,8 @@ impl Default for HeadlessOptions {
     }
 }
 
-/// What is used where it exists: a clock and, where the device's memory is the host's, writing into it.
+/// Features that are used where the adapter has them: timestamps and, where device and host share their memory, buffers
+/// that the host can map.
 pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {
     match device_type {
         wgpu::DeviceType::Cpu | wgpu::DeviceType::IntegratedGpu => {
@@ -54,11 +56,11 @@ pub(super) fn wanted_features(device_type: wgpu::DeviceType) -> wgpu::Features {
 }
 
 pub(super) fn required_limits(available: &Limits, choice: LimitChoice) -> Limits {
-    // WebGPU's limits, where the adapter has them, so that a picture does not depend on more.
+    // The limits of WebGPU where the adapter reaches them, so that no picture depends on higher limits by accident.
     let webgpu = Limits::default().or_worse_values_from(available);
     match choice {
         LimitChoice::WebGpu => webgpu,
-        // And all that it has of what bounds the size of pictures and scenes.
+        // The limits that bound the size of pictures and scenes are those of the adapter.
         LimitChoice::Adapter => Limits {
             max_buffer_size: available.max_buffer_size,
             max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,

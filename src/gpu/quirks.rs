@@ -1,14 +1,15 @@
-//! What drivers are known to compute wrongly, and what is done about it. `docs/drivers.md` has the evidence.
+//! Workarounds for drivers that are known to compute wrong results. `docs/drivers.md` contains the evidence.
 
 use wgpu::AdapterInfo;
 
 use crate::accel::{AccelChoice, AccelPlan, Structure};
 use crate::scene::Scene;
 
-/// Plans with what suits the data, unless the driver is known to get that wrong.
+/// Plans the structure that suits the data, or another one if the driver is known to compute wrong results with it.
 ///
-/// `SwiftShader`, of Chromium 156: where invocations that run together leave a loop by `break` at different times,
-/// those that left first lose what they found in it. Grids are walked in such loops; trees are not.
+/// `SwiftShader` of Chromium 156 has this defect: where invocations that run together leave a loop by `break` at
+/// different times, those that left first lose the values that they assigned in the loop. Grids are traversed in such
+/// loops; trees are not.
 pub(super) fn plan(
     info: &AdapterInfo,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Denoising a picture on a device, in strips that fit its bindings.
+//! Denoising a picture on a device, in strips that fit into a binding.
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Buffer, BufferUsages, ComputePassDescriptor};
@@ -13,7 +13,7 @@ use crate::gpu::shader::{Kernel, part};
 use crate::image::Image;
 use crate::image::denoise::{Guided, PASSES};
 
-/// What one pass does.
+/// Uniform record of one pass of the denoiser.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct Denoise {
@@ -22,11 +22,11 @@ pub(in crate::gpu) struct Denoise {
     pub(in crate::gpu) zero: u32,
 }
 
-/// How many pixels away a pixel may be that counts.
+/// Maximum distance in pixels, along a row or column, at which one pixel can influence another.
 const REACH: u32 = 2 * ((1 << PASSES) - 1);
 
-/// The most pixels of a strip that is filtered at once.
-const MOST_PIXELS: u64 = 1 << 21;
+/// Maximum number of pixels of a strip, which is filtered at once.
+const MAX_STRIP_PIXELS: u64 = 1 << 21;
 
 pub(in crate::gpu) fn denoise_kernel() -> Kernel {
     Kernel {
@@ -36,16 +36,16 @@ pub(in crate::gpu) fn denoise_kernel() -> Kernel {
 }
 
 impl Headless {
-    /// A picture with less noise: light is averaged among pixels of like shape and colour, in five passes.
+    /// Returns a picture with less noise: light is averaged over pixels of similar shape and colour, in five passes.
     ///
     /// # Errors
-    /// If the picture lacks one of the layers [`crate::image::denoise::GUIDES`], or if the device fails.
+    /// If the picture lacks one of the layers in [`crate::image::denoise::GUIDES`], or if the device fails.
     pub fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
         let guided = Guided::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);
-        let most = MOST_PIXELS.min(binding_limit(&self.device().limits()) / 16);
+        let max_pixels = MAX_STRIP_PIXELS.min(binding_limit(&self.device().limits()) / 16);
         let reach = REACH as usize;
-        let rows = (most as usize / width).saturating_sub(2 * reach).max(1);
+        let rows = (max_pixels as usize / width).saturating_sub(2 * reach).max(1);
         let mut lights = Vec::new();
         lights.reserve_exact(guided.lights.len());
         for start in (0..height).step_by(rows) {
@@ -54,12 +54,12 @@ impl Headless {
             let strip = self.denoised_strip(&guided, width, first..last)?;
             lights.extend_from_slice(&strip[(start - first) * width..(end - first) * width]);
         }
-        let mut quiet = image.clone();
-        quiet.color_mut().copy_from_slice(&guided.colors(lights.into_iter()));
-        Ok(quiet)
+        let mut denoised = image.clone();
+        denoised.color_mut().copy_from_slice(&guided.colors(lights.into_iter()));
+        Ok(denoised)
     }
 
-    /// The light of some rows, filtered with what these rows know.
+    /// The light of some rows, filtered with the pixels of these rows only.
     fn denoised_strip(
         &self,
         guided: &Guided,
@@ -69,7 +69,7 @@ impl Headless {
         let (device, queue) = (self.device(), self.queue());
         let pixels = rows.start * width..rows.end * width;
         let bytes = 16 * pixels.len() as u64;
-        // A width and a part of a height of a film, so they fit.
+        // These are the width and a part of the height of a film, so they fit into u32.
         let size = [width as u32, rows.len() as u32];
         let (filter, passes, result, back) = scoped(device, || {
             let vectors = storage::<[f32; 4]>(true);

@@ -1,4 +1,4 @@
-//! Layers that follow from what kernels wrote, and so need no kernel.
+//! Layers that the host computes from the layers that kernels wrote.
 
 use std::ops::Range;
 
@@ -8,14 +8,14 @@ use crate::image::color::LinearRgb;
 use crate::image::{NO_ID, RowMut};
 use crate::scene::SceneAppearance;
 
-/// What they follow from beside a tile's pixels.
+/// The data, besides the pixels of a tile, that derived layers are computed from.
 pub(in crate::gpu) struct Derived<'a> {
     pub(in crate::gpu) view: View<'a>,
     pub(in crate::gpu) appearance: &'a SceneAppearance,
 }
 
 impl Derived<'_> {
-    /// Sets, in some columns of row `j`, what follows from depths: the points that were hit.
+    /// Sets the positions of the hits in some columns of row `j`, which follow from the depths.
     pub(in crate::gpu) fn set_by_depths(
         &self,
         row: &mut RowMut<'_>,
@@ -30,7 +30,8 @@ impl Derived<'_> {
         }
     }
 
-    /// Sets, in some columns of a row, what follows from ids, and from there being one ray for each pixel.
+    /// Sets the layers that follow from ids in some columns of a row: opacity, albedo, and the number of samples and the
+    /// variance of pixels with a single ray each.
     pub(in crate::gpu) fn set_by_ids(
         &self,
         row: &mut RowMut<'_>,
@@ -55,7 +56,7 @@ impl Derived<'_> {
         }
     }
 
-    /// The point of a pixel's ray at a distance, in the world.
+    /// The point in world space at a distance along the ray of a pixel.
     fn point(&self, [i, j]: [usize; 2], t: f32) -> [f32; 3] {
         let location = self.view.film.relative_location(i as f64 + 0.5, j as f64 + 0.5);
         self.view.camera.ray_in_world(location).at(f64::from(t)).as_vec3().to_array()

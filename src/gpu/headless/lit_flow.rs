@@ -1,4 +1,4 @@
-//! Dispatches of lit pictures, gathered into submissions that are neither too short nor too long.
+//! Collecting the dispatches of lit pictures in submissions that are neither too short nor too long.
 
 use std::time::Instant;
 
@@ -6,30 +6,31 @@ use wgpu::{CommandEncoder, SubmissionIndex};
 
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::passes::lit::{LitFrame, LitPasses, MOST_DISPATCHES, Moment, Recorder, Step};
+use crate::gpu::passes::lit::{LitFrame, LitPasses, MAX_DISPATCHES, Moment, Recorder, Step};
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
-/// Told after every submission; an error ends the work.
+/// Callback after every submission. An error that it returns ends the work.
 pub(in crate::gpu) type After<'a> = dyn FnMut() -> Result<(), GpuError> + 'a;
 
-/// While the device works on one submission, the next is recorded.
+/// Records and submits the dispatches of a lit picture. While the device executes one submission, the next is recorded.
 pub(in crate::gpu) struct Flow<'a> {
     headless: &'a Headless,
     frame: &'a LitFrame,
     scene: &'a SceneBuffers,
     recorder: Recorder<'a>,
     encoder: Option<CommandEncoder>,
-    /// Workgroups of searches in the encoder.
+    /// Number of workgroups of searches in the encoder.
     gathered: u64,
-    /// How many samples a tile will have after the round that is recorded.
+    /// Number of samples that the tile has after the round that is being recorded.
     end: u32,
-    /// The tiles, and the samples that will be summed up there once the encoder has been submitted.
+    /// Tiles that the encoder accumulates samples of, each with its number of samples after that.
     accumulated: Vec<(usize, u32)>,
+    /// The submission that the device is executing.
     submitted: Option<Submitted>,
-    /// When the submission before that was done.
+    /// The time at which the previous submission had finished.
     last_done: Instant,
-    /// How many samples are summed up in each tile, as far as is submitted.
+    /// Number of samples that each tile has accumulated, counting all submitted work.
     pub(in crate::gpu) samples: Vec<u32>,
 }
 
@@ -61,13 +62,13 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// What is recorded next, beside dispatches.
+    /// The encoder of the next submission, for commands other than dispatches.
     pub(in crate::gpu) fn encoder(&mut self) -> &mut CommandEncoder {
         let headless = self.headless;
         self.encoder.get_or_insert_with(|| headless.encoder())
     }
 
-    /// Records the dispatches of some samples of a tile, up to `end`, and submits what is enough.
+    /// Records the dispatches of some samples of a tile, up to `end`, and submits them whenever there are enough.
     pub(in crate::gpu) fn round(
         &mut self,
         tile: usize,
@@ -80,21 +81,21 @@ impl<'a> Flow<'a> {
         steps.iter().try_for_each(|step| self.step(step, after))
     }
 
-    /// Turns to a tile, of which no path is followed yet.
+    /// Starts new paths in a tile.
     pub(in crate::gpu) fn begin(&mut self, tile: usize) {
         self.recorder.tile = tile;
         let frame = self.frame;
         frame.record_clear_lists(self.encoder());
     }
 
-    /// Records a dispatch, in slices if it takes long.
+    /// Records a dispatch, divided into slices if it takes long.
     pub(in crate::gpu) fn step(
         &mut self,
         step: &Step<'a>,
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
-        // A slice of a list needs one more.
-        if self.recorder.dispatches() + 2 > MOST_DISPATCHES {
+        // A slice of a list needs one more dispatch.
+        if self.recorder.dispatches() + 2 > MAX_DISPATCHES {
             self.send(after)?;
         }
         let whole = self.recorder.groups(step);
@@ -128,7 +129,7 @@ impl<'a> Flow<'a> {
         self.recorder.record(encoder, step, slice);
     }
 
-    /// Submits what was gathered, and waits until what was submitted before is done.
+    /// Submits the recorded commands, and waits until the previous submission has finished.
     fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         let Some(encoder) = self.encoder.take() else {
             return Ok(());
@@ -146,7 +147,7 @@ impl<'a> Flow<'a> {
         after()
     }
 
-    /// Submits what was gathered, and waits until all is done and the buffers are mapped.
+    /// Submits the recorded commands, and waits until all work has finished and the buffers are mapped.
     pub(in crate::gpu) fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
         self.send(&mut || Ok(()))?;
         let last = self.submitted.take();
@@ -156,7 +157,7 @@ impl<'a> Flow<'a> {
         self.wait_for(last)
     }
 
-    /// Drops what was gathered, and waits until what was submitted is done.
+    /// Discards the recorded commands, and waits until all submitted work has finished.
     pub(in crate::gpu) fn abandon(&mut self) -> Result<(), GpuError> {
         self.encoder = None;
         self.accumulated.clear();
@@ -170,15 +171,16 @@ impl<'a> Flow<'a> {
             return Ok(());
         };
         self.headless.wait(&[], index)?;
-        // It began when it was submitted, or when the one before was done.
+        // The device began this work when it was submitted, or when the previous submission had finished.
         let elapsed = at.max(self.last_done).elapsed();
         self.last_done = Instant::now();
         let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
-        self.scene.took(Groups { first: [0, 0], size }, elapsed);
+        self.scene.adapt_submission_size(Groups { first: [0, 0], size }, elapsed);
         Ok(())
     }
 
-    /// How much the samples of all pixels vary: sums of variances, and of luminances. All must have as many samples.
+    /// Computes the sums, over all pixels, of the variances of their means and of their luminances. All pixels must have
+    /// the same number of samples.
     pub(in crate::gpu) fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
         let mut sums = [0.0; 2];
         for (tile, samples) in self.samples.clone().into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Lit pictures on a device of our own, batch by batch of samples.
+//! Rendering lit pictures on the library's own device, in batches of samples.
 
 use std::ops::Range;
 
@@ -18,13 +18,14 @@ use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
 use crate::render::{PrimarySettings, RenderSettings};
 
-/// How many samples are taken after so many. After each batch there is a picture that could be kept.
+/// Size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a picture that
+/// could be returned.
 fn batch(done: u32, total: u32) -> u32 {
     done.clamp(1, 32).min(total - done)
 }
 
 impl Headless {
-    /// Renders a lit picture of a scene that is on this device.
+    /// Renders a lit picture of a scene that is already on this device.
     pub(in crate::gpu) fn render_lit(
         &self,
         scene: &SceneBuffers,
@@ -49,7 +50,7 @@ impl Headless {
                 at_once: AT_ONCE,
             };
             match work.gather(&mut image, watch) {
-                // Several directions take more steps than one.
+                // Several directions of ambient light in one invocation need more steps than one direction.
                 Err(GpuError::Steps) if lighting.parameters.occlusion_samples > 1 => {
                     Work { at_once: 1, ..work }.gather(&mut image, watch)
                 }
@@ -67,7 +68,7 @@ impl Headless {
         Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
     }
 
-    /// The layers that are not averaged: of the ray through each pixel's centre.
+    /// Renders the layers that are not averaged over samples, but belong to the ray through the centre of each pixel.
     fn data_layers(
         &self,
         scene: &SceneBuffers,
@@ -80,7 +81,7 @@ impl Headless {
         if !by_one_ray.iter().any(|layer| layers.contains(*layer)) {
             return Ok(Image::new(view.film.width(), view.film.height(), layers)?);
         }
-        // No sample is taken yet: what would finish the picture has to wait.
+        // There is no sample yet, so the render cannot finish early.
         let total = settings.sampling.samples;
         let none = Progress { samples: 0, total, part: 0.0, noise: None };
         let watch = &mut |_: &Progress| match watch(&none) {
@@ -91,7 +92,7 @@ impl Headless {
     }
 }
 
-/// All that a lit picture is made of.
+/// The inputs of a lit picture.
 struct Work<'a> {
     headless: &'a Headless,
     passes: &'a LitPasses,
@@ -99,13 +100,13 @@ struct Work<'a> {
     view: &'a View<'a>,
     settings: &'a RenderSettings,
     lighting: &'a LightingData,
-    /// How many directions of ambient light are searched at once.
+    /// Maximum number of directions of ambient light that one dispatch searches.
     at_once: u32,
 }
 
 impl Work<'_> {
-    /// Takes samples until there are enough of them or the caller says so, and writes their means. Gives how many
-    /// every pixel has.
+    /// Takes samples until all are complete or the caller finishes the render, and writes their means to the image. Returns
+    /// the number of samples that every pixel has.
     fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
         let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
@@ -157,12 +158,13 @@ impl Work<'_> {
                 totals.add(&sums::write(image, tile.tile, found, samples));
             })?;
         }
-        // Tiles may have more than the others if the picture was finished within a batch.
+        // Some tiles have more samples than others if the render was finished within a batch.
         let every = flow.samples.iter().copied().min().unwrap_or(progress.samples);
         Ok((every, totals))
     }
 
-    /// Takes some samples of every pixel. `go_on` is told how much of all work is done.
+    /// Takes some samples of every pixel. `go_on` is called with the completed fraction of all work, and decides whether to
+    /// continue.
     fn batch<'a>(
         &'a self,
         frame: &'a LitFrame,
@@ -200,7 +202,7 @@ impl Work<'_> {
     }
 }
 
-/// Waits for all that is submitted; an error if rays were given up.
+/// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
 fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
     frame.record_copy_spent(flow.encoder());
     flow.finish(&[frame.spent_back.buffer()])?;

@@ -17,10 +17,10 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::PrimarySettings;
 
 impl Headless {
-    /// Traces one ray through the centre of every pixel and throws the answers away: for measurements.
+    /// Traces a ray through the centre of every pixel and discards the hits, to measure the time that this takes.
     ///
     /// # Errors
-    /// As [`Headless::render`].
+    /// The same as for [`Headless::render`].
     pub fn measure(
         &self,
         scene: &SceneBuffers,
@@ -43,7 +43,7 @@ impl Headless {
         let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;
         let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue()))?;
         let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
-        // wgpu clears a buffer when it is first used, which is none of the tracing.
+        // wgpu clears a buffer when it is first used; this must not be measured.
         let mut encoder = self.encoder();
         frame.record_clear(&mut encoder);
         self.run(encoder, &[])?;

@@ -1,6 +1,6 @@
-//! Rendering without a display, on a device of our own.
+//! Rendering without a display, on a device that the library owns.
 //!
-//! The only file of the library that submits, polls, or waits for a device's work.
+//! No other file of the library submits work to a device, polls it, or waits for it.
 
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
@@ -58,17 +58,18 @@ pub struct Headless {
     timeout: Duration,
     is_indirect: bool,
     faults: Arc<Faults>,
-    /// Locked for the whole of a render, because faults cannot be told apart by render.
+    /// The renderers that were built so far. The mutex is locked during a whole render, because faults that wgpu reports
+    /// cannot be attributed to a render.
     renderers: Mutex<Renderers>,
 }
 
 impl Headless {
-    /// Opens the first of [`adapter::candidates`] that gives a device.
+    /// Opens a device on the first of [`adapter::candidates`] that can open one.
     ///
     /// # Errors
-    /// If there is no such adapter, or none gives a device.
+    /// If there is no such adapter, or if none can open a device; the error is then that of the first.
     pub fn open(options: &HeadlessOptions) -> Result<Self, GpuError> {
-        // Why the best one failed, if all do.
+        // The error of the best adapter, which is returned if all fail.
         let mut refusal = GpuError::NoAdapter;
         for adapter in &adapter::candidates(options.adapter.as_deref())? {
             match Self::from_adapter(adapter, options) {
@@ -80,10 +81,10 @@ impl Headless {
         Err(refusal)
     }
 
-    /// Opens an adapter, whatever name the options have.
+    /// Opens a device on the given adapter. The adapter's name in the options is ignored.
     ///
     /// # Errors
-    /// If it gives no device.
+    /// If the adapter cannot open a device.
     pub fn from_adapter(adapter: &Adapter, options: &HeadlessOptions) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -114,33 +115,33 @@ impl Headless {
         Ok(Self { info, device, queue, timeout, is_indirect, faults, renderers })
     }
 
-    /// Name, driver and kind of the adapter in use.
+    /// Returns name, driver and kind of the adapter in use.
     #[must_use]
     pub fn adapter_info(&self) -> &AdapterInfo {
         &self.info
     }
 
-    /// The device, for a caller that wants to record by itself.
+    /// Returns the device, for callers that record their own commands.
     #[must_use]
     pub fn device(&self) -> &Device {
         &self.device
     }
 
-    /// Whether the device can be told by a buffer how many workgroups a dispatch has.
+    /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     pub(in crate::gpu) fn is_indirect(&self) -> bool {
         self.is_indirect
     }
 
-    /// The queue, for a caller that wants to record by itself.
+    /// Returns the queue, for callers that record their own commands.
     #[must_use]
     pub fn queue(&self) -> &Queue {
         &self.queue
     }
 
-    /// Tests whether the device computes as bounds of errors assume.
+    /// Tests whether the arithmetic of the device has the properties that the error bounds of the checker assume.
     ///
     /// # Errors
-    /// If the device fails. That it lacks a property is in the report.
+    /// If the device fails. A property that the device lacks is not an error; the report contains it.
     pub fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
         self.alone(|_| {
             let run = SelfTestRun::new(&self.device, extent)?;
@@ -151,14 +152,14 @@ impl Headless {
         })
     }
 
-    /// Copies a scene to the device, brick by brick, with structures that were built of it: by
-    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from one that was built alone.
+    /// Copies a scene to the device, brick by brick, with the structures that were built for it. They come from
+    /// [`RenderPlan::build`](super::RenderPlan::build), or from a single [`Accel`].
     ///
     /// # Errors
-    /// If it does not fit the device, or if the device fails.
+    /// If the scene does not fit into the device's memory or limits, or if the device fails.
     pub fn upload(&self, scene: &Scene, structures: &Structures) -> Result<SceneBuffers, GpuError> {
         let Structures { accel, occluders } = structures;
-        // Layouts are all that is needed, and those of one device are the same wherever they are made.
+        // This renderer only provides the bind group layouts. Equal layouts of one device are compatible.
         let options = RendererOptions {
             cameras: Vec::new(),
             structures: [accel].into_iter().chain(occluders).map(Accel::structure).collect(),
@@ -184,13 +185,13 @@ impl Headless {
 
     /// Renders a picture.
     ///
-    /// A picture beyond the device's limits is rendered in tiles, and a scene beyond them in bricks; the
-    /// picture does not depend on them. Where rays take too many steps in the structure that suits the data,
-    /// another is built. A device renders one picture at a time; other threads wait.
+    /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
+    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data, another
+    /// structure is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
-    /// What [`RenderSettings::check`] refuses; if scene or picture do not fit the device or the host's memory, or if
-    /// the device fails.
+    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the device
+    /// or of the host, or if the device fails.
     pub fn render(
         &self,
         scene: &Scene,
@@ -206,8 +207,8 @@ impl Headless {
         Ok(picture.image)
     }
 
-    /// Does something with a scene in the structures that suit it; where rays take too many steps in those, once
-    /// more with others.
+    /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
+    /// structures, this is repeated with others.
     pub(in crate::gpu) fn with_uploaded<T>(
         &self,
         scene: &Scene,
@@ -231,11 +232,13 @@ impl Headless {
         }
     }
 
-    /// As [`Headless::render`], of a scene that is on this device already. `watch` is told of progress.
+    /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
+    /// submission, and decides how the render continues.
     ///
     /// # Errors
-    /// As [`Headless::render`]; [`GpuError::Stopped`] if `watch` says so; [`GpuError::NoOccluders`] if the settings are
-    /// of a studio, some spheres are not opaque, and the scene was uploaded without what such a studio needs.
+    /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
+    /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
+    /// uploaded without the structure of the spheres that cast shadows.
     pub fn render_uploaded(
         &self,
         scene: &SceneBuffers,
@@ -253,8 +256,8 @@ impl Headless {
         }
     }
 
-    /// Submits the tracing of some workgroups, and what comes with it, waits until it is done and the buffers
-    /// are mapped, and takes note of how long it took.
+    /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and records
+    /// the elapsed time for the size of the next submission.
     pub(in crate::gpu) fn submit_slice(
         &self,
         encoder: CommandEncoder,
@@ -265,7 +268,7 @@ impl Headless {
         let started = Instant::now();
         self.run(encoder, mapped)?;
         let elapsed = started.elapsed();
-        scene.took(groups, elapsed);
+        scene.adapt_submission_size(groups, elapsed);
         Ok(elapsed)
     }
 
@@ -273,9 +276,9 @@ impl Headless {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// A lost device shows itself as all kinds of errors; this asks it first.
+    /// Replaces an error by the loss of the device, if that is its cause: a lost device causes many kinds of errors.
     fn explained(&self, error: GpuError) -> GpuError {
-        // Callbacks run while polling. That the poll fails is no news here.
+        // Callbacks run while polling. The result of the poll itself does not matter here.
         let _ = self.device.poll(wgpu::PollType::Poll);
         match self.faults.check() {
             Err(lost @ GpuError::DeviceLost { .. }) => lost,
@@ -283,7 +286,7 @@ impl Headless {
         }
     }
 
-    /// Works with the renderer that a key stands for, alone on this device.
+    /// Calls `work` with the renderer for a key, while no other thread uses this device.
     pub(in crate::gpu) fn with_renderer<T>(
         &self,
         key: RendererKey,
@@ -292,7 +295,7 @@ impl Headless {
         self.alone(|renderers| renderers.of(&self.device, key).and_then(work))
     }
 
-    /// Works with the passes that a key stands for, alone on this device.
+    /// Calls `work` with the passes for a key, while no other thread uses this device.
     pub(in crate::gpu) fn with_lit_passes<T>(
         &self,
         key: LitKey,
@@ -301,7 +304,7 @@ impl Headless {
         self.alone(|renderers| renderers.lit(&self.device, key).and_then(work))
     }
 
-    /// Works with the pass that writes new colours, alone on this device.
+    /// Calls `work` with the pass that writes new colours, while no other thread uses this device.
     pub(in crate::gpu) fn with_recolor<T>(
         &self,
         work: impl FnOnce(&Recolor) -> Result<T, GpuError>,
@@ -309,7 +312,7 @@ impl Headless {
         self.alone(|renderers| renderers.recolor(&self.device).and_then(work))
     }
 
-    /// Works with the device while no other thread does.
+    /// Calls `work` while no other thread uses this device.
     fn alone<T>(
         &self,
         work: impl FnOnce(&mut Renderers) -> Result<T, GpuError>,
@@ -319,12 +322,12 @@ impl Headless {
         work(&mut renderers).map_err(|error| self.explained(error))
     }
 
-    /// Submits, and does not wait.
+    /// Submits an encoder without waiting.
     pub(in crate::gpu) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
         self.queue.submit([encoder.finish()])
     }
 
-    /// Submits, and waits until it is done and the buffers are mapped.
+    /// Submits an encoder, and waits until it has finished and the buffers are mapped.
     pub(in crate::gpu) fn run(
         &self,
         encoder: CommandEncoder,
@@ -334,7 +337,7 @@ impl Headless {
         self.wait(mapped, submission)
     }
 
-    /// Waits until the submission is done and the buffers are mapped.
+    /// Waits until a submission has finished and the buffers are mapped.
     pub(in crate::gpu) fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
@@ -352,7 +355,7 @@ impl Headless {
             submission_index: Some(submission),
             timeout: Some(self.timeout),
         });
-        // What the device says of itself is more telling than that polling failed.
+        // A fault that the device reported explains more than the failure of the poll.
         self.faults.check()?;
         match polled {
             Ok(_) => Ok(()),

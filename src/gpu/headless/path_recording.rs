@@ -1,5 +1,4 @@
-//! What a device did with paths, for the checker: their state after every pass on its way back to the host, and the
-//! numbers that the device was given.
+//! Recording paths for the checker: their state after every pass, and the numbers that the device was given.
 
 use std::ops::Range;
 
@@ -25,22 +24,22 @@ use crate::verify::{
     PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
 };
 
-/// The longest side of the rectangle whose paths are recorded, in pixels: a sample of eight surfaces then takes
-/// 130 MB of the host's memory.
+/// Maximum side in pixels of the rectangle whose paths are recorded. A sample of eight surfaces then takes 130 MB of host
+/// memory.
 const LONGEST_SIDE: u32 = 256;
 
-/// What is kept of the samples of a tile.
-struct Keeper<'a> {
+/// Collects the recorded states of the samples of a tile.
+struct PathRecorder<'a> {
     frame: &'a LitFrame,
     paths: ReadableBuffer,
     pixels: usize,
-    slots: [Kept; PathState::SLOTS],
+    slots: [SlotSource; PathState::SLOTS],
     sample: RecordedSample,
 }
 
-impl Keeper<'_> {
-    /// Reads what a pass has changed.
-    fn keep(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
+impl PathRecorder<'_> {
+    /// Reads the state that a pass has changed.
+    fn read(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
         let frame = self.frame;
         if moment == Moment::Accumulated {
             frame.record_copy_film(flow.encoder(), 0);
@@ -49,7 +48,7 @@ impl Keeper<'_> {
             let used = FILM_SLOTS as usize * self.pixels;
             self.sample.sums = frame.film_back.read(|sums: &[[u32; 4]]| {
                 let sums = sums[..used].chunks_exact(FILM_SLOTS as usize);
-                // Of one sample, rounding has left nothing out.
+                // The sum of a single sample has no rounding remainder.
                 sums.map(|sum| [sum[0], sum[2]]).collect()
             })?;
             return frame.read_spent();
@@ -60,9 +59,9 @@ impl Keeper<'_> {
         let (states, hits) = self.paths.read(|vectors: &[[u32; 4]]| {
             let slot = |which: usize, index: usize| vectors[which * pixels + index];
             let state = |index| PathState {
-                slots: self.slots.map(|kept| match kept {
-                    Kept::At(which) => slot(which, index),
-                    Kept::Always(bits) => bits,
+                slots: self.slots.map(|source| match source {
+                    SlotSource::Device(which) => slot(which, index),
+                    SlotSource::Constant(bits) => bits,
                 }),
             };
             let states: Vec<PathState> = (0..pixels).map(state).collect();
@@ -87,39 +86,40 @@ impl Keeper<'_> {
     }
 }
 
-/// `HIT` of `shaders/path/state.wgsl`.
+/// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
 const HIT: usize = 6;
 
-/// Where a slot of a [`PathState`] is.
+/// The source of a slot of a [`PathState`].
 #[derive(Clone, Copy, Debug)]
-enum Kept {
-    /// On the device.
-    At(usize),
-    /// Nowhere, because the scene needs no such slot; this is what is in it.
-    Always([u32; 4]),
+enum SlotSource {
+    /// A slot on the device, by its index.
+    Device(usize),
+    /// A constant, because the pictures need no such slot on the device.
+    Constant([u32; 4]),
 }
 
-/// Where all slots are, in the order of [`PathState`].
-fn kept_slots(mode: Mode) -> [Kept; PathState::SLOTS] {
-    let none = Kept::Always([0; 4]);
-    let nowhere = Kept::Always([0, 0, 1.0_f32.to_bits(), 0]);
-    let of_light = if mode.looks_for_light() { [7, 8].map(Kept::At) } else { [nowhere, none] };
-    let medium = if mode.has_medium() { Kept::At(9) } else { none };
+/// The sources of all slots, in the order of [`PathState`].
+fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
+    let zero = SlotSource::Constant([0; 4]);
+    let no_direction = SlotSource::Constant([0, 0, 1.0_f32.to_bits(), 0]);
+    let light_sample =
+        if mode.samples_light() { [7, 8].map(SlotSource::Device) } else { [no_direction, zero] };
+    let medium = if mode.has_medium() { SlotSource::Device(9) } else { zero };
     std::array::from_fn(|slot| match slot {
-        0..=5 => Kept::At(slot),
-        6..=7 => of_light[slot - 6],
+        0..=5 => SlotSource::Device(slot),
+        6..=7 => light_sample[slot - 6],
         _ => medium,
     })
 }
 
 impl Headless {
-    /// Follows some samples of a scene's paths, and keeps their state after every pass: everything by which
-    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. Of a film with a side of
-    /// more than 256 pixels, those of a rectangle in its middle.
+    /// Traces the paths of some samples and records their state after every pass, from which
+    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. If a side of the film has more
+    /// than 256 pixels, only a rectangle in the middle of the film is recorded.
     ///
     /// # Errors
-    /// [`GpuError::NotPaths`] if the integrator is not `path`; as [`Headless::render_uploaded`]; [`GpuError::Stopped`]
-    /// if `watch` says anything but to go on.
+    /// [`GpuError::NotPaths`] if the integrator is not `path`; the same errors as for [`Headless::render_uploaded`];
+    /// [`GpuError::Stopped`] if `watch` finishes or stops the recording.
     pub fn record_paths(
         &self,
         scene: &SceneBuffers,
@@ -161,7 +161,7 @@ impl Headless {
     ) -> Result<Vec<RecordedSample>, GpuError> {
         let room = frame.sizes.room();
         let round = Round { passes, lighting, scene: all, occluders, room, at_once: AT_ONCE };
-        let mut keeper = Keeper {
+        let mut recorder = PathRecorder {
             frame,
             paths: ReadableBuffer::new(
                 self.device(),
@@ -169,7 +169,7 @@ impl Headless {
                 frame.paths.size(),
             ),
             pixels: room as usize,
-            slots: kept_slots(lighting.mode),
+            slots: slot_sources(lighting.mode),
             sample: RecordedSample::default(),
         };
         let total = samples.end.saturating_sub(samples.start);
@@ -181,24 +181,24 @@ impl Headless {
                 Decision::GoOn | Decision::MeasureNoise => Ok(()),
                 Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
             };
-            keeper.sample = RecordedSample { sample, ..RecordedSample::default() };
+            recorder.sample = RecordedSample { sample, ..RecordedSample::default() };
             let mut flow = Flow::new(self, frame, passes, all);
             frame.record_clear_film(flow.encoder(), 0);
             flow.begin(0);
             for step in round.steps(sample..sample + 1)? {
                 flow.step(&step, &mut after)?;
                 if let Some(moment) = step.moment {
-                    keeper.keep(&mut flow, moment)?;
+                    recorder.read(&mut flow, moment)?;
                     after()?;
                 }
             }
-            recorded.push(std::mem::take(&mut keeper.sample));
+            recorded.push(std::mem::take(&mut recorder.sample));
         }
         Ok(recorded)
     }
 }
 
-/// A recording without samples: what the device is given.
+/// Creates a recording without samples, which contains the numbers that the device was given.
 fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
@@ -225,7 +225,7 @@ fn new_recording(
     }
 }
 
-/// The rectangle in the middle of a film.
+/// The rectangle in the middle of a film whose paths are recorded.
 fn middle_of(film: &Film) -> Tile {
     let film = [film.width(), film.height()];
     let size = film.map(|side| side.min(LONGEST_SIDE));
@@ -235,7 +235,7 @@ fn middle_of(film: &Film) -> Tile {
 
 fn uploaded_lighting(lighting: &LightingParameters) -> UploadedLighting {
     let mut filter_table: Vec<f32> = lighting.filter_table.iter().flatten().copied().collect();
-    // Rows of four; the last has one.
+    // The table has rows of four numbers; the last row has a single one.
     filter_table.truncate(257);
     UploadedLighting {
         background: lighting.background,
@@ -284,10 +284,10 @@ mod tests {
     use crate::gpu::scene::scene_summary::SceneSummary;
     use crate::verify::Checker;
 
-    /// What the host makes of random scenes for a device, the checker takes for what was asked for.
+    /// The checker accepts the numbers that the host computes for a device from random scenes.
     #[test]
-    fn what_is_uploaded_is_what_was_asked_for() {
-        // Tables of energies take most of the time.
+    fn uploaded_numbers_match_the_settings() {
+        // The computation of energy tables takes most of the time.
         for seed in 1000..1016 {
             let random = random_light::view(seed);
             let view = View::new(random.camera.as_ref(), random.film);
@@ -302,7 +302,7 @@ mod tests {
             let mut recording = new_recording(&space, &view, &random.settings, &lighting);
             let certificate = checker.certify_paths(&recording);
             assert_eq!(certificate.upload, None, "seed {seed}: {}", random.name);
-            // That says something: with another roughness, which is at most 1, it does not.
+            // The checker rejects a roughness of more than 1, which shows that it can fail.
             if seed % 8 == 0 {
                 let material = recording.lighting.material_first as usize;
                 recording.tables[material][2] = 1.001_f32.to_bits();

@@ -1,4 +1,4 @@
-//! What a render will take of the device and of the host: known before either is asked for it.
+//! Planning the memory that a render needs on the device and on the host, before any of it is allocated.
 
 use wgpu::{DeviceType, Limits};
 
@@ -15,81 +15,81 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::{Checker, TracedPixel, Verdict};
 
-/// What a render by [`Headless`](crate::gpu::Headless) takes. Bytes are upper bounds of buffers and textures; a few hundred bytes of
-/// records for each brick come on top.
+/// The resources that a render by [`Headless`](super::Headless) needs. Sizes are upper bounds for buffers and textures; a
+/// few hundred bytes of records for each brick are not included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
-    /// The structure, and why.
+    /// The structure of all spheres, and the reason for its choice.
     pub accel: AccelPlan,
-    /// Of the spheres that cast shadows, where a studio needs a structure of its own for them: where some spheres are
-    /// not opaque.
+    /// The structure of the spheres that cast shadows, if a studio needs a separate one because some spheres are not
+    /// opaque.
     pub occluders: Option<AccelPlan>,
-    /// Buffers of the scene: those of the structures, and the colours.
+    /// Buffers of the scene: those of the structures and of the colours.
     pub scene_buffers: Vec<PlannedBuffer>,
     /// Buffers that kernels write for one tile.
     pub tile_buffers: Vec<PlannedBuffer>,
-    /// Textures of one tile, and the buffers that the host reads them from.
+    /// Textures of one tile, and the buffers through which the host reads them.
     pub tile_textures: Vec<PlannedBuffer>,
-    /// Width and height of a tile in pixels; the whole picture, if it is small enough.
+    /// Width and height of a tile in pixels. A tile is the whole picture if it is small enough.
     pub tile_size: [u32; 2],
-    /// How many tiles are rendered, one after the other.
+    /// Number of tiles, which are rendered one after another.
     pub tile_count: u64,
-    /// Bytes on the device, of scene and tile.
+    /// Number of bytes on the device, for the scene and one tile.
     pub device_bytes: u64,
-    /// Bytes of host memory beside the scene itself, at the worst moment.
+    /// Maximum number of bytes of host memory in use at once, excluding the scene itself.
     pub host_bytes: u64,
-    /// Which moment that is.
+    /// The phase of the render that needs `host_bytes`.
     pub host_peak: HostPeak,
 }
 
-/// When a render takes the most of the host's memory.
+/// The phase in which a render needs the most host memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HostPeak {
-    /// While the structure is built.
+    /// Building the structure.
     Building,
-    /// While it is copied to the device.
+    /// Copying the structure to the device.
     Uploading,
-    /// Once there is the picture.
+    /// Holding the finished picture.
     Picture,
-    /// While a recording is checked.
+    /// Checking a recording.
     Checking,
 }
 
-/// What a plan is made for.
+/// The picture that a plan is made for.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureRequest<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// How it is seen.
+    /// The camera and the film.
     pub view: View<'a>,
-    /// How the picture is made.
+    /// The render settings.
     pub settings: &'a RenderSettings,
-    /// The layers that are wanted.
+    /// The layers of the picture.
     pub layers: LayerSet,
-    /// What the caller will take of the host's memory for each pixel beside the image itself, such as for encoding it.
+    /// Host memory in bytes that the caller needs for each pixel in addition to the image itself, for example to encode it.
     pub host_bytes_per_pixel: u64,
 }
 
-/// What will be built of a scene.
+/// Plans of the structures that will be built for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructurePlans {
-    /// Of all spheres.
+    /// The structure of all spheres.
     pub accel: AccelPlan,
-    /// Of the spheres that cast shadows in a studio, where some do not.
+    /// The structure of the spheres that cast shadows in a studio, if some spheres do not.
     pub occluders: Option<AccelPlan>,
 }
 
-/// What bounds pictures and scenes on a device.
+/// The properties of a device that bound the size of pictures and scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceLimits {
-    /// wgpu's limits.
+    /// Limits of the device as wgpu reports them.
     pub limits: Limits,
-    /// A software device takes its memory from the host's.
+    /// The type of the device. A software device uses host memory as its own.
     pub device_type: DeviceType,
 }
 
 impl DeviceLimits {
-    /// How much of so many bytes on the device is the host's memory.
+    /// Number of bytes of host memory that `bytes` on the device occupy.
     pub(in crate::gpu) fn in_host(&self, bytes: u64) -> u64 {
         if self.device_type == DeviceType::Cpu { bytes } else { 0 }
     }
@@ -105,8 +105,8 @@ impl RenderPlan {
         Self::planned(request, accel, device, false)
     }
 
-    /// As [`RenderPlan::of_primary`], of all layers and with every ray and hit, of rendering the same once more without
-    /// them, and of checking both.
+    /// Plans a recording of primary rays with all layers, rays and hits, a second render without rays, and the check of
+    /// both.
     pub(in crate::gpu) fn of_recording(
         request: &PictureRequest<'_>,
         accel: AccelPlan,
@@ -133,9 +133,10 @@ impl RenderPlan {
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| device.in_host(bytes);
-        // One brick's copy is waiting for the device at a time.
+        // The copy of one brick is queued at a time.
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
-        // Rays, hits, and verdicts, which are gathered from parts; and the same view without a recording.
+        // Rays, hits and verdicts, of which a second copy exists while parts are joined; and the picture of the second
+        // render.
         let judged =
             (size_of::<TracedPixel>() + 2 * size_of::<Verdict>()) as u64 + layers.bytes_per_pixel();
         let per_pixel = layers
@@ -167,25 +168,25 @@ impl RenderPlan {
         }
     }
 
-    /// How many submissions there are at least: one for every brick of every tile. There are more, because
-    /// they are cut so that each takes about 60 milliseconds.
+    /// Returns the minimum number of submissions: one for every brick of every tile. There are usually more, because they
+    /// are divided so that each takes about 60 milliseconds.
     #[must_use]
     pub fn least_submissions(&self) -> u64 {
         self.tile_count * self.accel.brick_count as u64
     }
 
-    /// Bytes on the device for every sphere, if there is one.
+    /// Returns the mean number of bytes on the device for a sphere; `None` for an empty scene.
     #[must_use]
     pub fn device_bytes_per_sphere(&self) -> Option<f64> {
         let count = self.accel.statistics.count;
         (count > 0).then(|| self.device_bytes as f64 / count as f64)
     }
 
-    /// Refuses what does not fit into such limits, or into so many free bytes of the host's memory; `None`
-    /// is not known, and then the allocation itself decides.
+    /// Checks that the plan fits into the limits of a device and into the free host memory in bytes. If `memory` is `None`,
+    /// because the free memory is not known, only the limits are checked.
     ///
     /// # Errors
-    /// The first limit that is too low; or that the memory is too small.
+    /// [`GpuError::Limit`] with the first limit that is too low; [`GpuError::HostMemory`] if the memory is too small.
     pub fn check(&self, limits: &Limits, memory: Option<u64>) -> Result<(), GpuError> {
         let binding = ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size);
         let buffer = ("max_buffer_size", limits.max_buffer_size);
@@ -213,7 +214,7 @@ impl RenderPlan {
 }
 
 impl HostPeak {
-    /// What takes the memory.
+    /// Returns a description of what needs the memory.
     #[must_use]
     pub const fn what(self) -> &'static str {
         match self {
@@ -224,7 +225,7 @@ impl HostPeak {
         }
     }
 
-    /// What to choose if there is not enough.
+    /// What the user should choose if there is not enough memory.
     const fn instead(self, structure: Structure) -> &'static str {
         match (self, structure) {
             (Self::Picture | Self::Checking, _) => "a smaller size",
@@ -234,10 +235,10 @@ impl HostPeak {
     }
 }
 
-/// The structure's, and what shading reads.
+/// The buffers of the structure, and those that shading reads.
 pub(in crate::gpu) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
-    // A sphere that is copied into several cells has its words as often as its id.
+    // A sphere that is stored in several cells has as many copies of its words as of its id.
     let ids = buffers.iter().find(|buffer| buffer.name == "ids").copied();
     let words = appearance::words_per_sphere(scene.checked_appearance()).count();
     if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = ids.filter(|_| words > 0) {
@@ -256,7 +257,7 @@ pub(in crate::gpu) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 
     u64::from(film.width().div_ceil(width)) * u64::from(film.height().div_ceil(height))
 }
 
-/// What a buffer of a plan is called in an error.
+/// Description of a planned buffer for error messages.
 fn in_words(name: &str) -> &'static str {
     match name {
         "spheres" => "the buffer of spheres",
@@ -322,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tile_takes_hits_texture_and_what_is_read_back() {
+    fn a_tile_needs_hits_textures_and_read_back_buffers() {
         let plan = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
         assert_eq!((plan.tile_size, plan.tile_count), ([1024, 1024], 1));
         let hit = size_of::<records::Hit>() as u64;
@@ -347,9 +348,9 @@ mod tests {
         assert_eq!(alpha.tile_textures, data.tile_textures);
     }
 
-    /// Four bytes each, of ten million different ones, and as many for which of two surfaces a sphere has.
+    /// Ten million individual colours take four bytes each, and the indices of two surfaces another four bytes each.
     #[test]
-    fn a_color_of_its_own_takes_four_bytes_a_sphere() {
+    fn an_individual_color_takes_four_bytes_per_sphere() {
         let count = 10_000_000;
         let spheres: Vec<[f32; 4]> = (0..count)
             .map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4])
@@ -394,7 +395,7 @@ mod tests {
         let plan = plan(1024, LayerSet::DATA, DeviceType::DiscreteGpu);
         let recording = planned(1024, LayerSet::COLOR, DeviceType::DiscreteGpu, true);
         assert_eq!((recording.tile_size, recording.tile_count), (plan.tile_size, 1));
-        // A ray, and both read back.
+        // The ray of each pixel, and the read-back buffers of rays and hits.
         assert_eq!(recording.device_bytes, plan.device_bytes + ((32 + 48) << 20));
         assert_eq!(recording.host_peak, HostPeak::Checking);
         assert_eq!(recording.host_bytes, plan.host_bytes + ((40 + 2 + 32) << 20) + 40_000);

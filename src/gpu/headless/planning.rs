@@ -1,4 +1,4 @@
-//! Planning on a device, for every integrator.
+//! Planning renders on a device, for every integrator.
 
 use crate::accel::{AccelChoice, AccelPlan};
 use crate::camera::View;
@@ -11,7 +11,7 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 
 impl RenderPlan {
-    /// Plans a picture on a device with such limits, with structures that were planned for it.
+    /// Plans a picture on a device with the given limits and planned structures.
     #[must_use]
     pub fn new(
         request: &PictureRequest<'_>,
@@ -27,9 +27,9 @@ impl RenderPlan {
 }
 
 impl Headless {
-    /// What a picture will take on this device: structures, buffers, tiles and host memory. Structures are those of
-    /// `choice`, also the one for shadows that a studio needs where some spheres are not opaque.
-    /// `host_bytes_per_pixel` is as in [`PictureRequest`].
+    /// Plans the structures, buffers, tiles and host memory of a picture on this device. `choice` determines all structures,
+    /// including the separate one for shadows that a studio needs if some spheres are not opaque. `host_bytes_per_pixel` is
+    /// explained in [`PictureRequest`].
     #[must_use]
     pub fn plan(
         &self,
@@ -42,7 +42,7 @@ impl Headless {
     ) -> RenderPlan {
         let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
         let is_primary = settings.integrator.is_primary();
-        // Every sample of a lit picture sends rays, and so does every surface.
+        // Every sample of a lit picture, and every surface along its path, traces rays.
         let rays = if is_primary { view.film.pixel_count() } else { u64::MAX };
         let accel = self.plan_for_rays(scene, choice, rays);
         let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
@@ -50,7 +50,7 @@ impl Headless {
         RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
     }
 
-    /// What [`Headless::record`] will take, and checking what it gives; otherwise as [`Headless::plan`].
+    /// Plans [`Headless::record`] and the check of its recording, in the same way as [`Headless::plan`].
     #[must_use]
     pub fn plan_record(
         &self,
@@ -65,7 +65,7 @@ impl Headless {
         RenderPlan::of_recording(&request, accel, &self.device_limits())
     }
 
-    /// What to build of a scene for this device and for many pictures, without a picture in mind: for measurements.
+    /// Plans the structure of a scene for this device and an unknown number of rays, for example for measurements.
     #[must_use]
     pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
         self.plan_for_rays(scene, choice, u64::MAX)
@@ -78,7 +78,7 @@ impl Headless {
         })
     }
 
-    /// What bounds pictures and scenes on this device.
+    /// Returns the properties of this device that bound the size of pictures and scenes.
     #[must_use]
     pub fn device_limits(&self) -> DeviceLimits {
         let device_type = self.adapter_info().device_type;

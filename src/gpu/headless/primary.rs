@@ -1,4 +1,4 @@
-//! Pictures of primary rays, tile by tile.
+//! Rendering pictures of primary rays, tile by tile.
 
 use wgpu::ComputePassDescriptor;
 
@@ -21,15 +21,15 @@ use crate::image::{Image, LayerSet};
 use crate::render::PrimarySettings;
 use crate::verify::TracedPixel;
 
-/// What a picture is written to.
+/// The destination of a picture.
 pub(in crate::gpu) struct Output<'a> {
     pub(in crate::gpu) image: &'a mut Image,
-    /// The ray and the hit of every pixel, if they are kept.
+    /// Destination of the ray and the hit of every pixel, if they are kept.
     pub(in crate::gpu) pixels: Option<&'a mut Vec<TracedPixel>>,
 }
 
 impl Headless {
-    /// One ray through the centre of every pixel.
+    /// Renders a picture with a ray through the centre of every pixel.
     pub(in crate::gpu) fn render_primary(
         &self,
         scene: &SceneBuffers,
@@ -69,7 +69,7 @@ impl Headless {
             frame.set_tile(self.queue(), scene, view, tile, primary);
             let mut encoder = self.encoder();
             if renderer.keeps_rays {
-                // Those that are not traced are known by having none.
+                // Pixels that are not traced are recognised by their cleared rays.
                 frame.record_clear(&mut encoder);
             }
             let mut unfinished = Groups::NONE;
@@ -82,7 +82,7 @@ impl Headless {
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
                     if left.is_empty() && part.is_last {
-                        // Shaded and copied in the same submission.
+                        // The last slice of a tile is submitted together with shading and copies.
                         unfinished = groups;
                         break;
                     }

@@ -1,65 +1,66 @@
-//! How far a picture is, what is to be done about it, and what became of it.
+//! The progress of a render, the decisions of its caller, and its result.
 
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::tiles::Groups;
 use crate::image::Image;
 
-/// How far a picture is.
+/// The progress of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Samples that every pixel has.
+    /// Number of samples that every pixel has.
     pub samples: u32,
-    /// How many it will have; 1 of a picture of primary rays.
+    /// Number of samples that every pixel will have; 1 for a picture of primary rays.
     pub total: u32,
-    /// All work that is done, from 0 to 1.
+    /// Completed fraction of the work, from 0 to 1.
     pub part: f64,
-    /// The noise that is left in a lit picture: the root of the mean variance of pixels, over the mean luminance. Known
-    /// after two samples, if [`Decision::MeasureNoise`] asked for it.
+    /// Remaining noise of a lit picture: the square root of the mean variance of pixels, divided by the mean luminance. It
+    /// is known after two samples, if [`Decision::MeasureNoise`] requested it.
     pub noise: Option<f64>,
 }
 
-/// What is to be done about a picture.
+/// How a render continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Decision {
-    /// Go on.
+    /// Continue.
     GoOn,
-    /// Go on, and have [`Progress::noise`] at a later call.
+    /// Continue, and provide [`Progress::noise`] in later calls.
     MeasureNoise,
-    /// Take the picture as it is. As long as not every pixel has a sample, there is no picture, and this stops it.
+    /// Return the picture with the samples that it has. While some pixels have no sample there is no picture, and the
+    /// render stops with an error.
     Finish,
-    /// Give it up.
+    /// Stop the render with an error.
     Stop,
 }
 
-/// Told of progress after every submission; decides how the render goes on.
+/// Callback that is called with the progress after every submission, and decides how the render continues.
 pub type Watch<'a> = dyn FnMut(&Progress) -> Decision + 'a;
 
-/// For whoever does not watch.
+/// A [`Watch`] that always continues.
 pub(in crate::gpu) fn go_on(_: &Progress) -> Decision {
     Decision::GoOn
 }
 
-/// What became of a picture.
+/// The result of a render.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Picture {
-    /// The image, with the layers that were asked for.
+    /// The image, with the layers that were requested.
     pub image: Image,
-    /// How many samples every pixel has.
+    /// Number of samples that every pixel has.
     pub samples: u32,
-    /// See [`Progress::noise`].
+    /// Remaining noise, as in [`Progress::noise`].
     pub noise: Option<f64>,
-    /// How many of the camera's rays met something, all samples together, weighted by opacity. `None` of primary rays,
-    /// which are not counted.
+    /// Number of camera rays that hit something, over all samples, weighted by opacity. It is `None` for pictures of
+    /// primary rays, whose hits are not counted.
     pub hits: Option<f64>,
 }
 
-/// How many pixels have been traced by primary rays, in whole workgroups; a pixel counts once for every brick.
+/// Number of pixels for which primary rays were traced, in whole workgroups. A pixel counts once for every brick.
 pub(in crate::gpu) struct TracedPixels {
     done: u64,
-    /// How many are to be traced: those in which the scene's box may be seen.
+    /// Number of pixels to be traced: those in which the scene's box may be visible.
     total: u64,
 }
 
@@ -68,7 +69,7 @@ impl TracedPixels {
         Self { done: 0, total }
     }
 
-    /// Tells `watch` that some more are done.
+    /// Adds the pixels of some workgroups, and calls `watch` with the progress.
     pub(in crate::gpu) fn add(
         &mut self,
         groups: Groups,
@@ -76,7 +77,7 @@ impl TracedPixels {
     ) -> Result<(), GpuError> {
         self.done = (self.done + groups.pixels()).min(self.total);
         let is_done = self.done == self.total;
-        // A picture in which nothing is to be traced is done at once.
+        // A picture without any pixels to trace is complete at once.
         let part = if is_done { 1.0 } else { self.done as f64 / self.total as f64 };
         match watch(&Progress { samples: is_done.into(), total: 1, part, noise: None }) {
             Decision::GoOn | Decision::MeasureNoise => Ok(()),

@@ -1,4 +1,4 @@
-//! The rays and hits of a tile, on their way back to the host.
+//! Reading the rays and hits of a tile back to the host.
 
 use wgpu::{Buffer, Device};
 
@@ -10,7 +10,7 @@ use crate::gpu::passes::tiles::Tile;
 use crate::gpu::shader::records;
 use crate::verify::{TracedPixel, TracedRay};
 
-/// The rays and hits of a tile.
+/// Buffers from which the host reads the rays and hits of a tile.
 #[derive(Debug)]
 pub(in crate::gpu) struct ReadableTrace {
     hits: ReadableBuffer,
@@ -18,7 +18,7 @@ pub(in crate::gpu) struct ReadableTrace {
 }
 
 impl ReadableTrace {
-    /// `None` for a frame that keeps no rays.
+    /// Creates the buffers, or returns `None` if the frame keeps no rays.
     pub(in crate::gpu) fn new(device: &Device, frame: &Frame) -> Option<Self> {
         let (hits, rays) = frame.traced();
         Some(Self {
@@ -39,7 +39,7 @@ impl ReadableTrace {
         }
     }
 
-    /// Copies the mapped buffers to the tile's place among the pixels, and unmaps them.
+    /// Copies the contents of the mapped buffers to the pixels of the tile, and unmaps the buffers.
     pub(in crate::gpu) fn read_into(
         &self,
         pixels: &mut [TracedPixel],
@@ -73,7 +73,7 @@ impl ReadableTrace {
     }
 }
 
-/// Cleared memory is no ray.
+/// The ray of a pixel; `None` if it was not traced and its memory is still cleared.
 fn traced_ray(
     [ox, oy, oz, distance, dx, dy, dz, is_traced]: records::TracedRay,
 ) -> Option<TracedRay> {

@@ -1,10 +1,10 @@
-//! A texture of a headless render, and its way back to the host.
+//! Textures and buffers that the host can read.
 
 use wgpu::{Buffer, Device, Texture, TextureFormat, TextureView};
 
 use crate::gpu::error::GpuError;
 
-/// A texture that kernels write, and a buffer that the host reads.
+/// A texture that kernels write, with a buffer through which the host reads it.
 #[derive(Debug)]
 pub(in crate::gpu) struct ReadableTexture {
     texture: Texture,
@@ -41,12 +41,12 @@ impl ReadableTexture {
         Self { texture, view, buffer, bytes_per_pixel }
     }
 
-    /// Bytes of the texture.
+    /// Size of the texture in bytes.
     pub(in crate::gpu) fn texture_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
         u64::from(width) * u64::from(height) * u64::from(bytes_per_pixel(format))
     }
 
-    /// Bytes of the buffer.
+    /// Size of the buffer in bytes.
     pub(in crate::gpu) fn buffer_bytes(format: TextureFormat, [width, height]: [u32; 2]) -> u64 {
         u64::from(padded_row(width, bytes_per_pixel(format))) * u64::from(height)
     }
@@ -59,7 +59,7 @@ impl ReadableTexture {
         &self.buffer
     }
 
-    /// Records the copy of the texture's upper left part.
+    /// Records a copy of the upper left part of the texture to the buffer.
     pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
         encoder.copy_texture_to_buffer(
             self.texture.as_image_copy(),
@@ -75,7 +75,7 @@ impl ReadableTexture {
         );
     }
 
-    /// Hands out the rows of the part that was copied, then unmaps the buffer, which must be mapped.
+    /// Calls `row` with every row of the part that was copied, then unmaps the buffer, which must be mapped.
     pub(in crate::gpu) fn read_rows<T: bytemuck::AnyBitPattern>(
         &self,
         [width, height]: [u32; 2],
@@ -96,7 +96,7 @@ impl ReadableTexture {
     }
 }
 
-/// A buffer that the host reads what kernels wrote from.
+/// A buffer through which the host reads a buffer that kernels write.
 #[derive(Debug)]
 pub(in crate::gpu) struct ReadableBuffer {
     buffer: Buffer,
@@ -117,12 +117,12 @@ impl ReadableBuffer {
         &self.buffer
     }
 
-    /// Records the copy of a buffer of the same size, or of the start of a larger one.
+    /// Records a copy of a buffer of the same size, or of the start of a larger one, to this buffer.
     pub(in crate::gpu) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder, written: &Buffer) {
         encoder.copy_buffer_to_buffer(written, 0, &self.buffer, 0, self.buffer.size());
     }
 
-    /// What `read` makes of its elements; unmaps the buffer, which must be mapped.
+    /// Returns the result of `read` for the elements, and unmaps the buffer, which must be mapped.
     pub(in crate::gpu) fn read<T: bytemuck::AnyBitPattern, R>(
         &self,
         read: impl FnOnce(&[T]) -> R,
@@ -131,10 +131,10 @@ impl ReadableBuffer {
             .buffer
             .get_mapped_range(..)
             .map_err(|error| GpuError::Device { message: error.to_string() })?;
-        let seen = read(bytemuck::cast_slice(&bytes));
+        let result = read(bytemuck::cast_slice(&bytes));
         drop(bytes);
         self.buffer.unmap();
-        Ok(seen)
+        Ok(result)
     }
 }
 
@@ -142,12 +142,12 @@ fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }
 
-/// Every format in use is one uncompressed colour plane.
+/// Size of a texel in bytes. Every format in use is a single uncompressed colour plane.
 fn bytes_per_pixel(format: TextureFormat) -> u32 {
     format.block_copy_size(None).unwrap_or(0)
 }
 
-/// Bytes of a row in a copy, which WebGPU wants to be a multiple of 256.
+/// Size of a row of a copy in bytes, which must be a multiple of 256 in WebGPU.
 fn padded_row(width: u32, bytes_per_pixel: u32) -> u32 {
     (width * bytes_per_pixel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }

@@ -1,5 +1,4 @@
-//! What a device did, for the checker: rays and hits on their way back to the host, and the numbers that the
-//! device was given.
+//! Recording primary rays for the checker: the rays and hits that the device computed, and the numbers that it was given.
 
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
@@ -17,7 +16,7 @@ use crate::verify::{
     Certificate, Checker, NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, UploadedView,
 };
 
-/// A camera, and the numbers that kernels get of it and of the scene's box.
+/// Returns a camera together with the numbers that are uploaded for it and for the scene's box.
 pub(in crate::gpu) fn requested_view(
     space: &SceneSpace,
     camera: &dyn Camera,
@@ -38,7 +37,7 @@ pub(in crate::gpu) fn requested_view(
     (requested, uploaded)
 }
 
-/// A recording in which nothing is traced yet.
+/// Creates a recording in which no pixel has been traced.
 fn new_recording(
     space: &SceneSpace,
     view: &View<'_>,
@@ -60,12 +59,12 @@ fn new_recording(
 }
 
 impl Headless {
-    /// As [`Headless::render_uploaded`] of primary rays, with all layers, and with the ray and the hit of every pixel:
-    /// everything by which [`Checker::certify`] judges the device.
+    /// Renders a picture of primary rays with all layers and keeps the ray and the hit of every pixel, from which
+    /// [`Checker::certify`] judges the device.
     ///
     /// # Errors
-    /// As [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are of a lit picture, whose paths
-    /// [`Headless::record_paths`] records.
+    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit picture.
+    /// [`Headless::record_paths`] records the paths of such pictures.
     pub fn record(
         &self,
         scene: &SceneBuffers,
@@ -88,11 +87,11 @@ impl Headless {
         })
     }
 
-    /// As [`Headless::record`], and renders the view once more as [`Headless::render_uploaded`] does, with kernels
-    /// that keep no rays, for [`Recording::rendered`].
+    /// Records a picture like [`Headless::record`], and renders the view a second time with [`Headless::render_uploaded`],
+    /// whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
     ///
     /// # Errors
-    /// As [`Headless::record`].
+    /// The same as for [`Headless::record`].
     pub fn record_and_render(
         &self,
         scene: &SceneBuffers,
@@ -106,12 +105,12 @@ impl Headless {
         Ok(recording)
     }
 
-    /// Renders a picture of primary rays and decides whether it is one that a conforming device may have made: as
-    /// [`Headless::render`] makes it, and as [`Headless::record`] does, stage by stage.
+    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels of
+    /// [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
     ///
     /// # Errors
-    /// If it cannot be rendered, as with [`Headless::record`], or if there is no memory to check it. That a picture
-    /// is not legal is not an error.
+    /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
+    /// picture that is not legal is not an error.
     pub fn verify(
         &self,
         scene: &Scene,

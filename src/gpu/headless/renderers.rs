@@ -1,4 +1,4 @@
-//! The renderers of a device, each built when it is first wanted.
+//! The renderers of a device, each of which is built when it is first needed.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -16,11 +16,11 @@ use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
 
-/// What they differ in.
+/// The properties in which renderers of a device differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) struct RendererKey {
     pub(in crate::gpu) camera: CameraKind,
-    /// Of the scene's bricks, each once.
+    /// The kinds of the scene's bricks, without repetition.
     pub(in crate::gpu) kinds: Vec<BrickKind>,
     pub(in crate::gpu) several_bricks: bool,
     pub(in crate::gpu) query: Query,
@@ -29,7 +29,7 @@ pub(in crate::gpu) struct RendererKey {
 }
 
 impl RendererKey {
-    /// Pictures of colour alone.
+    /// The key of a renderer for pictures without data layers.
     pub(in crate::gpu) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
         Self {
             camera: camera.kind(),
@@ -42,7 +42,7 @@ impl RendererKey {
     }
 }
 
-/// What has been built so far.
+/// The renderers and passes that have been built so far.
 #[derive(Debug)]
 pub(in crate::gpu) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
@@ -52,12 +52,12 @@ pub(in crate::gpu) struct Renderers {
 }
 
 impl Renderers {
-    /// None yet; all will be built with these changes of their shaders.
+    /// Creates an empty collection. All renderers will be built with these edits of their shaders.
     pub(in crate::gpu) fn new(edits: Vec<ShaderEdit>) -> Self {
         Self { built: HashMap::new(), lit: AllLitPasses::new(), recolor: None, edits }
     }
 
-    /// The renderer that a key stands for.
+    /// Returns the renderer for a key, and builds it if necessary.
     pub(in crate::gpu) fn of(
         &mut self,
         device: &Device,
@@ -85,7 +85,7 @@ impl Renderers {
         }
     }
 
-    /// The pass that writes new colours.
+    /// Returns the pass that writes new colours, and builds it if necessary.
     pub(in crate::gpu) fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
         match &mut self.recolor {
             Some(built) => Ok(built),
@@ -93,7 +93,7 @@ impl Renderers {
         }
     }
 
-    /// The passes of lit pictures that a key stands for.
+    /// Returns the passes of lit pictures for a key, and builds them if necessary.
     pub(in crate::gpu) fn lit(
         &mut self,
         device: &Device,

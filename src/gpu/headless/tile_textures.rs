@@ -12,12 +12,12 @@ use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_F
 use crate::gpu::shader::records::{self, NO_HIT};
 use crate::image::Image;
 
-/// A texture of a tile, and the buffer that it is copied to.
+/// Description of a texture of a tile and of the buffer that it is copied to.
 struct TileTexture {
     label: &'static str,
-    /// As plans call it.
+    /// Name of the texture in plans.
     texture: &'static str,
-    /// The same of the buffer.
+    /// Name of the buffer in plans.
     read_back: &'static str,
     format: TextureFormat,
 }
@@ -60,12 +60,13 @@ impl TileTexture {
     }
 }
 
-/// What the textures of such a tile will take, and the buffers that they are copied to.
+/// Sizes of the textures of a tile and of the buffers that they are copied to.
 pub(in crate::gpu) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
     let data = [DEPTH, NORMAL, ID].into_iter().filter(|_| data_layers);
     std::iter::once(COLOR).chain(data).flat_map(|texture| texture.planned(size)).collect()
 }
 
+/// The textures of a tile, with the buffers through which the host reads them.
 #[derive(Debug)]
 pub(in crate::gpu) struct TileTextures {
     color: ReadableTexture,
@@ -108,7 +109,7 @@ impl TileTextures {
         }
     }
 
-    /// What kernels reported.
+    /// Buffer through which the host reads the status word of the kernels.
     pub(in crate::gpu) fn status(&self) -> &ReadableBuffer {
         &self.status
     }
@@ -118,8 +119,8 @@ impl TileTextures {
         std::iter::once(&self.color).chain(data.into_iter().flatten())
     }
 
-    /// Copies the mapped buffers, and what follows from them, to the tile's place in the image, and unmaps
-    /// them.
+    /// Copies the contents of the mapped buffers, and the layers that are derived from them, to the tile's part of the
+    /// image, and unmaps the buffers.
     pub(in crate::gpu) fn read_into(
         &self,
         image: &mut Image,

@@ -1,4 +1,4 @@
-//! The device's own clock.
+//! Measuring times with the clock of the device.
 
 use std::time::Duration;
 
@@ -6,20 +6,20 @@ use wgpu::{Buffer, CommandEncoder, ComputePassTimestampWrites, Device, QuerySet,
 
 use crate::gpu::error::GpuError;
 
-/// How long tracing took, over all submissions.
+/// The time that tracing took, summed over all submissions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct TraceTime {
-    /// From submitting to having waited, by the host's clock.
+    /// Time from submission to the end of the wait, by the host's clock.
     pub wall: Duration,
-    /// From the first to the last instruction, by the device's clock, if it has one.
+    /// Time from the start to the end of the compute passes, by the device's clock; `None` if the device has none.
     pub device: Option<Duration>,
-    /// The longest submission, by the host's clock.
+    /// Time of the longest submission, by the host's clock.
     pub longest: Duration,
-    /// How many submissions there were.
+    /// Number of submissions.
     pub submissions: u32,
-    /// How many pixels were traced, in whole workgroups, and once for every brick: those in which the scene's box may
-    /// be seen.
+    /// Number of traced pixels, in whole workgroups, counted once for every brick. Only pixels in which the scene's box may
+    /// be visible are traced.
     pub pixels: u64,
 }
 
@@ -35,7 +35,7 @@ impl TraceTime {
 const STAMPS: u32 = 2;
 const BYTES: u64 = STAMPS as u64 * size_of::<u64>() as u64;
 
-/// Measures one compute pass at a time. Needs the feature `TIMESTAMP_QUERY`.
+/// Measures the time of one compute pass at a time. It needs the feature `TIMESTAMP_QUERY`.
 #[derive(Debug)]
 pub(in crate::gpu) struct PassTimer {
     queries: QuerySet,
@@ -45,7 +45,7 @@ pub(in crate::gpu) struct PassTimer {
 }
 
 impl PassTimer {
-    /// `None` if the device has no clock for passes.
+    /// Creates a timer, or returns `None` if the device cannot measure passes.
     pub(in crate::gpu) fn new(device: &Device, queue: &Queue) -> Option<Self> {
         if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
@@ -72,7 +72,7 @@ impl PassTimer {
         })
     }
 
-    /// What the pass needs to be measured.
+    /// The timestamp writes that the descriptor of the measured pass needs.
     pub(in crate::gpu) fn writes(&self) -> ComputePassTimestampWrites<'_> {
         ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -81,7 +81,7 @@ impl PassTimer {
         }
     }
 
-    /// Records, behind the pass, the copy to what the host reads.
+    /// Records, after the pass, the copy of the timestamps to the buffer that the host reads.
     pub(in crate::gpu) fn record_copy(&self, encoder: &mut CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..STAMPS, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, BYTES);
@@ -91,7 +91,7 @@ impl PassTimer {
         &self.readable
     }
 
-    /// How long the pass took; unmaps the buffer, which must be mapped.
+    /// Returns the time that the pass took, and unmaps the buffer, which must be mapped.
     pub(in crate::gpu) fn read(&self) -> Result<Duration, GpuError> {
         let bytes = self
             .readable

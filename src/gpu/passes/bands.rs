@@ -1,5 +1,5 @@
-//! How many pixels primary rays are traced for at once, and the buffers that this takes: what plans sum up, and what
-//! frames create.
+//! Dividing pictures of primary rays into bands, and the sizes of the buffers that a band needs. Both plans and frames use
+//! these sizes.
 
 use wgpu::Limits;
 
@@ -12,16 +12,16 @@ use crate::gpu::shader::records;
 const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
 const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
 
-/// Bytes of the buffers of a band of a picture.
+/// Sizes in bytes of the buffers for a band of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct BandBuffers {
     pub(in crate::gpu) hits: u64,
-    /// If rays are kept.
+    /// Size of the buffer of rays; `None` if rays are not kept.
     pub(in crate::gpu) rays: Option<u64>,
 }
 
 impl BandBuffers {
-    /// Of a band of targets of a size.
+    /// The sizes for a band of targets with `size` pixels.
     pub(in crate::gpu) fn new(limits: &Limits, size: [u32; 2], keeps_rays: bool) -> Self {
         let pixels = u64::from(size[0]) * u64::from(rows_per_band(limits, size, keeps_rays));
         Self { hits: pixels * HIT_BYTES, rays: keeps_rays.then_some(pixels * RAY_BYTES) }
@@ -31,34 +31,34 @@ impl BandBuffers {
         self.hits + self.rays.unwrap_or(0)
     }
 
-    /// Those that kernels write.
+    /// The buffers that kernels write.
     pub(in crate::gpu) fn planned(&self) -> Vec<PlannedBuffer> {
         let rays = self.rays.map(|bytes| PlannedBuffer::one("rays", bytes));
         [PlannedBuffer::one("hits", self.hits)].into_iter().chain(rays).collect()
     }
 
-    /// Those that the host reads, where rays are kept.
+    /// The buffers through which the host reads hits and rays, if rays are kept.
     pub(in crate::gpu) fn planned_read_back(&self) -> Vec<PlannedBuffer> {
         let both = self.rays.map(|rays| [("hits read-back", self.hits), ("rays read-back", rays)]);
         both.into_iter().flatten().map(|(name, bytes)| PlannedBuffer::one(name, bytes)).collect()
     }
 }
 
-/// How many rows of targets of a size are traced before they are shaded: their hits, and their rays if they are
-/// kept, fit into one binding.
+/// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into one
+/// binding.
 pub(in crate::gpu) fn rows_per_band(
     limits: &Limits,
     [width, height]: [u32; 2],
     keeps_rays: bool,
 ) -> u32 {
     let largest = if keeps_rays { RAY_BYTES } else { HIT_BYTES };
-    let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_PIXELS);
-    // At most MAX_PIXELS, so it fits.
+    let pixels_per_band = (binding_limit(limits) / largest).min(tiles::MAX_BAND_PIXELS);
+    // This is at most MAX_BAND_PIXELS, so it fits into u32.
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 
-/// The size of the tiles of a headless render. Where rays are kept, a tile is no more than a band, because what
-/// is kept is that of a frame's last band.
+/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps the
+/// rays of its last band only.
 pub(in crate::gpu) fn tile_size(limits: &Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
     let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
     let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };

@@ -1,4 +1,4 @@
-//! What changes from picture to picture: targets, view, settings.
+//! The data of primary rays that change from picture to picture: targets, view and settings.
 
 use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
@@ -15,63 +15,64 @@ use crate::gpu::shader::records;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
 
-/// The caller's textures. All must be two-dimensional, of one size, with the usage `STORAGE_BINDING`.
+/// Textures of the caller that a picture is written to. All must be two-dimensional, of the same size, and have the usage
+/// `STORAGE_BINDING`.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
-    /// Of the format that the renderer's [`ColorTarget`](crate::gpu::ColorTarget) names.
+    /// Texture for the colour, in the format of the renderer's [`ColorTarget`](super::ColorTarget).
     pub color: &'a TextureView,
-    /// Present exactly if the renderer was built with `data_layers`.
+    /// Textures for the data layers. They must be given if and only if the renderer was built with `data_layers`.
     pub data: Option<DataTargets<'a>>,
 }
 
 /// Textures for the data layers.
 #[derive(Clone, Copy, Debug)]
 pub struct DataTargets<'a> {
-    /// `R32Float`: distance along the ray, in scene units; 1e30 for a miss.
+    /// Texture for the distance along the ray in scene units, in the format `R32Float`. A miss is 1e30.
     pub depth: &'a TextureView,
-    /// `Rgba32Float`: unit normal in the world, pointing away from the sphere's centre; zero for a miss.
+    /// Texture for the unit normal in world space, which points away from the sphere's centre, in the format
+    /// `Rgba32Float`. A miss is zero.
     pub normal: &'a TextureView,
-    /// `R32Uint`: index of the sphere in input order; `u32::MAX` for a miss.
+    /// Texture for the index of the sphere in input order, in the format `R32Uint`. A miss is `u32::MAX`.
     pub id: &'a TextureView,
 }
 
-/// One view into one set of targets. Per frame: a frame that was recorded must have been submitted
-/// before it is given another view.
+/// A view that is rendered to a set of targets. A recorded frame must be submitted before its view is set again.
 #[derive(Debug)]
 pub struct Frame {
     color: ColorTarget,
     data_layers: bool,
-    /// The rays of all pixels, if they are kept.
+    /// The rays of the pixels of a band, if they are kept.
     rays: Option<Buffer>,
-    /// One record per band, each at a multiple of `stride`.
+    /// One record for each band, at multiples of `stride` bytes.
     records: Buffer,
     hits: Buffer,
     stride: usize,
     rows_per_band: u32,
-    /// Group 0 of every kernel, one per band. All bands share one buffer of hits.
+    /// Bind group 0 of every kernel, one for each band. All bands share one buffer of hits.
     band_groups: Vec<BindGroup>,
     target_group: BindGroup,
     size: [u32; 2],
     view: Option<SetView>,
-    /// Not 0 once a kernel ran into its limit of iterations.
+    /// Status word, which becomes nonzero when a kernel reaches its iteration limit.
     status: Buffer,
     iteration_limit: u32,
     bytes: u64,
 }
 
-/// What recording needs to know of the view.
+/// The properties of the view that recording needs.
 #[derive(Debug)]
 pub(in crate::gpu) struct SetView {
     pub(in crate::gpu) camera: CameraKind,
     pub(in crate::gpu) scene: SceneId,
-    /// The sizes of the bands that are rendered, in their order.
+    /// The sizes of the bands, in the order in which they are rendered.
     pub(in crate::gpu) bands: Vec<[u32; 2]>,
     records: Vec<records::FrameParameters>,
     /// The bricks in the order in which they are traced.
     order: Vec<usize>,
 }
 
-/// One brick, for one band.
+/// The tracing of one brick for one band.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct BandBrick {
     pub(in crate::gpu) band: usize,
@@ -83,13 +84,12 @@ pub(in crate::gpu) struct BandBrick {
 }
 
 impl Frame {
-    /// A frame that renders into the given targets.
+    /// Creates a frame that renders to the given targets.
     ///
-    /// A picture whose hits (16 bytes a pixel) would not fit into one binding is rendered in bands.
+    /// A picture whose hits (16 bytes for each pixel) do not fit into one binding is rendered in bands.
     ///
     /// # Errors
-    /// If a target is not of the format, size or usage that the renderer needs, or if the device has no
-    /// memory left.
+    /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory left.
     pub fn new(
         renderer: &Renderer,
         device: &Device,
@@ -183,13 +183,13 @@ impl Frame {
         })
     }
 
-    /// Sets what the next recording shows: the whole film, which must have the size of the targets.
+    /// Sets the view that the next recording shows. The film must have the size of the targets.
     ///
-    /// The new values are queued on `queue`; they hold from its next submission on.
+    /// The new values are queued on `queue` and take effect with its next submission.
     ///
     /// # Errors
-    /// If the film and the targets differ in size; [`GpuError::NotPrimary`] if the picture is to be lit, because frames
-    /// have primary rays only for now; what [`RenderSettings::check`] refuses.
+    /// If the sizes of film and targets differ; [`GpuError::NotPrimary`] if the integrator is not `primary`, because frames
+    /// support no other yet; the errors of [`RenderSettings::check`].
     pub fn set_view(
         &mut self,
         queue: &Queue,
@@ -211,7 +211,7 @@ impl Frame {
         Ok(())
     }
 
-    /// As [`Frame::set_view`], for a part of the film that is no larger than the targets.
+    /// Sets a view like [`Frame::set_view`], of a tile that is not larger than the targets.
     pub(in crate::gpu) fn set_tile(
         &mut self,
         queue: &Queue,
@@ -249,7 +249,7 @@ impl Frame {
         });
     }
 
-    /// Queues the first workgroup of the slice of a band that is traced next.
+    /// Queues the index of the first workgroup of the slice of a band that is traced next.
     pub(in crate::gpu) fn set_first_group(&mut self, queue: &Queue, band: usize, first: [u32; 2]) {
         let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(band)) else {
             return;
@@ -261,29 +261,29 @@ impl Frame {
         }
     }
 
-    /// What is to be traced for the view, in order.
+    /// The bricks and bands to be traced for the view, in order.
     pub(in crate::gpu) fn parts(&self) -> Vec<BandBrick> {
         let Some(view) = &self.view else {
             return Vec::new();
         };
-        let turns = view.order.len();
+        let brick_count = view.order.len();
         let mut parts = Vec::new();
         for (band, record) in view.records.iter().enumerate() {
-            for (turn, brick) in view.order.iter().enumerate() {
+            for (position, brick) in view.order.iter().enumerate() {
                 parts.push(BandBrick {
                     band,
                     brick: *brick,
                     groups: Groups { first: [0, 0], size: record.traced_size },
-                    is_first_of_band: turn == 0,
-                    is_last_of_band: turn + 1 == turns,
-                    is_last: turn + 1 == turns && band + 1 == view.records.len(),
+                    is_first_of_band: position == 0,
+                    is_last_of_band: position + 1 == brick_count,
+                    is_last: position + 1 == brick_count && band + 1 == view.records.len(),
                 });
             }
         }
         parts
     }
 
-    /// Records the clearing of the hits, and of the rays if they are kept.
+    /// Records commands that clear the hits, and the rays if they are kept.
     pub(in crate::gpu) fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.hits, 0, None);
         if let Some(rays) = &self.rays {
@@ -291,28 +291,29 @@ impl Frame {
         }
     }
 
-    /// What is known of the pixels of the last band: hits, and rays if they are kept.
+    /// The buffers with the hits of the last band, and with its rays if they are kept.
     pub(in crate::gpu) fn traced(&self) -> (&Buffer, Option<&Buffer>) {
         (&self.hits, self.rays.as_ref())
     }
 
-    /// One u32, which kernels set if a ray tried so many spheres that it was given up: then some pixels are wrong.
-    /// 0 after creation, and not set back; read it once a submission is done, and clear it then.
+    /// Returns a buffer of one `u32`, which kernels set if the search of a ray was abandoned because it reached the
+    /// iteration limit; some pixels are then wrong. It is 0 after creation and is never reset: read it after a submission
+    /// has finished, and clear it.
     ///
-    /// Usage: `COPY_SRC`, `COPY_DST`. Software devices give up after 8,000 spheres and cells, because old ones
+    /// Its usages are `COPY_SRC` and `COPY_DST`. On software devices the limit is 8,000 spheres and cells, because old ones
     /// leave long loops silently.
     #[must_use]
     pub fn status(&self) -> &Buffer {
         &self.status
     }
 
-    /// Bytes of its buffers on the device, without the caller's textures.
+    /// Returns the number of bytes of the frame's buffers on the device, without the caller's textures.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// The view, if it is one that this renderer can record of this scene.
+    /// The view, if this renderer can record it for this scene.
     pub(in crate::gpu) fn view(
         &self,
         renderer: &Renderer,
@@ -329,22 +330,22 @@ impl Frame {
         Ok(view)
     }
 
-    /// Group 0 of every kernel, one per band.
+    /// Bind group 0 of every kernel, one for each band.
     pub(in crate::gpu) fn band_groups(&self) -> &[BindGroup] {
         &self.band_groups
     }
 
-    /// Group 2 of `shade`.
+    /// Bind group 2 of `shade`.
     pub(in crate::gpu) fn target_group(&self) -> &BindGroup {
         &self.target_group
     }
 }
 
-/// How many iterations of loops an invocation may take.
+/// Maximum number of loop iterations of an invocation.
 ///
-/// Mesa 22.3's lavapipe leaves all loops silently after 65,535 iterations of the invocations that it runs
-/// together, which are eight by default, so that an eighth of that is safe; the self-test's nested loops try
-/// that. Elsewhere it is only a bound on what a kernel that is wrong could do.
+/// The lavapipe of Mesa 22.3 leaves all loops silently after 65,535 iterations of the invocations that it runs together.
+/// These are eight by default, so an eighth of that number is safe; the nested loops of the self-test check this. On other
+/// devices the limit only bounds the run time of a kernel with a defect.
 pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
     let info = device.adapter_info();
     match info.device_type {
@@ -353,7 +354,7 @@ pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
     }
 }
 
-/// The targets in the order of their bindings.
+/// Returns the targets in the order of their bindings, or an error if the renderer cannot write to them.
 fn checked_targets<'a>(
     renderer: &Renderer,
     targets: &Targets<'a>,

@@ -1,7 +1,7 @@
-//! Lit pictures in an encoder of somebody else's.
+//! Recording lit pictures into the encoder of another application.
 //!
-//! What [`Headless`](crate::gpu::Headless) paces, submits and reads back is recorded here as it is: a host that gathers
-//! samples in its own frame records the same passes.
+//! The passes are the same as those that [`Headless`](super::Headless) submits and reads back, but here the application
+//! submits them, for example a few samples with each frame of its own.
 
 use std::ops::Range;
 
@@ -11,14 +11,13 @@ use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MOST_DISPATCHES, Recorder,
-    Round,
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, MAX_DISPATCHES, Recorder, Round,
 };
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::RenderSettings;
 
-/// A lit picture that grows by samples, on a device that the caller keeps.
+/// A lit picture that accumulates samples, on a device that the caller owns.
 #[derive(Debug)]
 pub struct HostedPicture {
     passes: LitPasses,
@@ -27,24 +26,24 @@ pub struct HostedPicture {
     is_indirect: bool,
 }
 
-/// The sums of a part of a picture.
+/// The accumulated sums of a part of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct HostedSums<'a> {
-    /// Its first column and row, in pixels.
+    /// First column and row of the part, in pixels.
     pub origin: [u32; 2],
-    /// Width and height, in pixels.
+    /// Width and height of the part, in pixels.
     pub size: [u32; 2],
-    /// Row by row, three `vec4f` for each pixel: the sums of colours and opacities; what rounding left out of the sums of
-    /// colours; the sums of the first surfaces' colours. Usage: `STORAGE`, `COPY_SRC`.
+    /// Buffer with three `vec4f` for each pixel, row by row: the sums of colour and opacity, the rounding errors of the sums
+    /// of colour, and the sums of the first surfaces' albedos. Its usages are `STORAGE` and `COPY_SRC`.
     pub buffer: &'a Buffer,
 }
 
 impl HostedPicture {
-    /// Makes the passes and the buffers. `is_indirect` says whether the adapter has indirect dispatch
+    /// Creates the passes and the buffers. `is_indirect` says whether the adapter supports indirect dispatches
     /// (`DownlevelFlags::INDIRECT_EXECUTION`); the picture does not depend on it.
     ///
     /// # Errors
-    /// What [`RenderSettings::check`] refuses; [`GpuError::NoOccluders`]; if the device has no memory left.
+    /// The errors of [`RenderSettings::check`]; [`GpuError::NoOccluders`]; an error if the device has no memory left.
     pub fn new(
         device: &Device,
         queue: &Queue,
@@ -66,11 +65,11 @@ impl HostedPicture {
         Ok(Self { passes, frame, lighting, is_indirect })
     }
 
-    /// Records some samples of every pixel. What the passes read is queued, and holds for the queue's next submission,
-    /// which must be this encoder's.
+    /// Records some samples of every pixel. The parameters of the passes are queued on `queue` for its next submission,
+    /// which must be that of this encoder.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if that takes more dispatches than one submission may have; record fewer samples then.
+    /// [`GpuError::Limit`] if the samples need more dispatches than one submission may have; record fewer samples then.
     pub fn record(
         &self,
         queue: &Queue,
@@ -91,12 +90,12 @@ impl HostedPicture {
                 let end = samples.end.min(start + frame.sizes.in_flight);
                 let steps = round.steps(start..end)?;
                 let needed = recorder.dispatches() + steps.len();
-                if needed > MOST_DISPATCHES {
+                if needed > MAX_DISPATCHES {
                     return Err(GpuError::Limit {
                         what: "one recording of lit samples",
                         needed: needed as u64,
                         limit_name: "dispatches of one submission",
-                        limit: MOST_DISPATCHES as u64,
+                        limit: MAX_DISPATCHES as u64,
                     });
                 }
                 frame.record_clear_lists(encoder);
@@ -110,7 +109,7 @@ impl HostedPicture {
         Ok(())
     }
 
-    /// The sums so far, of every part of the picture.
+    /// Returns the sums of every part of the picture.
     pub fn sums(&self) -> impl Iterator<Item = HostedSums<'_>> {
         self.frame.tiles.iter().map(|tile| HostedSums {
             origin: tile.tile.origin,

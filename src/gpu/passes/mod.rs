@@ -1,4 +1,4 @@
-//! Passes over pixels and paths. Each is built once for a device and records into an encoder; none submits or waits.
+//! Passes over pixels and paths. Each is built once for a device and records into an encoder. None submits or waits.
 
 pub(in crate::gpu) mod bands;
 pub(in crate::gpu) mod frame;

@@ -6,7 +6,8 @@ use crate::accel::Brick;
 use crate::camera::Camera;
 use crate::gpu::shader::records::SceneSpace;
 
-/// About the box of a brick's centres, in the scene's frame; empty for no spheres.
+/// Approximate bounding box of the centres of a brick's spheres, in the scene's frame. It is empty for a brick without
+/// spheres.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct CenterBox {
     min: Vec3,
@@ -16,7 +17,7 @@ pub(in crate::gpu) struct CenterBox {
 impl CenterBox {
     const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
 
-    /// From some of the spheres: a hint needs no more.
+    /// The box of some of the spheres of a brick. The order needs no more accuracy.
     pub(in crate::gpu) fn of(brick: &Brick) -> Self {
         const SAMPLES: usize = 4096;
         let stride = brick.spheres.len().div_ceil(SAMPLES).max(1);
@@ -26,14 +27,14 @@ impl CenterBox {
         })
     }
 
-    /// How far a point is from the box, squared; 0 in it.
+    /// Squared distance from a point to the box; 0 for a point inside.
     fn distance_squared(&self, point: Vec3) -> f32 {
         (point - point.max(self.min).min(self.max)).length_squared()
     }
 }
 
-/// The nearest to the camera first: its rays then pass the others by, because what they hit is nearer. No
-/// answer depends on it.
+/// The indices of boxes, sorted by their distance from the camera, the nearest first. Hits in near bricks then let rays
+/// skip the others. The picture does not depend on the order.
 pub(in crate::gpu) fn nearest_first(
     boxes: impl Iterator<Item = CenterBox>,
     camera: &dyn Camera,
@@ -56,7 +57,7 @@ mod tests {
 
     #[test]
     fn from_every_side() {
-        // Three along x; a hundred spheres between 10 i and 10 i + 9.9.
+        // Three boxes along x, with a hundred spheres each between 10 i and 10 i + 9.9.
         let boxes = [2.0_f32, 0.0, 1.0].map(|i| {
             let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]).collect();
             CenterBox::of(&Brick { index: Index::List, spheres, ids: Vec::new() })
@@ -78,11 +79,11 @@ mod tests {
         };
         assert_eq!(order([-50.0, 1.0, 0.0]), [1, 2, 0]);
         assert_eq!(order([50.0, 1.0, 0.0]), [0, 2, 1]);
-        // From the middle one, nearer to the last.
+        // The eye is in the middle box, and the last box is the nearer of the other two.
         assert_eq!(order([19.0, 0.0, 0.0]), [2, 0, 1]);
     }
 
-    /// As a scene without spheres has, and one next to it.
+    /// The empty brick, which a scene without spheres has, and a brick with one sphere.
     #[test]
     fn an_empty_brick_is_the_last() {
         let brick = |spheres| Brick { index: Index::List, spheres, ids: Vec::new() };

@@ -11,12 +11,12 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 impl Renderer {
     /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
     ///
-    /// Nothing is submitted. The frame's targets hold the picture once the caller's queue has run the
-    /// encoder; they are overwritten whole.
+    /// Nothing is submitted. The frame's targets contain the picture after the device has executed the encoder. They are
+    /// overwritten completely.
     ///
     /// # Errors
-    /// If the frame has no view of this scene, was made for other targets, or has a camera that this
-    /// renderer was not built for.
+    /// If the frame has no view of this scene, was made for other targets, or has a camera that this renderer was not built
+    /// for.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -37,7 +37,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the tracing of a brick for a band, or a slice of it; the band's record must name its first group.
+    /// Records the tracing of a brick for a band or for a slice of one. The record of the band must contain the first
+    /// workgroup of the slice.
     pub(in crate::gpu) fn record_trace(
         &self,
         pass: &mut ComputePass<'_>,

@@ -11,7 +11,7 @@ use crate::gpu::shader::layouts::Layouts;
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{self, BrickPass};
 
-/// Pipelines. Long-lived: one per device and kind of target, shared by all scenes and frames.
+/// The pipelines of primary rays for a device and a kind of target. All scenes and frames can share one renderer.
 #[derive(Debug)]
 pub struct Renderer {
     pub(in crate::gpu) layouts: Layouts,
@@ -22,7 +22,7 @@ pub struct Renderer {
     pub(in crate::gpu) trace: Vec<(CameraKind, BrickKind, TracePipelines)>,
 }
 
-/// For the first brick, and for those behind it.
+/// Pipelines that trace the first brick of a scene and the later ones.
 #[derive(Debug)]
 pub(in crate::gpu) struct TracePipelines {
     pub(in crate::gpu) first: ComputePipeline,
@@ -30,10 +30,10 @@ pub(in crate::gpu) struct TracePipelines {
 }
 
 impl Renderer {
-    /// Builds the pipelines on a device that the caller keeps.
+    /// Builds the pipelines on a device that the caller owns.
     ///
     /// # Errors
-    /// If the device refuses a kernel, which is a defect of this crate or of the driver.
+    /// If the device rejects a kernel, which is a defect of this crate or of the driver.
     pub fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
         let RendererOptions { color, data_layers, query, keeps_rays, .. } = *options;
         let layouts = scoped(device, || Layouts::new(device, options))?;
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::accel::Structure;
 
-    /// wgpu checks shaders, layouts, access modes and record sizes, with no driver at all.
+    /// wgpu checks shaders, layouts, access modes and record sizes without any driver.
     #[test]
     fn every_pipeline_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
@@ -99,7 +99,7 @@ mod tests {
         }
     }
 
-    /// What only validation finds, and not the parser, is reported at its place as well.
+    /// Errors in a shader name file and line, whether the parser or the validation finds them.
     #[test]
     fn a_refused_kernel_is_an_error_that_names_the_part() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());

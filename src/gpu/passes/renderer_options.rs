@@ -1,35 +1,36 @@
-//! What a renderer is built for.
+//! The options of a renderer of primary rays.
 
 use crate::accel::{Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::shader::formats::ColorTarget;
 
-/// What a renderer is built for. Fewer cameras are quicker to build.
+/// The cameras, structures and targets that a renderer is built for. A renderer with fewer cameras is built more quickly.
 #[derive(Clone, Debug)]
 pub struct RendererOptions {
-    /// The colour texture.
+    /// Format of the colour texture.
     pub color: ColorTarget,
-    /// Whether depth, normal and id are written as well.
+    /// Whether depth, normal and id are also written.
     pub data_layers: bool,
     /// The cameras that frames will use.
     pub cameras: Vec<CameraKind>,
     /// The structures that scenes will have.
     pub structures: Vec<Structure>,
-    /// What scenes will consist of.
+    /// The primitives that scenes will consist of.
     pub primitives: Vec<Primitive>,
-    /// Whether scenes may be too large for one binding, and so consist of several bricks.
+    /// Whether scenes may be too large for one binding, so that they consist of several bricks.
     pub several_bricks: bool,
-    /// What rays are asked. With [`Query::Any`] a renderer is good for measurements only.
+    /// What the search for a ray returns. A renderer with [`Query::Any`] is useful for measurements only.
     pub query: Query,
-    /// Whether frames keep the ray of every pixel, 32 bytes each, for [`verify`](crate::verify).
+    /// Whether frames keep the ray of every pixel, in 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
-    /// Changes of shaders; none, but in experiments and tests.
+    /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
 
 impl Default for RendererOptions {
-    /// Eight-bit colour, no data layers, every camera, every structure that is chosen by itself.
+    /// Returns options for eight-bit colour without data layers, all cameras, and all structures that are chosen
+    /// automatically.
     fn default() -> Self {
         Self {
             color: ColorTarget::default(),
@@ -45,13 +46,13 @@ impl Default for RendererOptions {
     }
 }
 
-/// What a ray is asked.
+/// The result that the search for a ray returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Query {
-    /// Which sphere is the nearest.
+    /// The nearest sphere that the ray hits.
     #[default]
     Nearest,
-    /// Whether there is any.
+    /// Whether the ray hits any sphere.
     Any,
 }

@@ -1,13 +1,13 @@
-//! Cutting a film into tiles.
+//! Dividing a film into tiles, bands and rectangles of workgroups.
 
 use crate::camera::film::Film;
 
-/// The most pixels of a tile of a headless render: its buffers and textures then take 48 MiB, little beside a large
-/// scene, and a picture of 1024² is one.
+/// Maximum number of pixels of a tile of a headless render. The buffers and textures of such a tile take 48 MiB, which is
+/// little compared with a large scene. A picture of 1024² pixels is a single tile.
 pub(in crate::gpu) const MAX_TILE_PIXELS: u64 = 1 << 20;
 
-/// The most pixels of a band of a host's picture, whose hits are kept together.
-pub(in crate::gpu) const MAX_PIXELS: u64 = 1 << 22;
+/// Maximum number of pixels of a band, whose hits share one buffer.
+pub(in crate::gpu) const MAX_BAND_PIXELS: u64 = 1 << 22;
 
 /// The side of a workgroup, as in `@workgroup_size(8, 8)`.
 pub(in crate::gpu) const WORKGROUP_SIDE: u32 = 8;
@@ -17,7 +17,7 @@ pub(in crate::gpu) const WORKGROUP_SIDE: u32 = 8;
 pub(in crate::gpu) struct Tile {
     pub(in crate::gpu) origin: [u32; 2],
     pub(in crate::gpu) size: [u32; 2],
-    /// Where it lies in the target textures.
+    /// Position of the first pixel in the target textures.
     pub(in crate::gpu) in_target: [u32; 2],
 }
 
@@ -29,25 +29,25 @@ pub(in crate::gpu) struct Groups {
 }
 
 impl Groups {
-    /// None at all.
+    /// An empty rectangle.
     pub(in crate::gpu) const NONE: Self = Self { first: [0, 0], size: [0, 0] };
 
-    /// Those that cover so many pixels.
+    /// The workgroups that cover a rectangle of this size in pixels.
     pub(in crate::gpu) fn of_size(pixels: [u32; 2]) -> Self {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
 
-    /// How many there are.
+    /// Number of workgroups.
     pub(in crate::gpu) fn count(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
-    /// How many pixels they render, if none lies beyond the picture.
+    /// Number of pixels of the workgroups, including any outside the picture.
     pub(in crate::gpu) fn pixels(self) -> u64 {
         self.count() * u64::from(WORKGROUP_SIDE * WORKGROUP_SIDE)
     }
 
-    /// Takes about `count` workgroups out of those that are left: whole rows, or a part of one.
+    /// Removes at most about `count` workgroups from those that are left: whole rows, or a part of one row.
     pub(in crate::gpu) fn take(left: &mut Vec<Self>, count: u64) -> Option<Self> {
         let Self { first: [x, y], size: [width, height] } = left.pop()?;
         if width == 0 || height == 0 {
@@ -63,7 +63,7 @@ impl Groups {
             leave([x, y + rows], [width, height - rows]);
             return Some(Self { first: [x, y], size: [width, rows] });
         }
-        // Less than a row, so it fits.
+        // This is less than a row, so it fits into u32.
         let columns = (count as u32).max(1);
         leave([x, y + 1], [width, height - 1]);
         leave([x + columns, y], [width - columns, 1]);
@@ -71,15 +71,15 @@ impl Groups {
     }
 }
 
-/// The size of tiles for a device whose textures have sides of at most `side_limit` pixels.
+/// Size of tiles for a device whose textures have sides of at most `side_limit` pixels.
 pub(in crate::gpu) fn tile_size(film: &Film, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
-    // No side exceeds 2^15 on any device, so that one row of workgroups always fits.
+    // No device has sides of more than 2^15 pixels, so one row of workgroups always fits.
     let rows = (MAX_TILE_PIXELS / u64::from(width)) as u32;
     [width, height.min((rows / WORKGROUP_SIDE).max(1) * WORKGROUP_SIDE)]
 }
 
-/// Cuts a tile into bands of at most so many rows.
+/// Divides a tile into bands of at most `rows` rows.
 pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile> {
     let height = tile.size[1];
     (0..height).step_by(rows as usize).map(move |y| Tile {
@@ -89,7 +89,7 @@ pub(in crate::gpu) fn bands(tile: Tile, rows: u32) -> impl Iterator<Item = Tile>
     })
 }
 
-/// The tiles that cover the film; those at the right and lower edge may be smaller.
+/// The tiles that cover a film. Those at its right and lower edges may be smaller.
 pub(in crate::gpu) fn tiles(film: &Film, tile_size: [u32; 2]) -> impl Iterator<Item = Tile> {
     let (width, height) = (film.width(), film.height());
     (0..height).step_by(tile_size[1] as usize).flat_map(move |y| {

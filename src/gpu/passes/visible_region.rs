@@ -1,4 +1,4 @@
-//! The part of a picture in which the scene's box lies.
+//! The part of a picture in which the scene's box may be visible.
 
 use crate::camera::View;
 use crate::camera::film::YAxis;
@@ -6,22 +6,23 @@ use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 
-/// A rectangle of the film, in pixels, outside of which no ray meets the scene's box; perhaps empty.
+/// A rectangle of the film in pixels, which may be empty. No ray of a pixel outside of it hits the scene's box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::gpu) struct VisibleRegion {
     first: [f64; 2],
-    /// Behind the last.
+    /// End of the rectangle, exclusive.
     end: [f64; 2],
 }
 
-/// How much larger the rectangle is on each side: the rounding of a kernel moves no ray so far.
+/// Margin of the rectangle on each side in pixels. Rounding in a kernel never moves a ray so far.
 const PIXELS_AROUND: f64 = 2.0;
 
 impl VisibleRegion {
-    /// The rectangle around the box's eight corners; all of the film, if a corner is not before the camera.
+    /// The rectangle around the projections of the box's eight corners, or the whole film if a corner is not in front of the
+    /// camera.
     ///
-    /// Where straight lines are straight in the picture, and rays go through one point, the box lies within its
-    /// corners; of other cameras it is all of the film.
+    /// If the camera projects straight lines to straight lines and has no lens, the picture of the box lies within the
+    /// rectangle of its corners. For other cameras the region is the whole film.
     pub(in crate::gpu) fn of(&View { camera, film }: &View<'_>, space: &SceneSpace) -> Self {
         let size = [f64::from(film.width()), f64::from(film.height())];
         let all = Self { first: [0.0; 2], end: size };
@@ -46,21 +47,21 @@ impl VisibleRegion {
         region
     }
 
-    /// As seen by rays that may be so many pixels beside their pixels' centres.
+    /// The region extended for rays that may be up to `pixels` pixels away from the centres of their pixels.
     pub(in crate::gpu) fn widened(mut self, pixels: f64) -> Self {
         self.first.iter_mut().for_each(|first| *first -= pixels);
         self.end.iter_mut().for_each(|end| *end += pixels);
         self
     }
 
-    /// The workgroups of a tile in which the rectangle lies; none have the size zero.
+    /// The workgroups of a tile that overlap the rectangle. If there are none, both sides of the result are zero.
     pub(in crate::gpu) fn groups_of(&self, tile: Tile) -> Groups {
         let side = f64::from(WORKGROUP_SIDE);
         let mut groups = Groups::of_size(tile.size);
         for axis in 0..2 {
             let count = f64::from(groups.size[axis]);
             let origin = f64::from(tile.origin[axis]);
-            // A float is cast to the nearest whole number that there is.
+            // Both values are clamped to the range of workgroups, so the casts below are exact.
             let first = ((self.first[axis] - origin) / side).floor().clamp(0.0, count);
             let end = ((self.end[axis] - origin) / side).ceil().clamp(0.0, count);
             groups.first[axis] = first as u32;
@@ -73,7 +74,7 @@ impl VisibleRegion {
     }
 }
 
-/// How many pixels of a film are traced in tiles of a size, in whole workgroups, once for every brick.
+/// Number of pixels of a film that are traced, in whole workgroups, counted once for every brick.
 pub(in crate::gpu) fn traced_pixels(
     scene: &SceneBuffers,
     view: &View<'_>,
@@ -102,7 +103,7 @@ mod tests {
         Tile { origin, size, in_target: [0, 0] }
     }
 
-    /// Ten pixels a unit: the box is 20 pixels wide, in the middle of 160 by 80.
+    /// At ten pixels per unit of length, the box is 20 pixels wide, in the middle of a film of 160 by 80.
     #[test]
     fn a_box_in_the_middle() {
         let film = Film::new(160, 80).unwrap();
@@ -132,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn from_inside_all_is_seen() {
+    fn from_inside_the_box_the_whole_film_is_visible() {
         let film = Film::new(80, 40).unwrap();
         let pose =
             Pose::looking_along([10.0, 0.0, 0.5], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
@@ -141,9 +142,9 @@ mod tests {
         assert_eq!(region.groups_of(tile([0, 0], [80, 40])), Groups::of_size([80, 40]));
     }
 
-    /// Every ray that meets the box is in the rectangle, and the rectangle is not much larger.
+    /// The rays through all corners of the box lie in the rectangle.
     #[test]
-    fn a_ray_at_each_corner_is_seen() {
+    fn a_ray_at_each_corner_is_in_the_region() {
         let film = Film::new(200, 100).unwrap();
         let pose = Pose::looking_at([15.0, 3.0, 9.0], [9.0, 0.5, 0.0], [0.1, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.9, 2.0).unwrap();

@@ -1,13 +1,13 @@
-//! What spheres look like, as kernels read it. Twin of `shaders/scene/appearance.wgsl`.
+//! Appearance of spheres in the form that kernels read. Twin of `shaders/scene/appearance.wgsl`.
 
 use crate::gpu::shader::records::Color;
 use crate::image::color::LinearRgb;
 use crate::scene::{Appearance, Colors, SceneAppearance, alpha_of};
 
-/// The words of a brick's spheres, and where they stand.
+/// The words that encode the appearance of a brick's spheres, and the numbers that are needed to decode them.
 #[derive(Debug)]
 pub(in crate::gpu) struct AppearanceWords {
-    /// Never empty.
+    /// The words, of which there is always at least one.
     pub(in crate::gpu) words: Vec<u32>,
     pub(in crate::gpu) color_shift: u32,
     pub(in crate::gpu) color_mask: u32,
@@ -16,7 +16,7 @@ pub(in crate::gpu) struct AppearanceWords {
 }
 
 impl AppearanceWords {
-    /// Of the spheres with these ids.
+    /// Encodes the appearance of the spheres with the given ids.
     pub(in crate::gpu) fn of(appearance: &SceneAppearance, ids: &[u32]) -> Self {
         let colors = appearance.colors();
         let mut words = color_words(colors, ids.iter().copied());
@@ -38,7 +38,7 @@ impl AppearanceWords {
     }
 }
 
-/// Which words every sphere has.
+/// The kinds of words that every sphere of a scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct SphereWords {
     colors: bool,
@@ -46,13 +46,13 @@ pub(in crate::gpu) struct SphereWords {
 }
 
 impl SphereWords {
-    /// How many.
+    /// Number of words for each sphere.
     pub(in crate::gpu) fn count(self) -> u64 {
         u64::from(self.colors) + u64::from(self.materials)
     }
 }
 
-/// Which words every sphere of a scene has.
+/// The kinds of words that every sphere of a scene with this appearance has.
 pub(in crate::gpu) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWords {
     SphereWords {
         colors: !matches!(appearance.colors(), Colors::One(_)),
@@ -60,7 +60,7 @@ pub(in crate::gpu) fn words_per_sphere(appearance: &SceneAppearance) -> SphereWo
     }
 }
 
-/// The words of colour of some spheres; none where all have one.
+/// The colour words of some spheres. There are none if all spheres of the scene have the same colour.
 pub(in crate::gpu) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32>) -> Vec<u32> {
     match colors {
         Colors::One(_) => Vec::new(),
@@ -72,7 +72,7 @@ pub(in crate::gpu) fn color_words(colors: &Colors, ids: impl Iterator<Item = u32
     }
 }
 
-/// How many elements the palette has.
+/// Number of elements of the palette.
 pub(in crate::gpu) fn palette_length(appearance: &Appearance) -> usize {
     match appearance.colors() {
         Colors::One(_) => 1,
@@ -82,10 +82,10 @@ pub(in crate::gpu) fn palette_length(appearance: &Appearance) -> usize {
     }
 }
 
-/// How many values a byte has.
+/// Number of different values of a byte.
 const BYTES: usize = 256;
 
-/// What words of colour stand for.
+/// The palette: the colours that the indices in colour words refer to.
 pub(in crate::gpu) fn palette(appearance: &Appearance) -> Vec<Color> {
     let opaque = |color: &LinearRgb| {
         let [r, g, b] = color.to_array();
@@ -117,7 +117,8 @@ mod tests {
         Scene::from_parts(SphereArray::F32(spheres), appearance).unwrap()
     }
 
-    /// As `sphere_color` and `material_index` of `shaders/scene/appearance.wgsl`.
+    /// Decodes colour and material index in the same way as `sphere_color` and `material_index` of
+    /// `shaders/scene/appearance.wgsl`.
     fn read(appearances: &AppearanceWords, palette: &[Color], shape_index: u32) -> ([f32; 4], u32) {
         let last = appearances.words.len() as u32 - 1;
         let word = appearances.words[shape_index.min(last) as usize];
@@ -130,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn words_say_what_the_scene_says() {
+    fn decoded_words_match_the_scene() {
         let gray = |level: u8| LinearRgb::from_srgb8([level; 3]);
         let palette_of = vec![gray(10), gray(20), gray(30)];
         let map = ColorMap::new(palette_of.clone(), [0.0, 2.0]).unwrap();
@@ -158,8 +159,8 @@ mod tests {
                     palette(scene.appearance()),
                 );
                 assert_eq!(palette.len(), palette_length(scene.appearance()));
-                let least = words_per_sphere(scene.checked_appearance()).count() * 5;
-                assert_eq!(appearances.words.len() as u64, least.max(1));
+                let used = words_per_sphere(scene.checked_appearance()).count() * 5;
+                assert_eq!(appearances.words.len() as u64, used.max(1));
                 for (shape_index, id) in (0..).zip(ids) {
                     let ([r, g, b, alpha], row) = read(&appearances, &palette, shape_index);
                     let kept = scene.checked_appearance().material_rows()[row as usize];
@@ -176,7 +177,8 @@ mod tests {
         }
     }
 
-    /// No material needs no word, and one that does not depend on the colour no more than one row.
+    /// Spheres need no material word if all have the same material, and a material that does not depend on the colour needs
+    /// a single row.
     #[test]
     fn materials_are_told_apart_only_where_they_differ() {
         let colors = vec![[1, 2, 3, 255], [4, 5, 6, 255], [7, 8, 9, 255], [1, 2, 3, 0]];

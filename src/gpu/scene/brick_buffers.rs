@@ -1,4 +1,4 @@
-//! The bricks of a scene on a device.
+//! The buffers of a brick on a device, and copying bricks to the device.
 
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
@@ -10,32 +10,32 @@ use crate::gpu::scene::appearance::AppearanceWords;
 use crate::gpu::shader::records;
 use crate::scene::SceneAppearance;
 
-/// A brick, bound for the kernels.
+/// Buffers and bind groups of a brick.
 #[derive(Debug)]
 pub(in crate::gpu) struct BrickBuffers {
-    /// What searches and shades it.
+    /// Structure and primitive, which determine the kernels.
     pub(in crate::gpu) kind: BrickKind,
-    /// Where it is, to tell which is nearer.
+    /// Approximate bounding box of the centres, by which bricks are sorted.
     pub(in crate::gpu) center_box: CenterBox,
-    /// Group 1 of `trace` and `occluded`.
+    /// Bind group 1 of `trace` and `occluded`.
     pub(in crate::gpu) trace_group: BindGroup,
-    /// Group 1 of `shade`.
+    /// Bind group 1 of `shade`.
     pub(in crate::gpu) surface_group: BindGroup,
-    /// Of every sphere, in the order of the structure.
+    /// The id of every sphere, in the order of the structure.
     pub(in crate::gpu) ids: Buffer,
-    /// What every sphere looks like.
+    /// The appearance words of the spheres.
     pub(in crate::gpu) appearances: Buffer,
     pub(in crate::gpu) shape_count: u32,
 }
 
-/// What of a brick is copied.
+/// The data of a brick that are copied to the device.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct BrickContents<'a> {
     kind: BrickKind,
     center_box: CenterBox,
-    /// As the primitive's WGSL part reads them, in the order of the structure.
+    /// The shapes in the order of the structure, in the layout that the primitive's WGSL file reads.
     shapes: &'a [u8],
-    /// Of each.
+    /// The id of each shape.
     ids: &'a [u32],
     index: &'a Index,
 }
@@ -48,10 +48,10 @@ impl<'a> BrickContents<'a> {
     }
 }
 
-/// No primitive's shape has more bytes.
+/// Upper bound of the size of a shape in bytes, for every primitive.
 const LARGEST_SHAPE: usize = 64;
 
-/// A copy in progress.
+/// The state of copying the bricks of a scene to a device.
 pub(in crate::gpu) struct Upload<'a> {
     pub(in crate::gpu) renderer: &'a Renderer,
     pub(in crate::gpu) device: &'a Device,
@@ -87,7 +87,7 @@ impl Upload<'_> {
             material_mask: appearances.material_mask,
             ..bytemuck::Zeroable::zeroed()
         };
-        // A binding must not be empty.
+        // A buffer binding must not be empty.
         let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
         let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { ids };
@@ -174,7 +174,7 @@ impl Upload<'_> {
             usage,
             mapped_at_creation,
         };
-        // Where the device's memory is the host's, contents are written where they stay.
+        // If device and host share their memory, the contents are written directly to the buffer.
         let is_shared = self.device.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS);
         if is_shared {
             let buffer =
@@ -186,7 +186,7 @@ impl Upload<'_> {
                 self.bytes += size;
                 return buffer;
             }
-            // It could not be created, which the error scope around us has noted.
+            // The buffer could not be created, which the enclosing error scope has recorded.
             return buffer;
         }
         let buffer = self.device.create_buffer(&descriptor(usage | BufferUsages::COPY_DST, false));

@@ -1,4 +1,4 @@
-//! A scene on a device: its buffers, and how they change.
+//! A scene on a device: its buffers, and updates of them.
 
 pub(in crate::gpu) mod appearance;
 pub(in crate::gpu) mod brick_buffers;

@@ -1,4 +1,4 @@
-//! Gives spheres of a scene on a device other colours, in the buffers that it has.
+//! Changing the colours of spheres on a device in place.
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device, Queue};
@@ -14,7 +14,7 @@ use crate::gpu::shader::{Kernel, part};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
-/// The spheres that a dispatch is of.
+/// Uniform record of a dispatch: the ids of the spheres that are updated, and the number of shapes of the brick.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct RecolorRange {
@@ -24,10 +24,10 @@ pub(in crate::gpu) struct RecolorRange {
     pub(in crate::gpu) zero: u32,
 }
 
-/// How many workgroups a row of a dispatch has at most; WebGPU's least limit is 65,535.
+/// Maximum number of workgroups in a row of a dispatch. Every WebGPU device allows at least 65,535.
 const ROW: u32 = 1 << 15;
 
-/// The pass that writes new colours. Long-lived: one per device.
+/// The pass that writes new colours. One is enough for a device.
 #[derive(Debug)]
 pub struct Recolor {
     layout: BindGroupLayout,
@@ -39,10 +39,10 @@ pub(in crate::gpu) fn recolor_kernel() -> Kernel {
 }
 
 impl Recolor {
-    /// Builds the pipeline on a device that the caller keeps.
+    /// Builds the pipeline on a device that the caller owns.
     ///
     /// # Errors
-    /// If the device refuses the kernel, which is a defect of this crate or of the driver.
+    /// If the device rejects the kernel, which is a defect of this crate or of the driver.
     pub fn new(device: &Device) -> Result<Self, GpuError> {
         let words = storage::<u32>(true);
         let kinds =
@@ -52,13 +52,15 @@ impl Recolor {
         Ok(Self { layout, pipeline })
     }
 
-    /// Records the colours of an update, which the scene has been given with [`Scene::apply`], into the caller's
-    /// encoder. No buffer is replaced: what is bound stays bound, and frames keep their views.
+    /// Records the new colours of an update into the caller's encoder. The update must already have been applied to `scene`
+    /// with [`Scene::apply`]. No buffer is replaced, so bind groups and the views of frames stay valid.
     ///
-    /// The new colours are queued on `queue`; they hold for what comes behind in the encoder, or is submitted later.
+    /// The new colours are queued on `queue`. They take effect for commands that follow in the encoder or are submitted
+    /// later.
     ///
     /// # Errors
-    /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] says no, or if the device has no memory left.
+    /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no memory
+    /// left.
     pub fn record(
         &self,
         device: &Device,
@@ -71,11 +73,11 @@ impl Recolor {
         if !buffers.takes_in_place(scene, update) {
             return Err(GpuError::NotInPlace);
         }
-        // Four bytes each fit into a binding.
-        let most = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
+        // The words of so many spheres, of four bytes each, fit into a binding.
+        let max_count = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
         let range = update.range();
-        for first in range.clone().step_by(most as usize) {
-            let ids = first..range.end.min(first.saturating_add(most));
+        for first in range.clone().step_by(max_count as usize) {
+            let ids = first..range.end.min(first.saturating_add(max_count));
             let words = color_words(scene.appearance().colors(), ids);
             self.record_range((device, queue), encoder, buffers, first, &words)?;
         }
@@ -131,9 +133,9 @@ impl Recolor {
 }
 
 impl SceneBuffers {
-    /// Whether [`Recolor`] can bring these buffers up to date with an update that the scene has been given: it can
-    /// where no sphere moves or grows, unless colours decide more than how a sphere looks. That is where glass absorbs
-    /// light by its colour, and where a studio was planned for and spheres become opaque, or cease to be.
+    /// Returns whether [`Recolor`] can apply an update to these buffers. It can if no sphere moves or changes its radius,
+    /// unless a colour affects more than the look of its sphere. This is the case if glass absorbs light according to its
+    /// colour, or if spheres become opaque or cease to be opaque in a scene that was planned for a studio.
     #[must_use]
     pub fn takes_in_place(&self, scene: &Scene, update: &SceneUpdate<'_>) -> bool {
         let absorbs = |surface: &SurfaceProperties| {

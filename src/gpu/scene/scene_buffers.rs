@@ -1,4 +1,4 @@
-//! A scene on a device.
+//! The buffers of a scene on a device.
 
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -20,11 +20,11 @@ use crate::gpu::shader::records::SceneSpace;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
-/// Tells scenes on devices apart, and where the spheres of each are.
+/// Identifies a scene on a device, and the version of its shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct SceneId {
     scene: u64,
-    /// How often its spheres have moved.
+    /// Number of times that the scene's spheres have moved.
     shape: u64,
 }
 
@@ -35,33 +35,33 @@ impl SceneId {
     }
 }
 
-/// A scene in buffers of a device. Per scene: made once, used by any number of frames.
+/// The buffers of a scene on a device. Any number of frames can use them.
 #[derive(Debug)]
 pub struct SceneBuffers {
     id: SceneId,
     space: SceneSpace,
-    /// What of the host's scene pictures need.
+    /// The data of the host's scene that pictures need.
     summary: SceneSummary,
     structure: Structure,
-    /// How lit pictures keep rays from the spheres that they start on.
+    /// How lit pictures exclude the sphere that a ray starts on from its search.
     exclude_by: ExcludeBy,
     bricks: Vec<BrickBuffers>,
     bytes: u64,
-    /// How many spheres a ray tries in one dispatch, if it is many.
+    /// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
     tests_per_ray: usize,
-    /// What the last picture of the scene taught of the device.
+    /// The submission size at the end of the last picture of the scene.
     submission_size: Mutex<SubmissionSize>,
-    /// Of the spheres that cast shadows in a studio, where some do not and a studio was planned for.
+    /// The spheres that cast shadows in a studio, if some do not and a studio was planned for.
     occluders: Option<Box<Self>>,
 }
 
 impl SceneBuffers {
-    /// Copies the scene to the device, with a structure that suits it.
+    /// Copies a scene to a device, with a structure that suits it.
     ///
-    /// The copy is queued; it is done before anything that is submitted later.
+    /// The copy is queued and precedes everything that is submitted later.
     ///
     /// # Errors
-    /// As [`SceneBuffers::with_accel`].
+    /// The same as for [`SceneBuffers::with_accel`].
     pub fn new(
         renderer: &Renderer,
         device: &Device,
@@ -73,13 +73,13 @@ impl SceneBuffers {
         Self::with_accel(renderer, device, queue, scene, &plan.build(scene.spheres()))
     }
 
-    /// Copies the scene to the device, with a structure that was built for it.
+    /// Copies a scene to a device, with a structure that was built for it.
     ///
-    /// The copy is queued; it is done before anything that is submitted later.
+    /// The copy is queued and precedes everything that is submitted later.
     ///
     /// # Errors
-    /// If the renderer was not built for this structure, if a brick does not fit into the bindings of the
-    /// device, or the whole into its memory.
+    /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if the
+    /// scene does not fit into its memory.
     pub fn with_accel(
         renderer: &Renderer,
         device: &Device,
@@ -91,8 +91,8 @@ impl SceneBuffers {
         Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, &ids, || Ok(()))
     }
 
-    /// As [`SceneBuffers::with_accel`]; calls `flush` after every brick, so that the host may submit what is
-    /// queued and its copy is freed.
+    /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can submit
+    /// the queued copy and free its memory.
     pub(in crate::gpu) fn upload(
         renderer: &Renderer,
         device: &Device,
@@ -130,43 +130,44 @@ impl SceneBuffers {
         })
     }
 
-    /// The same scene with what casts shadows in a studio, unless that is all.
+    /// The same scene together with the spheres that cast shadows in a studio; `None` if all spheres do.
     pub(in crate::gpu) fn with_occluders(self, occluders: Option<Self>) -> Self {
         Self { occluders: occluders.map(Box::new), ..self }
     }
 
-    /// Takes note of other colours, which the buffers have been given.
+    /// Replaces the summary after the colours in the buffers were changed.
     pub(in crate::gpu) fn set_summary(&mut self, summary: SceneSummary) {
         self.summary = summary;
     }
 
-    /// Becomes a copy of the same scene with its spheres elsewhere: what [`SceneBuffers::new`] or
-    /// [`SceneBuffers::with_accel`] made of it after [`Scene::apply`]. Frames that show the scene then need
-    /// [`Frame::set_view`](crate::gpu::Frame::set_view).
+    /// Replaces the buffers by a copy of the same scene with moved spheres, which [`SceneBuffers::new`] or
+    /// [`SceneBuffers::with_accel`] created after [`Scene::apply`]. The views of frames that show the scene must be set
+    /// again with [`Frame::set_view`](super::Frame::set_view).
     pub fn replace(&mut self, copy: Self) {
         let SceneId { scene, shape } = self.id;
-        let is_like = copy.structure == self.structure;
-        // What pictures have taught of the device holds on.
-        let submission_size = if is_like { self.submission_size() } else { copy.submission_size() };
+        let is_same_structure = copy.structure == self.structure;
+        // The adapted submission size stays valid for the same kind of structure.
+        let submission_size =
+            if is_same_structure { self.submission_size() } else { copy.submission_size() };
         let id = SceneId { scene, shape: shape + 1 };
         *self = Self { id, submission_size: Mutex::new(submission_size), ..copy };
     }
 
-    /// Whether there is a structure of what casts shadows in a studio.
+    /// Whether there is a separate structure of the spheres that cast shadows in a studio.
     pub(in crate::gpu) fn has_occluders(&self) -> bool {
         self.occluders.is_some()
     }
 
-    /// Bytes of all its buffers on the device.
+    /// Returns the number of bytes of all buffers on the device.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes + self.occluders.as_ref().map_or(0, |occluders| occluders.bytes())
     }
 
-    /// What is between surfaces and lights: in a studio, the opaque spheres alone.
+    /// The buffers of the spheres that can hide lights from surfaces. In a studio these are only the opaque spheres.
     ///
     /// # Errors
-    /// [`GpuError::NoOccluders`] if the scene was uploaded without what a studio needs.
+    /// [`GpuError::NoOccluders`] if a studio needs a separate structure and the scene was uploaded without.
     pub(in crate::gpu) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
         match &self.occluders {
             _ if settings.studio_parameters().is_none() || self.summary.is_opaque() => Ok(self),
@@ -175,10 +176,10 @@ impl SceneBuffers {
         }
     }
 
-    /// How primary rays become colours.
+    /// The settings by which primary rays are shaded.
     ///
     /// # Errors
-    /// [`GpuError::NotPrimary`] if the picture is to be lit; what [`RenderSettings::check`] refuses.
+    /// [`GpuError::NotPrimary`] if the integrator is not `primary`; the errors of [`RenderSettings::check`].
     pub(in crate::gpu) fn primary_settings(
         &self,
         settings: &RenderSettings,
@@ -197,25 +198,25 @@ impl SceneBuffers {
         self.id
     }
 
-    /// How many rays, at most so many, one invocation may search one after the other: where each tries all spheres, no
-    /// more than one dispatch may loop for.
-    pub(in crate::gpu) fn rays_at_once(&self, most: u32) -> u32 {
+    /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres, the
+    /// iteration limit bounds their number.
+    pub(in crate::gpu) fn rays_at_once(&self, max: u32) -> u32 {
         let fits = LIST_LEN / self.tests_per_ray.max(1);
-        u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, most)
+        u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, max)
     }
 
-    /// How much of a picture to submit at once.
+    /// The size of the next submission.
     pub(in crate::gpu) fn submission_size(&self) -> SubmissionSize {
         *self.submission_size.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes note of what a submission took. The next picture starts as this one ends, because most pictures
-    /// of a scene cost about the same.
-    pub(in crate::gpu) fn took(&self, groups: Groups, elapsed: Duration) {
+    /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of this
+    /// one, because most pictures of a scene cost about the same.
+    pub(in crate::gpu) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
         self.submission_size
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
-            .took(groups.count(), elapsed);
+            .adapt(groups.count(), elapsed);
     }
 
     pub(in crate::gpu) fn appearance(&self) -> &SceneAppearance {
@@ -234,7 +235,7 @@ impl SceneBuffers {
         self.exclude_by
     }
 
-    /// The kinds of the bricks, each once.
+    /// The kinds of the bricks, without repetition.
     pub(in crate::gpu) fn kinds(&self) -> Vec<BrickKind> {
         let mut kinds = Vec::new();
         for brick in &self.bricks {
@@ -245,19 +246,19 @@ impl SceneBuffers {
         kinds
     }
 
-    /// In the order in which they were copied. At least one, so that an empty scene's rays are marked as
-    /// misses.
+    /// The bricks in the order in which they were copied. There is at least one, so that the rays of an empty scene are
+    /// marked as misses.
     pub(in crate::gpu) fn bricks(&self) -> &[BrickBuffers] {
         &self.bricks
     }
 }
 
-/// What one storage binding can hold on a device with such limits.
+/// Maximum size of a storage binding in bytes on a device with these limits.
 pub(in crate::gpu) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
-/// How many spheres a ray tries in one dispatch, if it is many.
+/// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
 fn tests_per_ray(accel: &Accel) -> usize {
     match accel.structure() {
         Structure::List => accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0),
@@ -265,7 +266,7 @@ fn tests_per_ray(accel: &Accel) -> usize {
     }
 }
 
-/// Binds a part of a buffer, in bytes.
+/// A binding of a part of a buffer. `offset` and `size` are in bytes.
 pub(in crate::gpu) fn part(
     buffer: &Buffer,
     offset: usize,

@@ -1,4 +1,4 @@
-//! What lit pictures need of a scene beside its buffers, so that the host's scene need not be at hand.
+//! The data of a scene, besides its buffers, that pictures need. With them the host's scene can be dropped after the upload.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::scene::{Scene, SceneAppearance};
 /// Palette, surfaces and emissive spheres of a scene.
 #[derive(Debug)]
 pub(in crate::gpu) struct SceneSummary {
-    /// Of the scene's frame, in the world.
+    /// Origin of the scene's frame, in world space.
     pub(in crate::gpu) origin: DVec3,
     pub(in crate::gpu) appearance: Arc<SceneAppearance>,
     pub(in crate::gpu) emitters: Emitters,
@@ -20,7 +20,7 @@ pub(in crate::gpu) struct SceneSummary {
     pub(in crate::gpu) emissive: Vec<EmissiveSphere>,
 }
 
-/// A sphere that sends out light.
+/// A sphere that emits light.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct EmissiveSphere {
     /// Centre in the scene's frame, and radius.
@@ -45,7 +45,7 @@ impl SceneSummary {
         }
     }
 
-    /// Of a structure for shadows: nothing of it is seen.
+    /// The summary for a structure of occluders, whose appearance is never used.
     pub(in crate::gpu) fn of_occluders(scene: &Scene) -> Self {
         Self {
             origin: scene.origin(),

@@ -1,51 +1,50 @@
-//! What kernels call the shapes of a structure.
+//! The ids by which kernels identify the shapes of a structure.
 
 use std::borrow::Cow;
 
 use crate::accel::Accel;
 use crate::scene::{Duplicates, Scene};
 
-/// How a ray is kept from meeting the shape that it starts on.
+/// How the shape that a ray starts on is excluded from its search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) enum ExcludeBy {
-    /// It knows the shape's place in the structure that it searches, and no equal shape is in another brick. Costs
-    /// nothing for each test.
+    /// By the shape's index in the structure, if no equal shape is in another brick. This costs nothing for each test.
     Index,
-    /// It knows the shape's id. A read for each test.
+    /// By the shape's id. This costs one memory access for each test.
     Id,
 }
 
 impl ExcludeBy {
-    /// Both.
+    /// All variants.
     pub(in crate::gpu) const ALL: [Self; 2] = [Self::Index, Self::Id];
 }
 
-/// By which ids kernels know the spheres of a structure, and rays those that they start on.
+/// The ids of the spheres of a structure, and the way in which rays exclude the sphere that they start on.
 #[derive(Clone, Debug)]
 pub(in crate::gpu) struct ShapeIds {
-    /// Of every sphere that the structure was built of; `None` if that is its index.
+    /// The id of every sphere that the structure was built from; `None` if every sphere's id is its index.
     ids: Option<Vec<u32>>,
     pub(in crate::gpu) exclude_by: ExcludeBy,
 }
 
 impl ShapeIds {
-    /// For a structure of all spheres.
+    /// The ids for a structure of all spheres.
     pub(in crate::gpu) fn of_all(scene: &Scene, accel: &Accel) -> Self {
-        // Where equal spheres are in one brick, their places will do.
+        // If equal spheres are always in the same brick, their indices in the structure suffice.
         let duplicates = accel.may_part_equals().then(|| Duplicates::of(scene.spheres()));
         let ids = duplicates.and_then(Duplicates::into_firsts);
         let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
         Self { ids, exclude_by }
     }
 
-    /// For a structure of the opaque spheres alone, by their indices among all.
+    /// The ids for a structure of the opaque spheres only: their indices among all spheres.
     pub(in crate::gpu) fn of_opaque(scene: &Scene) -> Self {
         let duplicates = Duplicates::of(scene.spheres());
         let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
         Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
     }
 
-    /// What spheres are called that the structure knows by these numbers.
+    /// The ids of spheres that are given by their indices in the input of the structure.
     pub(in crate::gpu) fn of<'a>(&self, numbers: &'a [u32]) -> Cow<'a, [u32]> {
         match &self.ids {
             None => numbers.into(),

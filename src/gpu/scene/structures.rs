@@ -1,28 +1,29 @@
-//! Structures of a scene for a device, and trying another where rays take too many steps.
+//! The structures of a scene for a device, and retries with another structure if rays need too many steps.
 
 use crate::accel::{Accel, AccelChoice, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::scene::Scene;
 
-/// What finds the spheres of rays, built on the host: from [`RenderPlan::build`], or from a structure alone.
+/// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them; they can also be made
+/// from a single structure.
 #[derive(Debug)]
 pub struct Structures {
-    /// Of all spheres.
+    /// The structure of all spheres.
     pub accel: Accel,
-    /// Of the spheres that cast shadows in a studio, where some do not.
+    /// The structure of the spheres that cast shadows in a studio, if some spheres do not.
     pub occluders: Option<Accel>,
 }
 
 impl From<Accel> for Structures {
-    /// For pictures of primary rays and of paths, and for studios in which every sphere is opaque.
+    /// Returns the structures for pictures of primary rays and of paths, and for studios in which every sphere is opaque.
     fn from(accel: Accel) -> Self {
         Self { accel, occluders: None }
     }
 }
 
 impl RenderPlan {
-    /// Builds what was planned, of the scene that it was planned for.
+    /// Builds the planned structures of the scene that the plan was made for.
     #[must_use]
     pub fn build(&self, scene: &Scene) -> Structures {
         let accel = self.accel.build(scene.spheres());
@@ -31,34 +32,34 @@ impl RenderPlan {
         Structures { accel, occluders }
     }
 
-    /// What to choose where rays take too many steps in what is planned: a tree instead of a grid, a list instead of a
-    /// tree. `None` for lists, which always end.
+    /// Returns the choice to try next if rays need too many steps in the planned structures: a tree instead of a grid, or a
+    /// list instead of a tree. It is `None` for lists, which always stay within the limit.
     #[must_use]
     pub fn instead(&self) -> Option<AccelChoice> {
         let planned = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
         let others: Vec<AccelChoice> = planned.filter_map(Structure::instead).collect();
-        // A tree may do for both; only then is a list tried.
+        // A tree may suffice for both structures, so it is tried before a list.
         [AccelChoice::Tree, AccelChoice::List].into_iter().find(|other| others.contains(other))
     }
 }
 
-/// Rays took too many steps in a structure, and another is tried.
+/// A retry with another structure after rays needed too many steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Retry {
-    /// In which they did.
+    /// The structure in which rays needed too many steps.
     pub failed: Structure,
-    /// What is tried.
+    /// The choice that is tried next.
     pub next: AccelChoice,
 }
 
-/// Does some work in the structures that a choice stands for. Where the choice is [`AccelChoice::Auto`] and rays take
-/// too many steps in what suits the data ([`GpuError::Steps`]), it is done once more with another, and `retrying` is
-/// told before.
+/// Plans structures for a choice and calls `work` with the plan. If the choice is [`AccelChoice::Auto`] and rays need too
+/// many steps in the planned structures ([`GpuError::Steps`]), this is repeated with another choice, after a call of
+/// `retrying`.
 ///
-/// `plan` plans for a choice, as [`Headless::plan`](crate::gpu::Headless::plan) does; `work` builds, uploads and renders.
+/// `plan` makes a plan for a choice, as [`Headless::plan`](super::Headless::plan) does; `work` builds, uploads and renders.
 ///
 /// # Errors
-/// The outer one is the caller's own, and ends the work at once; the inner one is the device's.
+/// The outer error is the caller's own and ends the function at once; the inner error is that of the device.
 pub fn with_retries<T, E>(
     choice: AccelChoice,
     plan: impl Fn(AccelChoice) -> RenderPlan,
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_free_choice_is_changed_and_it_ends() {
+    fn only_an_automatic_choice_is_retried_and_retries_end() {
         let attempts = |choice| {
             let (mut tried, mut told) = (Vec::new(), Vec::new());
             let planned = |choice| plan([choice; 2]);

@@ -1,4 +1,4 @@
-//! Scenes that change on a device of our own.
+//! Updates of scenes on the library's own device.
 
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
@@ -7,25 +7,25 @@ use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
 impl Headless {
-    /// Brings a scene on this device up to date with an update that the host's scene has been given with
+    /// Applies an update to a scene on this device. The update must already have been applied to the host's scene with
     /// [`Scene::apply`].
     ///
-    /// Colours alone are written into the buffers that there are. Where spheres move or grow, the structure is built
-    /// anew on the host, of the same kind as before, and copied to the device; frames that show the scene then need
-    /// [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` says what both cost.
+    /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a new
+    /// structure of the same kind is built on the host and copied to the device; the views of frames that show the scene
+    /// must then be set again with [`Frame::set_view`](super::Frame::set_view). `docs/performance.md` lists the cost of both.
     ///
     /// # Errors
-    /// If it does not fit the device, or if the device fails; then the scene on the device is to be uploaded again.
+    /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.
     pub fn update(
         &self,
         buffers: &mut SceneBuffers,
         scene: &Scene,
         update: &SceneUpdate<'_>,
     ) -> Result<(), GpuError> {
-        // A studio may want what casts shadows where that is no longer all.
-        let is_first_clear =
+        // If the first sphere ceases to be opaque, a studio may need a separate structure of occluders.
+        let loses_opacity =
             buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
-        if buffers.takes_in_place(scene, update) && !is_first_clear {
+        if buffers.takes_in_place(scene, update) && !loses_opacity {
             return self.with_recolor(|recolor| {
                 let mut encoder = self.encoder();
                 recolor.record(
@@ -41,7 +41,7 @@ impl Headless {
         }
         let choice = buffers.structure().choice();
         let accel = self.plan_accel(scene, choice).build(scene.spheres());
-        let opaque = (is_first_clear || buffers.has_occluders()).then(|| scene.opaque()).flatten();
+        let opaque = (loses_opacity || buffers.has_occluders()).then(|| scene.opaque()).flatten();
         let occluders =
             opaque.map(|opaque| self.plan_accel(&opaque, choice).build(opaque.spheres()));
         let copy = self.upload(scene, &Structures { accel, occluders })?;

@@ -14,7 +14,7 @@ use crate::gpu::shader::records::FrameParameters;
 use crate::light::environment::Environment;
 
 /// How many dispatches one submission has at most.
-pub(in crate::gpu) const MOST_DISPATCHES: usize = 1024;
+pub(in crate::gpu) const MAX_DISPATCHES: usize = 1024;
 
 /// Which workgroups of a tile a dispatch may have, and what box its rays are moved to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl LitFrame {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let parameters = make.buffer(
                 "pinhole parameters",
-                MOST_DISPATCHES * parameter_stride,
+                MAX_DISPATCHES * parameter_stride,
                 BufferUsages::UNIFORM,
             );
             let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
@@ -142,7 +142,7 @@ impl LitFrame {
         })
     }
 
-    /// Queues what the next submission's dispatches do; at most [`MOST_DISPATCHES`].
+    /// Queues what the next submission's dispatches do; at most [`MAX_DISPATCHES`].
     pub(in crate::gpu) fn queue_parameters(
         &self,
         queue: &Queue,
@@ -157,7 +157,7 @@ impl LitFrame {
 
     /// Where the record of a dispatch lies, counted from the first of a submission.
     pub(super) fn parameter_offset(&self, number: usize) -> u32 {
-        // No more than MOST_DISPATCHES of them, so it fits.
+        // No more than MAX_DISPATCHES of them, so it fits.
         (number * self.parameter_stride) as u32
     }
 

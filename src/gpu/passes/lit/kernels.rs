@@ -14,7 +14,7 @@ pub(in crate::gpu) enum Mode {
 
 impl Mode {
     /// Whether paths look for light.
-    pub(in crate::gpu) fn looks_for_light(self) -> bool {
+    pub(in crate::gpu) fn samples_light(self) -> bool {
         matches!(self, Self::Path(_, Sources::Any, _))
     }
 
@@ -24,7 +24,7 @@ impl Mode {
     }
 
     fn direct_light(self) -> Part {
-        if self.looks_for_light() {
+        if self.samples_light() {
             part!("path/direct_light.wgsl", "any")
         } else {
             part!("path/direct_light.wgsl", "none")

@@ -28,7 +28,7 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 
-pub(in crate::gpu) use frame::{Frames, LitFrame, MOST_DISPATCHES};
+pub(in crate::gpu) use frame::{Frames, LitFrame, MAX_DISPATCHES};
 pub(in crate::gpu) use kernels::Mode;
 pub(in crate::gpu) use kernels::all_kernels;
 pub(in crate::gpu) use lighting::LightingData;
