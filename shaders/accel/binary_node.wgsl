@@ -1,24 +1,24 @@
-// One node of the two-child tree. Twin: `BinaryNode` in src/accel/binary_tree.rs.
+// Reading a node of the binary tree and testing its boxes. Twin: `BinaryNode` in src/accel/binary_tree.rs.
 // provides: BINARY_INNER, BinaryChild, NO_ENTRY, binary_child
 // needs: SlabRay
 
-// Two vectors for each child of a node.
+// Nodes of the tree, with two vectors for each child: the low corner of its box and its link, then the high corner and
+// its count.
 @group(1) @binding(3) var<storage, read> nodes: array<vec4u>;
 
-// Two a child: its box's low corner and its link; its high corner and its count.
 const BINARY_NODE_VECTORS: u32 = 4u;
 const BINARY_CHILD_VECTORS: u32 = 2u;
 
-// The count of a child that is a node.
+// The count of a child that is an inner node.
 const BINARY_INNER: u32 = 0xffffffffu;
-// The entry of a box that is not entered; greater than any distance.
+// The entry distance of a box that the ray misses. It is greater than any distance.
 const NO_ENTRY: f32 = 2e30;
 
 struct BinaryChild {
-    // Index of the node, or of the leaf's first sphere.
+    // Index of the inner node, or of the first sphere of the leaf.
     link: u32,
     count: u32,
-    // Where the ray enters the box, or NO_ENTRY.
+    // Distance at which the ray enters the box, or NO_ENTRY.
     entry: f32,
 }
 

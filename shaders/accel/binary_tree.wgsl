@@ -1,12 +1,13 @@
-// The two-child tree, nearer child first. Twin: src/accel/binary_tree_trace.rs.
+// Traversal of the binary tree, the nearer child first. Twin: src/accel/binary_tree_trace.rs.
 // provides: find_any, find_nearest
 // needs: BINARY_INNER, BinaryChild, NO_ENTRY, Nearest, Search, SlabRay, any_in_leaf, binary_child, offer_leaf, spend
 
-// A level leaves at most one entry on the stack. The host builds no deeper tree.
+// Maximum depth of the tree, which is also the size of the stack: each level leaves at most one entry on it. The host
+// builds no deeper tree.
 const BINARY_LEVELS: u32 = 30u;
 
-// Link and entry of a child that is a node; no entry for a leaf.
-fn way(child: BinaryChild) -> vec2u {
+// Stack entry of a child: its link and entry distance. The distance of a leaf is NO_ENTRY, so leaves are never pushed.
+fn stack_entry(child: BinaryChild) -> vec2u {
     return vec2u(child.link, bitcast<u32>(select(NO_ENTRY, child.entry, child.count == BINARY_INNER)));
 }
 
@@ -23,7 +24,8 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
     var next = vec2u(0u, 0u);
     var near = BinaryChild();
     var far = BinaryChild();
-    // One node, its pops and two leaves of four: a pop was pushed by another node.
+    // An iteration costs one node, its pops, and two leaves of four spheres. Each pop belongs to a push by another
+    // node.
     while (spend(12u)) {
         let left = binary_child(slab, next.x, 0u);
         let right = binary_child(slab, next.x, 1u);
@@ -35,12 +37,12 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
         }
         offer_child(search, near, nearest);
         offer_child(search, far, nearest);
-        let far_way = way(far);
-        next = way(near);
+        let far_entry = stack_entry(far);
+        next = stack_entry(near);
         if (bitcast<f32>(next.y) > (*nearest).t) {
-            next = far_way;
-        } else if (bitcast<f32>(far_way.y) <= (*nearest).t) {
-            stack[top] = far_way;
+            next = far_entry;
+        } else if (bitcast<f32>(far_entry.y) <= (*nearest).t) {
+            stack[top] = far_entry;
             top++;
         }
         while (bitcast<f32>(next.y) > (*nearest).t) {
@@ -55,7 +57,7 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
 
 fn find_any(search: Search, t_max: f32) -> bool {
     var stack: array<u32, BINARY_LEVELS>;
-    // The root, which is node 0.
+    // The root, which is node 0, is on the stack.
     var top = 1u;
     let slab = SlabRay(search.ray.origin, search.inverse);
     while (top > 0u && spend(11u)) {

@@ -1,4 +1,4 @@
-// A part of the scene that fits into bindings, and the nearest of its shapes.
+// Searching a brick, which is a part of the scene that fits into bindings, for the nearest shape.
 // provides: Nearest, Search, brick, distance_to, ids, nearest_hit, offer, shapes
 // needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, find_nearest, intersect, is_excluded
 
@@ -10,17 +10,17 @@ struct Nearest {
     shape_index: u32,
 }
 
-// How many shapes there are, which is the first, the box of the grid, and how words of colour are read.
+// Number of shapes, index of the first, box of the grid, and layout of the appearance words.
 @group(1) @binding(0) var<uniform> brick: Brick;
-// In the order of the structure; what they are, the primitive's part says. The sign of a radius means nothing here.
+// Shapes in the order of the structure, in the layout of the primitive. The sign of a radius has no meaning here.
 @group(1) @binding(1) var<storage, read> shapes: array<Shape>;
 // Index of each shape in input order.
 @group(1) @binding(2) var<storage, read> ids: array<u32>;
 
-// A ray, and the shapes that it does not hit.
+// A ray, and the shapes that are excluded from its search.
 struct Search {
     ray: Ray,
-    // One over the direction, from `inverse_direction`.
+    // Reciprocals of the direction's components, from `inverse_direction`.
     inverse: vec3f,
     excluded: Excluded,
 }
@@ -31,8 +31,9 @@ fn distance_to(search: Search, shape_index: u32) -> f32 {
     return select(intersect(search.ray, shape).t, NO_HIT, is_excluded(search.excluded, shape_index, shape));
 }
 
-// Takes a shape if it is nearer, or as near and of a smaller id: the answer does not depend on the order
-// in which shapes are tried. Ids are read only here, because a read is dear on a software device.
+// Replaces the nearest hit if a shape is nearer, or as near with a smaller id. The result therefore does not depend on
+// the order in which shapes are tested. Ids are read only here, because memory accesses are expensive on software
+// devices.
 fn offer(nearest: ptr<function, Nearest>, t: f32, shape_index: u32) {
     if (t < NO_HIT && t <= (*nearest).t) {
         let id = ids[shape_index];
@@ -42,7 +43,7 @@ fn offer(nearest: ptr<function, Nearest>, t: f32, shape_index: u32) {
     }
 }
 
-// What of the brick is nearer than what has been found before it, or else that.
+// The nearest hit in the brick, or the hit `before` from earlier bricks if that is nearer.
 fn nearest_hit(entry: Entry, excluded: Excluded, before: Hit) -> Hit {
     var nearest = Nearest(before.t, before.id, 0u);
     if (entry.is_inside) {

@@ -1,11 +1,11 @@
-// The spheres of one cell of a grid.
+// Testing the spheres of a grid cell.
 //
-// They ascend in id, and the nearest of this list replaces one that is as near: the cell in which a ray's nearest point
-// lies has all spheres that share the point, and is the last that is tested. So of equal distances the smallest id wins,
-// and no id need be read.
+// The ids in a list ascend, and the nearest sphere of the list replaces an equally near one of an earlier cell. The
+// cell that contains the nearest hit point holds all spheres through that point and is tested last. The smallest id
+// therefore wins among equal distances, and no id needs to be read.
 
 //// copied
-// A cell's list is a run of spheres; the last one's radius is negative.
+// Testing the list of a cell that stores copies of its spheres. The radius of the last sphere is negative.
 // provides: test_list
 // needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_to, shapes
 
@@ -24,7 +24,7 @@ fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
         }
         at++;
     }
-    // Every list has an end, so that it is enough to count here.
+    // Every list has an end, so it suffices to count its iterations here.
     count_iterations(at - start);
     if (shape_index != NO_SHAPE && t <= (*found).t) {
         *found = Found(t, shape_index);
@@ -32,14 +32,14 @@ fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
 }
 
 //// referenced
-// A cell's list is a run of indices of spheres; the last one's highest bit is set.
+// Testing the list of a cell that stores indices of spheres. The highest bit of the last index is set.
 // provides: test_list
 // needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_to
 
-// List after list, indices of spheres.
+// Indices of the spheres of all cells, list after list.
 @group(1) @binding(4) var<storage, read> references: array<u32>;
 
-// The bits of a reference that are an index.
+// The bits of a reference that contain the index.
 const SHAPE_INDEX: u32 = 0x7fffffffu;
 
 fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
@@ -59,7 +59,7 @@ fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
         }
         at++;
     }
-    // Every list has an end, so that it is enough to count here.
+    // Every list has an end, so it suffices to count its iterations here.
     count_iterations(at - start);
     if (shape_index != NO_SHAPE && t <= (*found).t) {
         *found = Found(t, shape_index);

@@ -1,9 +1,9 @@
-// Shapes that a search does not hit. A ray that departs from a shape does not hit it: outside it has left it for good,
-// and inside the distance to its far side is known without a search, so that no distance is too small to count. A ray
-// towards a light that is a shape does not hit that shape either.
+// Shapes that are excluded from a search. A ray that departs from a shape excludes it: outside, the ray never returns
+// to a sphere, and inside, the distance to its far side is known without a search. No minimum distance is therefore
+// needed. A ray towards a light that is a shape excludes that shape as well.
 
 //// none
-// For rays that start on no shape.
+// No excluded shapes, for rays that do not start on a shape.
 // provides: Excluded, is_excluded, no_exclusion
 // needs: Shape
 
@@ -20,7 +20,8 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 }
 
 //// by-index
-// The index is that of the structure that is searched, and all equal shapes are in the same brick.
+// Excluding the departed shape by its index. The index is that of the searched structure, and all equal shapes are in
+// the same brick.
 // provides: Excluded, excluded_by, is_excluded
 // needs: Departure, Shape, departed_shape, is_same
 
@@ -37,8 +38,9 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 }
 
 //// by-id
-// The shape may be in another brick, or have another index because other shapes are left out; so ids are compared, which
-// takes a read for every test. Equal shapes all have the id of the first.
+// Excluding the departed shape by its id. An equal shape may be in another brick, or the searched structure may lack
+// some shapes and so use other indices. Comparing ids takes one memory access for each test. All equal shapes have the
+// id of the first of them.
 // provides: Excluded, excluded_by, is_excluded
 // needs: Departure, Shape, ids
 
@@ -55,7 +57,7 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 }
 
 //// by-index-and-light
-// As by-index, and also the light that the ray goes to.
+// Excluding the departed shape by its index, and also the emitter that the ray is directed to.
 // provides: Excluded, excluded_by, is_excluded
 // needs: Departure, NO_EMITTER, Shape, departed_shape, emitter, is_same, no_shape
 
@@ -77,7 +79,7 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
 }
 
 //// by-id-and-light
-// As by-id, and also the light that the ray goes to.
+// Excluding the departed shape by its id, and also the emitter that the ray is directed to.
 // provides: Excluded, excluded_by, is_excluded
 // needs: Departure, NO_EMITTER, NO_ID, Shape, emitter, ids
 

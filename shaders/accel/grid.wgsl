@@ -1,7 +1,7 @@
-// Walks a grid of one level. Twin: src/accel/grid_walk.rs.
+// Traversal of a grid with a single level. Twin: src/accel/grid_walk.rs.
 //
-// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
-// planes are computed from the plane's number and never added up, so that their error does not grow.
+// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
+// computed from the index of the plane instead of being accumulated, so that their error does not grow.
 // provides: walk
 // needs: EMPTY, Found, KIND, NO_SHAPE, Search, brick, cells, first_cell, grid_ray, least, spend, test_list
 

@@ -1,43 +1,44 @@
-// A ray among a grid's cells, and the nearest sphere so far. Used by grid.wgsl and nested_grid.wgsl.
+// Coordinates of a ray in a grid, and the searches that grid.wgsl and nested_grid.wgsl share.
 // provides: EMPTY, Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, REACH,
 //   REACH_BITS, cells, find_any, find_nearest, first_cell, grid_ray, least
 // needs: Nearest, Ray, Search, brick, offer, walk
 
-// One word for each cell of the grid, and of the grids inside its cells.
+// Words of the cells of the grid, and of the grids inside its cells, one for each cell.
 @group(1) @binding(3) var<storage, read> cells: array<u32>;
 
-// What a cell's word is, in its two highest bits; the others are a number.
+// Kind of a cell, in the two highest bits of its word. The other bits depend on the kind.
 const KIND: u32 = 3u << 30u;
 const EMPTY: u32 = 0u;
 const LIST: u32 = 1u << 30u;
 const GRID: u32 = 2u << 30u;
 
-// Of an empty cell, in so many bits for each octant: how many cells ahead are empty.
+// In the word of an empty cell: the number of empty cells ahead, in REACH_BITS bits for each octant.
 const REACH: u32 = 7u;
 const REACH_BITS: u32 = 3u;
-// Of a cell with a grid inside: the logarithm of its cells along an axis, and where its words start, in units.
+// In the word of a cell with an inner grid: the binary logarithm of the number of inner cells along an axis, and the
+// index of the first inner word in units of INNER_UNIT.
 const LEVEL: u32 = 7u;
 const LEVEL_SHIFT: u32 = 27u;
 const INNER_START: u32 = 0x7ffffffu;
 const INNER_UNIT: u32 = 8u;
 
 struct GridRay {
-    // Per axis: 1 for a ray that ascends, or 0.
+    // 1 for each axis along which the ray ascends, otherwise 0.
     ahead: vec3f,
-    // Per axis: 1 or -1.
+    // 1 for each axis along which the ray ascends, otherwise -1.
     step: vec3f,
-    // The plane p of an axis, counted in cells from the grid's corner, is base + p * delta away.
+    // The distance along the ray to plane p of an axis, counted from the corner of the grid, is base + p * delta.
     base: vec3f,
     delta: vec3f,
-    // Where the ray is, counted in cells: start + t * speed.
+    // The position on the ray at distance t, in units of cells, is start + t * speed.
     start: vec3f,
     speed: vec3f,
-    // Where it enters and leaves the grid.
+    // Distances at which the ray enters and leaves the grid.
     t_enter: f32,
     t_leave: f32,
 }
 
-// The nearest sphere of this brick.
+// The nearest hit in this brick so far.
 struct Found {
     t: f32,
     shape_index: u32,
@@ -79,7 +80,8 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
 }
 
 fn find_any(search: Search, t_max: f32) -> bool {
-    // A list takes what is as near as the nearest so far; `t_max` is positive, so this is the number below it.
+    // A list also accepts a sphere at exactly the distance of `found`, so this starts with the largest number below
+    // `t_max`, which is positive.
     var found = Found(bitcast<f32>(bitcast<u32>(t_max) - 1u), NO_SHAPE);
     walk(search, &found, true);
     return found.shape_index != NO_SHAPE;

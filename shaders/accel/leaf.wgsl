@@ -1,9 +1,9 @@
-// The spheres of one leaf. Twin of src/accel/leaf.rs.
+// Testing the spheres of a leaf. Twin: src/accel/leaf.rs.
 // provides: any_in_leaf, offer_leaf
 // needs: NO_HIT, Nearest, Search, distance_to, offer
 
-// Offers the nearest sphere of a leaf. Ids ascend within a leaf, so `<` leaves a tie to the smaller one,
-// and one offer is enough.
+// Offers the nearest sphere of a leaf. Ids ascend within a leaf, so that `<` keeps the smaller id of equal distances,
+// and a single offer suffices.
 fn offer_leaf(search: Search, first: u32, count: u32, nearest: ptr<function, Nearest>) {
     var t = NO_HIT;
     var shape_index = first;
@@ -19,7 +19,7 @@ fn offer_leaf(search: Search, first: u32, count: u32, nearest: ptr<function, Nea
     }
 }
 
-// Whether a sphere of a leaf is hit before `t_max`.
+// Whether the ray hits a sphere of a leaf at a distance less than `t_max`.
 fn any_in_leaf(search: Search, first: u32, count: u32, t_max: f32) -> bool {
     for (var i = first; i < first + count; i++) {
         if (distance_to(search, i) < t_max) {

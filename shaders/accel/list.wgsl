@@ -1,9 +1,9 @@
-// No structure: every sphere of the brick. Twin: src/accel/list.rs.
+// Search without a structure, which tests every sphere of the brick. Twin: src/accel/list.rs.
 // provides: find_any, find_nearest
 // needs: NO_HIT, Nearest, Search, brick, distance_to, offer
 
 fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
-    // Ids ascend, so that `<` leaves a tie to the smaller id.
+    // Ids ascend, so that `<` keeps the smaller id of equal distances.
     var t = NO_HIT;
     var shape_index = 0u;
     for (var i = 0u; i < brick.shape_count; i++) {

@@ -1,8 +1,8 @@
-// Walks two levels of cells: a grid, and the grids inside its crowded cells. Twin: src/accel/grid_walk.rs.
+// Traversal of a grid with two levels, whose crowded cells contain inner grids. Twin: src/accel/grid_walk.rs.
 //
-// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to
-// planes are computed from the plane's number and never added up, so that their error does not grow.
-// An empty cell knows how many ahead of it are empty, and all of them are crossed in one step.
+// Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
+// computed from the index of the plane instead of being accumulated, so that their error does not grow. The word of an
+// empty cell contains the number of empty cells ahead of it, and the ray crosses all of them in one step.
 // provides: walk
 // needs: EMPTY, Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, REACH,
 //   REACH_BITS, Search, brick, cells, first_cell, grid_ray, least, spend, test_list
@@ -22,11 +22,11 @@ fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
     var word = EMPTY;
     var t_leave = 0.0;
     loop {
-        // Up to the next cell with spheres, in a loop of its own: rays that run together on a software
-        // device then walk their cells together, and not each while others cross empty space.
+        // A loop of its own advances to the next cell with spheres. Rays that run together on a software device then
+        // test spheres at the same time, instead of one testing while others cross empty space.
         loop {
             word = cells[u32(dot(cell, strides))];
-            // An empty cell's word is, for each octant, how many cells ahead are empty.
+            // The word of an empty cell contains the number of empty cells ahead for each octant.
             let reach = select(0.0, f32((word >> octant) & REACH), (word & KIND) == EMPTY);
             t_leave = least(leaving(along, cell, reach));
             if ((word & KIND) != EMPTY || t_leave >= along.t_leave || !spend(1u)) {
@@ -52,7 +52,7 @@ fn leaving(along: GridRay, cell: vec3f, reach: f32) -> vec3f {
     return along.base + (cell + along.step * reach + along.ahead) * along.delta;
 }
 
-// The cell that the ray enters when it leaves them at the distance `t`.
+// The cell that the ray enters at the distance `t`, where it leaves these cells.
 fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
     let there = floor(along.start + t * along.speed);
     let last = vec3f(brick.cell_counts) - 1.0;
@@ -63,7 +63,7 @@ fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
     return select(kept, cell + along.step * (reach + 1.0), is_left);
 }
 
-// A cell with a list counts as a grid of one cell.
+// Traverses a cell of the outer grid that is not empty. A cell with a list is treated as a grid of one cell.
 fn walk_cell(
     search: Search,
     along: GridRay,

@@ -1,8 +1,8 @@
-// A ray as tests of boxes want it. Twin: src/accel/slab.rs, which says why no test loses a sphere.
+// The ray in the form that box tests need. Twin: src/accel/slab.rs, which explains why the tests never miss a sphere.
 // provides: SlabRay
 
 struct SlabRay {
     origin: vec3f,
-    // One over the direction.
+    // Reciprocals of the direction's components.
     inverse: vec3f,
 }

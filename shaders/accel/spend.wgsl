@@ -1,16 +1,16 @@
-// How long an invocation has looped, and what it reports.
+// Counting the loop iterations of an invocation, and reporting when they reach the limit.
 // provides: count_iterations, report_spent, spend
 // needs: frame, give_up
 
-// Iterations of all loops of this invocation.
+// Number of iterations of all loops of this invocation.
 var<private> spent: u32;
 
 fn count_iterations(iterations: u32) {
     spent += iterations;
 }
 
-// Counts iterations. False once there are more than the limit: then the loop is to be left at once. Kernels
-// are built without wgpu's own bound on loops, and old software devices have a silent one.
+// Counts iterations, and returns whether their number is within the limit. If not, the loop must be left at once.
+// Kernels are built without wgpu's own loop bound, and old software devices leave long loops silently.
 fn spend(iterations: u32) -> bool {
     count_iterations(iterations);
     return spent <= frame.iteration_limit;

@@ -1,12 +1,13 @@
-// One node of the compressed 8-wide tree. Its words are described in src/accel/wide_node.rs.
+// Reading a node of the compressed 8-wide tree and testing its boxes. Its words are described in
+// src/accel/wide_node.rs.
 // provides: LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode, wide_node
 // needs: SlabRay
 
-// Five vectors for each node.
+// Nodes of the tree, with five vectors each.
 @group(1) @binding(3) var<storage, read> nodes: array<vec4u>;
 
 const WIDE_NODE_VECTORS: u32 = 5u;
-// The byte of a leaf: its first sphere, counted from the node's, and above it how many.
+// The byte of a leaf: in its low bits the first sphere, relative to the first sphere of the node, and above the count.
 const LEAF_FIRST: u32 = 31u;
 const LEAF_COUNT_SHIFT: u32 = 5u;
 
@@ -14,13 +15,13 @@ struct WideNode {
     inner_mask: u32,
     first_child: u32,
     first_sphere: u32,
-    // A byte for each slot.
+    // The leaf bytes, one for each slot.
     leaves: vec2u,
-    // Bit s says whether the ray enters the box of slot s at `t_max` or before.
+    // Bit s is set if the ray enters the box of slot s at a distance of at most `t_max`.
     hits: u32,
 }
 
-// Byte s of a word times `step` plus `start`, for four slots.
+// The distances to the planes of four slots: byte s of the word, multiplied by `step`, plus `start`.
 fn planes(cells: u32, step: f32, start: f32) -> vec4f {
     return vec4f((vec4u(cells) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)) * step + start;
 }
@@ -31,7 +32,7 @@ struct QuantizedRay {
     t_max: f32,
 }
 
-// Hits of four slots, from a word of cells for each side and axis.
+// The hit bits of four slots, from the quantized near and far planes of each axis.
 fn four_hits(ray: QuantizedRay, near: vec3u, far: vec3u) -> u32 {
     let entry = max(
         max(planes(near.x, ray.step.x, ray.start.x), planes(near.y, ray.step.y, ray.start.y)),

@@ -1,13 +1,13 @@
-// The compressed 8-wide tree, walked in octant order. Twin: src/accel/wide_tree_trace.rs.
+// Traversal of the compressed 8-wide tree in octant order. Twin: src/accel/wide_tree_trace.rs.
 // provides: find_any, find_nearest
 // needs: LEAF_COUNT_SHIFT, LEAF_FIRST, Nearest, Search, SlabRay, WIDE_ROOT, WideNode, any_in_leaf, first_of_group,
 //   octant_of, octant_order, offer_leaf, rest_of_group, spend, wide_node
 
-// What is left of a node's children is one entry, and only nodes below the root leave something: a tree of
-// WIDE_LEVELS levels needs one entry less. The host builds no deeper tree.
+// Maximum depth of the tree and size of the stack. The remaining children of a node are one entry, and the root leaves
+// none, so a tree of WIDE_LEVELS levels needs one entry less. The host builds no deeper tree.
 const WIDE_LEVELS: u32 = 16u;
 
-// At most four iterations a leaf, its own included, and one of the node.
+// Counts the iterations of a node: one for the node, and at most four for each leaf, including the loop over leaves.
 fn spend_on_node(leaves: u32) -> bool {
     return spend(1u + 4u * countOneBits(leaves));
 }

@@ -1,4 +1,4 @@
-// The ray through the centres of a pixel and of the lens.
+// The ray through the centre of a pixel and the centre of the lens.
 // provides: make_entry
 // needs: Entry, camera_ray, enter_scene, frame, relative_location
 

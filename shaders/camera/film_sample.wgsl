@@ -1,5 +1,5 @@
-// The relative location, in [-1, 1]^2 and a little beyond, of a point beside a pixel's centre, in pixels to the
-// right and down.
+// Relative location of a sample on the film, in [-1, 1]^2 or slightly outside. The offset from the centre of the pixel
+// is in pixels to the right and down.
 // provides: sample_location
 // needs: fence, frame
 

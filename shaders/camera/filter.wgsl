@@ -1,9 +1,9 @@
-// Where samples lie around their pixel's centre. Twin: `offset` in src/camera/filter.rs. A kernel gives the table, of 257
-// numbers: `fn filter_table(index: u32) -> f32`.
+// Offsets of samples from the centre of their pixel, distributed by the pixel filter. Twin: `offset` in
+// src/camera/filter.rs. Another part provides the table of 257 numbers: `fn filter_table(index: u32) -> f32`.
 // provides: filter_offset
 // needs: fence, filter_table
 
-// In pixels, for two fractions of 2^32.
+// The offset in pixels for two random numbers, given as fractions of 2^32.
 fn filter_offset(u: vec2u) -> vec2f {
     return vec2f(filter_offset_along(u.x), filter_offset_along(u.y));
 }

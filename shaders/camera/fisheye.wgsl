@@ -1,9 +1,12 @@
-// Twin of src/camera/fisheye.rs. `right`, `up` and `forward` are unit vectors. `first` and `second` are the film's half
-// sides in radii of the disk that is seen, `third` is half of the angle in half turns.
+// Rays of the fisheye camera. Twin: src/camera/fisheye.rs.
+//
+// `right`, `up` and `forward` are unit vectors. `first` and `second` are half the sides of the film in units of the
+// radius of the visible disk. `third` is half the angle of view in half turns.
 // provides: camera_ray
 // needs: CameraRay, Ray, fence, fence3, frame, sin_cos_half_turns
 
-// Of the disk; below it, the middle.
+// Smallest radius in the disk at which the direction of a point is defined. Points nearer to the centre count as the
+// centre.
 const SMALLEST_SPOT: f32 = 0x1p-40;
 
 fn camera_ray(location: vec2f, lens: vec2f) -> CameraRay {

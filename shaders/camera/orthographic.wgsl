@@ -1,5 +1,7 @@
-// Twin of src/camera/orthographic.rs. `right` and `up` reach from the middle of the view plane to
-// its edges; `forward` is the unit direction of every ray.
+// Rays of the orthographic camera. Twin: src/camera/orthographic.rs.
+//
+// `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the unit direction of
+// all rays.
 // provides: camera_ray
 // needs: CameraRay, Ray, fence3, frame
 

@@ -1,5 +1,8 @@
-// Twin of src/camera/panorama.rs. `right`, `up` and `forward` are unit vectors. Rays start `first` aside; `second` and
-// `third` are the cosine and the sine of how far they are turned to the left.
+// Rays of the panorama camera. Twin: src/camera/panorama.rs.
+//
+// `right`, `up` and `forward` are unit vectors. `first` is the distance by which the origin of a ray is moved along the
+// tangent of the viewing circle. `second` and `third` are the cosine and the sine of the angle by which rays are
+// rotated to the left.
 // provides: camera_ray
 // needs: CameraRay, Ray, fence3, frame, sin_cos_half_turns
 

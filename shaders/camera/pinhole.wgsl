@@ -1,5 +1,7 @@
-// Twin of src/camera/pinhole.rs. `right` and `up` reach from the middle of the view plane to its
-// edges; `forward` reaches from the eye to the middle of the view plane.
+// Rays of the pinhole camera. Twin: src/camera/pinhole.rs.
+//
+// `right` and `up` are the vectors from the centre of the view plane to its edges. `forward` is the vector from the eye
+// to the centre of the view plane.
 // provides: camera_ray
 // needs: CameraRay, Ray, fence3, frame
 

@@ -1,4 +1,4 @@
-// Rays, and rays of a camera.
+// The structs of rays and of camera rays.
 // provides: CameraRay, Ray
 
 struct Ray {
@@ -9,8 +9,8 @@ struct Ray {
 
 struct CameraRay {
     ray: Ray,
-    // From the camera's own origin of this ray to where it starts here.
+    // Distance from the origin of the ray in the camera to the origin that is used here.
     distance: f32,
-    // Whether there is a ray at all; if not, the numbers are those of some ray.
+    // Whether the camera has a ray at this location. If not, the other fields are those of an arbitrary ray.
     is_seen: bool,
 }

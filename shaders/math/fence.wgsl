@@ -1,6 +1,6 @@
-// A number that is rounded where it stands: WGSL lets compilers reassociate sums and products, and some do.
-// None can see through an exclusive or with a number that it does not know. What bounds the error of a
-// picture, in src/verify, counts on each of these; `pinhole info --self-test` tests them on a device.
+// Fences, which force a compiler to round a number at this place. WGSL allows compilers to reassociate sums and
+// products, and some do. No compiler can simplify an exclusive or with a number that it does not know. The error bounds
+// of src/verify depend on every fence, and `pinhole info --self-test` tests fences on a device.
 // provides: fence, fence3
 // needs: runtime_zero
 

@@ -1,4 +1,4 @@
-// How bright linear light looks. Rec. 709.
+// The luminance of a linear colour, by the weights of Rec. 709.
 // provides: luminance
 
 const LUMINANCE: vec3f = vec3f(0.2126, 0.7152, 0.0722);

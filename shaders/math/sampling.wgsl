@@ -1,12 +1,12 @@
-// Sample points that are found by their address: pixel, sample, pair of dimensions. Twin: src/camera/sampling.rs, which
-// gives the same bits.
+// Sample points as a function of pixel, sample and pair of dimensions. Twin: src/camera/sampling.rs, which returns the
+// same bits.
 // provides: pixel_seed, sample_pair, unit2
 
 fn pixel_seed(pixel: vec2u, seed: u32) -> u32 {
     return sampling_hash(pixel.x + sampling_hash(pixel.y + sampling_hash(seed)));
 }
 
-// Two fractions of 2^32.
+// A pair of random numbers, given as fractions of 2^32.
 fn sample_pair(pixel_seed: u32, sample: u32, pair: u32) -> vec2u {
     let order = sampling_hash(pixel_seed ^ sampling_hash(pair));
     let across = sampling_hash(order);
@@ -16,19 +16,19 @@ fn sample_pair(pixel_seed: u32, sample: u32, pair: u32) -> vec2u {
     return reverseBits(scramble_reversed(point, vec2u(across, down)));
 }
 
-// Numbers in [0, 1), exact.
+// Two numbers in [0, 1) from the upper 24 bits. The conversion is exact.
 fn unit2(bits: vec2u) -> vec2f {
     return vec2f(bits >> vec2u(8u)) * 0x1p-24;
 }
 
-// The output function of PCG.
+// A hash function, which is the output function of the PCG generator.
 fn sampling_hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
 
-// Owen's scrambling of fractions whose bits are reversed.
+// Owen scrambling of fractions whose bits are reversed.
 fn scramble_reversed(fractions: vec2u, seeds: vec2u) -> vec2u {
     var x = fractions;
     x ^= x * 0x3d20adeau;
@@ -38,7 +38,8 @@ fn scramble_reversed(fractions: vec2u, seeds: vec2u) -> vec2u {
     return x;
 }
 
-// Bits reversed: the product with Pascal's triangle modulo 2.
+// The second dimension of the Sobol sequence with reversed bits, which is the product of the index with Pascal's
+// triangle modulo 2.
 fn second_sobol_dimension(index: u32) -> u32 {
     var x = index;
     x ^= (x & 0xaaaaaaaau) >> 1u;

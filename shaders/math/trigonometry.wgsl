@@ -1,11 +1,12 @@
-// Sines and cosines: WGSL's own are good to 2^-11 only. Bounds: src/verify/camera/trigonometry.rs.
+// Sine and cosine with small errors, for cameras. The built-in functions of WGSL are only accurate to 2^-11. The error
+// bounds are in src/verify/camera/trigonometry.rs.
 // provides: PI, sin_cos_eighth, sin_cos_half_turns
 // needs: fence
 
 const PI: f32 = 3.14159265358979;
 
-// Sine and cosine of an angle of at most an eighth of a turn, pi/4, by their series: what is left out is below
-// 2e-9 of the sine and 1.2e-10 of the cosine.
+// Sine and cosine of an angle of at most an eighth of a turn, pi/4, by their series. The truncation error is below 2e-9
+// for the sine and 1.2e-10 for the cosine.
 fn sin_cos_eighth(angle: f32) -> vec2f {
     let z = fence(angle * angle);
     let sine = z * (-1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0))));
@@ -14,7 +15,7 @@ fn sin_cos_eighth(angle: f32) -> vec2f {
     return vec2f(fence(angle + fence(angle * sine)), fence(1.0 + fence(cosine)));
 }
 
-// Sine and cosine of so many half turns, at most a few. In turns, what is over the nearest quarter is exact.
+// Sine and cosine of an angle of at most a few half turns. Subtracting the nearest quarter turn is exact.
 fn sin_cos_half_turns(half_turns: f32) -> vec2f {
     let quarters = round(2.0 * half_turns);
     let rest = fence(half_turns - 0.5 * quarters);

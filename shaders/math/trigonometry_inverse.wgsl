@@ -1,14 +1,15 @@
-// The angle of a vector, in turns: WGSL's atan2 may be off by 4096 ULP.
+// The angle of a vector in turns. The error of WGSL's atan2 may be 4096 ULP.
 // provides: atan2_turns
 // needs: fence
 
-// In [-1/2, 1/2], and off by less than 2^-23; 0 for no vector, and 1/2 for y = 0 and x < 0. Twin: `f64::atan2`.
+// The angle in [-1/2, 1/2], with an error of less than 2^-23. It is 0 for the zero vector, and 1/2 for y = 0 and x < 0.
+// Twin: `f64::atan2`.
 fn atan2_turns(y: f32, x: f32) -> f32 {
     let size = abs(vec2f(x, y));
-    // A small number is no angle, and nothing is divided by zero.
+    // The maximum avoids a division by zero.
     let ratio = fence(min(size.x, size.y) / max(max(size.x, size.y), 0x1p-100));
     let square = fence(ratio * ratio);
-    // A minimax polynomial (Remez) of atan(ratio)/(2 pi ratio) on [0, 1]; it is off by 2^-26 of itself.
+    // A minimax polynomial (Remez) for atan(ratio)/(2 pi ratio) on [0, 1], with a relative error of 2^-26.
     let series = 0.15915494 + square * (-0.053051233 + square * (0.031819243 + square * (-0.022605801
         + square * (0.01693557 + square * (-0.011943451 + square * (0.0067945621
         + square * (-0.0025573994 + square * 0.00045357359)))))));

@@ -1,14 +1,14 @@
-// Sine and cosine of an angle in turns: WGSL's own may be off by 2^-11.
+// Sine and cosine of an angle in turns. The error of WGSL's built-in functions may be 2^-11.
 // provides: sin_cos_turns
 // needs: fence
 
-// Off by less than 2^-22, for up to 2^20 turns. Twin: `f64::sin_cos`.
+// Sine and cosine of an angle of up to 2^20 turns, with an error of less than 2^-22. Twin: `f64::sin_cos`.
 fn sin_cos_turns(turns: f32) -> vec2f {
-    // The quarter of a turn that is nearest, and the rest, exact: at most an eighth.
+    // The nearest quarter turn, and the exact remainder, which is at most an eighth of a turn.
     let quarter = floor(4.0 * turns + 0.5);
     let rest = fence(turns - 0.25 * quarter);
     let square = fence(rest * rest);
-    // Minimax polynomials (Remez) on [0, 1/64]; they are off by 2^-28 and less.
+    // Minimax polynomials (Remez) on [0, 1/64], with errors of at most 2^-28.
     let sine = fence(rest * (6.2831855 + square * (-41.341663 + square * (81.59235
         + square * -75.39356))));
     let cosine = fence(1.0 + square * (-19.739208 + square * (64.93931

@@ -1,8 +1,8 @@
-// From the unit square to directions. Twin: src/cpu/light/maps.rs.
+// Maps from the unit square to directions, and tangent frames. Twin: src/cpu/light/maps.rs.
 // provides: Axes, axes_around, cone_direction, cone_of_sphere, cosine_direction, to_local, to_world
 // needs: concentric_disk, fence3, unit2
 
-// Two unit vectors at right angles to a third and to each other.
+// A tangent frame: an orthonormal basis whose third vector is given.
 //
 // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 struct Axes {
@@ -27,20 +27,21 @@ fn to_local(axes: Axes, v: vec3f) -> vec3f {
     return vec3f(dot(axes.x, v), dot(axes.y, v), dot(axes.z, v));
 }
 
-// With a density of the cosine over pi.
+// A direction around z, with the density cosine / pi.
 fn cosine_direction(u: vec2u) -> vec3f {
     let p = concentric_disk(unit2(u));
     return vec3f(p, sqrt(max(1.0 - dot(p, p), 0.0)));
 }
 
-// Evenly among the directions within an angle of z; k is 1 minus its cosine. The density is 1/(2 pi k).
+// A uniformly distributed direction in a cone around z, with the density 1 / (2 pi k); k is 1 minus the cosine of the
+// cone's half angle.
 fn cone_direction(u: vec2u, k: f32) -> vec3f {
     let p = concentric_disk(unit2(u));
     let q = dot(p, p) * k;
     return vec3f(p * sqrt(max(k * (2.0 - q), 0.0)), 1.0 - q);
 }
 
-// Of a sphere as seen from a distance beyond its radius: 1 minus the cosine of the angle that it takes.
+// The cone that a sphere fills, seen from a distance greater than its radius: 1 minus the cosine of the half angle.
 fn cone_of_sphere(radius: f32, distance: f32) -> f32 {
     let s = radius / distance;
     return s * s / (1.0 + sqrt(max(1.0 - s * s, 0.0)));

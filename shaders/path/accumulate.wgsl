@@ -1,5 +1,5 @@
-// Adds samples of every pixel to what the pixel has, one after the other, so that a sum does not depend on how many
-// are in flight.
+// Adds the samples in flight of every pixel to the sums of the pixel. They are added one after another, so that the
+// sums do not depend on the number of samples in flight.
 // dispatched: once for all pixels of a tile, after all surfaces.
 // provides: accumulate
 // needs: FIRST, NO_PATH, Sum, dispatch, film, frame, load, luminance, path_of, plus, radiance_so_far, start_fences
@@ -17,10 +17,10 @@ fn accumulate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     let others = film[3u * pixel + 2u];
     var alpha = color.w;
     var albedo = others.rgb;
-    // Colour, and the square of the luminance.
+    // The sum of the colour and of the squared luminance.
     var sum = Sum(vec4f(color.rgb, others.w), rest);
-    for (var turn = 0u; turn < dispatch.count; turn++) {
-        let index = turn * pixels + pixel;
+    for (var i = 0u; i < dispatch.count; i++) {
+        let index = i * pixels + pixel;
         let sample = radiance_so_far(index);
         let light = luminance(sample.rgb);
         sum = plus(sum, vec4f(sample.rgb, light * light));

@@ -1,10 +1,10 @@
-// How many workgroups the next dispatches need: for all of a list, and for a slice of it. Lists that are filled
-// next are emptied.
+// Computes the numbers of workgroups of the next indirect dispatches, for a whole list of paths and for a slice of it.
+// It also empties the lists that are filled next.
 // dispatched: one workgroup, before each list of paths is used.
 // provides: advance
 // needs: LIST_OF_LIGHT, dispatch, next_list, queue, start_fences
 
-// Two times three numbers of workgroups, as indirect dispatches read them.
+// Arguments of two indirect dispatches, with three numbers of workgroups each.
 @group(0) @binding(5) var<storage, read_write> groups_needed: array<u32, 6>;
 
 @compute @workgroup_size(64)

@@ -1,10 +1,10 @@
-// Where a surface scatters a path. Twin: src/cpu/light/path.rs.
-// provides: bounce, head_light, known_density, side_of
+// Scattering of a path at a surface. Twin: src/cpu/light/path.rs.
+// provides: bounce, density_of_hit_emitter, head_light, side_of
 // needs: DIELECTRIC, LAMP_HEAD, Onward, PATH_ALIVE, PATH_FULL, PATH_INSIDE, PATH_ON_GROUND, PATH_SCATTERED, PI,
 //   Surface, dispatch, emitter, emitter_density, emitter_with_id, lamp_kind, lighting, no_light, reflect_toward,
 //   sample_pair, scatter_light, table, to_local, to_world, unit2
 
-// On which side of a surface a ray starts.
+// The flags for the side of a surface on which a ray starts.
 fn side_of(at: Surface, is_behind: bool) -> u32 {
     let is_sphere = at.vertex.sphere.w > 0.0;
     let side = select(0u, PATH_INSIDE, is_sphere && is_behind != at.vertex.is_back);
@@ -28,7 +28,7 @@ fn bounce(at: Surface, out: vec3f, lobe: f32, through: vec3f, seed: u32, sample:
         next.density, carried / max(survival, 1e-30), select(medium, inside, is_glass && is_behind), no_light());
 }
 
-// Lights at the eye, on what the camera sees.
+// Light from lights at the eye, which illuminate only surfaces that the camera sees.
 fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
     var sum = vec3f(0.0);
     let toward = to_local(at.axes, out);
@@ -40,8 +40,8 @@ fn head_light(at: Surface, out: vec3f, scattered: u32) -> vec3f {
     return PI * sum * reflect_toward(at.material, at.vertex.color, toward, toward).value;
 }
 
-// The density with which an emitter that was met would have been looked for.
-fn known_density(id: u32, position: vec3f) -> f32 {
+// The density with which light sampling would have chosen the emitter that was hit.
+fn density_of_hit_emitter(id: u32, position: vec3f) -> f32 {
     let sources = f32(max(lighting.source_count, 1u));
     let density = emitter_density(emitter(emitter_with_id(id)), position) / sources;
     return select(density, 0.0, lighting.emitter_count == 0u);

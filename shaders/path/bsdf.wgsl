@@ -1,4 +1,5 @@
-// Surfaces that reflect: Lambert's, with or without a lobe, and metals. Twin: src/cpu/light/bsdf/mod.rs.
+// The BSDF of reflecting surfaces: Lambertian, with or without a specular lobe, and metal. Twin:
+// src/cpu/light/bsdf/mod.rs.
 // provides: reflect_toward, scatter_reflection
 // needs: CONDUCTOR, DIELECTRIC, Material, PI, Reflection, Scattered, cosine_direction, energy, ggx_lambda,
 //   mirrors_brdf, reflected_density, visible_mirror
@@ -9,13 +10,14 @@ fn schlick(color: vec3f, cosine: f32) -> vec3f {
     return color + (vec3f(1.0) - color) * (m2 * m2 * m);
 }
 
-// What single reflections lose, given back (Turquin, "Practical multiple scattering compensation for microfacet
-// models", 2019).
-fn given_back(color: vec3f, kept: f32) -> vec3f {
+// The factor that compensates for the energy that single scattering loses (Turquin, "Practical multiple scattering
+// compensation for microfacet models", 2019).
+fn compensation(color: vec3f, kept: f32) -> vec3f {
     return vec3f(1.0) + color * ((1.0 - kept) / kept);
 }
 
-// Both directions point away from the surface, in the frame of its normal.
+// The BSDF times the cosine, and the density of scattering. Both directions point away from the surface, in the tangent
+// frame.
 fn reflect_toward(material: Material, color: vec3f, out: vec3f, toward: vec3f) -> Reflection {
     if (toward.z <= 0.0 || out.z <= 0.0 || material.kind >= DIELECTRIC) {
         return Reflection(vec3f(0.0), 0.0);
@@ -29,7 +31,7 @@ fn reflect_toward(material: Material, color: vec3f, out: vec3f, toward: vec3f) -
     let half = normalize(out + toward);
     let kept = energy(material.energies, out.z);
     let mirrors = mirrors_brdf(material.alpha, out, toward, half);
-    let metal = schlick(color, dot(half, out)) * given_back(color, kept);
+    let metal = schlick(color, dot(half, out)) * compensation(color, kept);
     let lobe = select(vec3f(1.0 / kept), metal, is_metal);
     let density = matt + share * reflected_density(material.alpha, out, half);
     return Reflection(color * matt + share * mirrors * lobe, density);
@@ -42,11 +44,11 @@ fn scatter_reflection(material: Material, color: vec3f, out: vec3f, lobe: f32, u
         let toward = 2.0 * dot(half, out) * half - out;
         let r = reflect_toward(material, color, out, toward);
         if (is_metal) {
-            // The quotient of value and density, without what is in both.
+            // The quotient of value and density, with common factors cancelled.
             let kept = energy(material.energies, out.z);
             let seen = 1.0 + ggx_lambda(material.alpha, out.z);
             let ratio = seen / (seen + ggx_lambda(material.alpha, toward.z));
-            let weight = schlick(color, dot(half, out)) * given_back(color, kept) * ratio;
+            let weight = schlick(color, dot(half, out)) * compensation(color, kept) * ratio;
             return Scattered(toward, select(vec3f(0.0), weight, toward.z > 0.0), r.density);
         }
         return Scattered(toward, r.value / max(r.density, 1e-30), r.density);

@@ -1,4 +1,4 @@
-// The shape that a ray departs from, if it is in this brick.
+// The shape that a ray departs from, or no shape if it is not in this brick.
 // provides: departed_shape
 // needs: Departure, NO_ID, Shape, bare, brick, no_shape, shapes
 

@@ -1,19 +1,20 @@
-// What a path leaves: which shape, not what it is, so that shapes of any kind can be left.
+// The surface that a ray departs from. It is identified by id and index, so that it works for every primitive.
 // provides: Departure, NO_EMITTER, load_departure, store_departure
 // needs: DEPARTURE, paths, slot
 
 struct Departure {
-    // The shape; NO_ID for none. Of shapes in one place all have the id of the first.
+    // Id of the shape, or NO_ID. Equal shapes all have the id of the first of them.
     id: u32,
-    // Its place, counted through all bricks.
+    // Index of the shape, counted through all bricks.
     shape_index: u32,
-    // How far it is to its far side, if the ray goes inside.
+    // Distance to the far side of the shape, if the ray goes inside.
     exit_distance: f32,
-    // Of a path, which emitter is looked for, which hides itself from nobody; in a studio, the bits of the radius.
+    // For paths, the index of the emitter that light sampling chose, which is excluded from the search of occluders.
+    // For studios, the bits of the shape's radius.
     word: u32,
 }
 
-// For `word`.
+// The value of `word` without an emitter.
 const NO_EMITTER: u32 = 0xffffffffu;
 
 fn load_departure(index: u32) -> Departure {

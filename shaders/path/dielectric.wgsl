@@ -1,8 +1,9 @@
-// Glass, smooth and rough. Twin: src/cpu/light/bsdf/dielectric.rs.
+// Scattering by smooth and rough glass. Twin: src/cpu/light/bsdf/dielectric.rs.
 // provides: scatter_dielectric
 // needs: ENERGIES, Material, Scattered, energy, ggx_lambda, visible_mirror
 
-// The share of unpolarised light that is reflected; `relative` is the index behind over that before.
+// The fraction of unpolarised light that is reflected. `relative` is the index of refraction behind the surface,
+// divided by that in front of it.
 fn fresnel(relative: f32, cosine: f32) -> f32 {
     let sine2 = (1.0 - cosine * cosine) / (relative * relative);
     let beyond = sqrt(max(1.0 - sine2, 0.0));
@@ -27,7 +28,7 @@ fn scatter_dielectric(material: Material, is_entering: bool, out: vec3f, lobe: f
     }
     var weight = 1.0;
     if (material.alpha > 0.0) {
-        // The energies of light that comes from inside stand behind those of light from outside.
+        // The table of energies for light from inside follows the table for light from outside.
         let first = material.energies + select(ENERGIES / 4u, 0u, is_entering);
         weight = 1.0 / ((1.0 + ggx_lambda(material.alpha, abs(toward.z))) * energy(first, out.z));
     }

@@ -1,41 +1,41 @@
-// One light that a surface looks for. Twin: src/cpu/light/path.rs.
+// Sampling a light source for next-event estimation. Twin: src/cpu/light/path.rs.
 
 //// none
-// There is no light that could be looked for.
-// provides: look_for_light
+// Light sampling for scenes without a light source that can be sampled.
+// provides: sample_light
 // needs: DirectLight, Surface, no_light
 
-fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
+fn sample_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
     return no_light();
 }
 
 //// any
-// One of the lights, emitters and the sky's image, chosen by chance.
-// provides: look_for_light
+// Light sampling that chooses among the lights, the emitters and the image of the sky at random.
+// provides: sample_light
 // needs: DirectLight, LIGHT_MULTIPLE, NO_EMITTER, NO_HIT, PI, Ray, Surface, axes_around, chosen_emitter,
 //   cone_direction, cone_of_sphere, dispatch, emitter_density, exit_distance_of, ground_distance, lighting,
 //   reflect_toward, sample_lamp, sample_pair, sample_sky, sky_radiance, tables, to_local, to_world, unit2
 
-struct Found {
+struct LightSample {
     direction: vec3f,
     distance: f32,
-    // Of a light that may be met by chance as well: the density with which it was found; else 0.
+    // Density of the direction, if scattered rays can hit the light as well; 0 otherwise.
     density: f32,
-    // Over the density.
+    // Radiance divided by the density.
     radiance: vec3f,
-    // Which emitter it is, or NO_EMITTER.
+    // Index of the emitter, or NO_EMITTER.
     emitter: u32,
 }
 
-fn find_lamp(source: u32, position: vec3f, u: vec2u) -> Found {
+fn light_from_lamp(source: u32, position: vec3f, u: vec2u) -> LightSample {
     let light = tables[3u * source + 2u].x;
     let lamp = sample_lamp(light, position, u);
     let sources = f32(lighting.source_count);
     let density = select(0.0, 1.0 / (2.0 * PI * lamp.sun * sources), lamp.sun > 0.0);
-    return Found(lamp.direction, lamp.distance, density, PI * sources * lamp.strength, NO_EMITTER);
+    return LightSample(lamp.direction, lamp.distance, density, PI * sources * lamp.strength, NO_EMITTER);
 }
 
-fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
+fn light_from_emitter(position: vec3f, u: vec2u, choice: u32) -> LightSample {
     let which = chosen_emitter(choice);
     let found = emitter(which);
     let density = emitter_density(found, position) / f32(lighting.source_count);
@@ -47,28 +47,28 @@ fn find_sphere(position: vec3f, u: vec2u, choice: u32) -> Found {
     let foot = toward - middle * direction;
     let distance = middle - sqrt(max(found.sphere.w * found.sphere.w - dot(foot, foot), 0.0));
     let radiance = select(vec3f(0.0), found.radiance / max(density, 1e-30), density > 0.0);
-    return Found(direction, max(distance, 0.0), density, radiance, which);
+    return LightSample(direction, max(distance, 0.0), density, radiance, which);
 }
 
-fn find_sky(u: vec2u) -> Found {
+fn light_from_sky(u: vec2u) -> LightSample {
     let found = sample_sky(u);
     let density = found.w / f32(lighting.source_count);
     let radiance = sky_radiance(found.xyz) / max(density, 1e-30);
-    return Found(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), NO_EMITTER);
+    return LightSample(found.xyz, NO_HIT, density, select(vec3f(0.0), radiance, density > 0.0), NO_EMITTER);
 }
 
-fn look_for_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
+fn sample_light(at: Surface, out: vec3f, through: vec3f, seed: u32, sample: u32, is_end: bool) -> DirectLight {
     let u = sample_pair(seed, sample, 4u + 8u * dispatch.surface);
     let choice = sample_pair(seed, sample, 5u + 8u * dispatch.surface);
     let source = min(u32(unit2(choice).x * f32(lighting.source_count)), lighting.source_count - 1u);
     let position = at.vertex.position;
-    var found = find_lamp(min(source, max(lighting.lamp_sources, 1u) - 1u), position, u);
+    var found = light_from_lamp(min(source, max(lighting.lamp_sources, 1u) - 1u), position, u);
     let is_emitter = source == lighting.lamp_sources && lighting.emitter_count > 0u;
     if (is_emitter) {
-        found = find_sphere(position, u, choice.y);
+        found = light_from_emitter(position, u, choice.y);
     }
     if (source >= lighting.lamp_sources && !is_emitter) {
-        found = find_sky(u);
+        found = light_from_sky(u);
     }
     let toward = to_local(at.axes, found.direction);
     let r = reflect_toward(at.material, at.vertex.color, to_local(at.axes, out), toward);

@@ -1,8 +1,8 @@
-// What a path keeps of the light that it looks for.
+// The state of a path's sampled light, until it is known whether the light is occluded.
 
 //// none
-// Paths in a scene without a light that could be looked for, and studios, which add light at once.
-// provides: DirectLight, forget_light, is_looking, no_light, radiance_so_far, sought_by, store_light
+// Variant for scenes without a light source that can be sampled, and for studios, which add light immediately.
+// provides: DirectLight, clear_light, emitter_of, needs_shadow_ray, no_light, radiance_so_far, store_light
 // needs: NO_EMITTER, RADIANCE, load
 
 struct DirectLight {
@@ -13,15 +13,15 @@ fn no_light() -> DirectLight {
     return DirectLight(1u);
 }
 
-fn sought_by(light: DirectLight) -> u32 {
+fn emitter_of(light: DirectLight) -> u32 {
     return NO_EMITTER;
 }
 
 fn store_light(index: u32, light: DirectLight) {}
 
-fn forget_light(index: u32) {}
+fn clear_light(index: u32) {}
 
-fn is_looking(light: DirectLight) -> bool {
+fn needs_shadow_ray(light: DirectLight) -> bool {
     return false;
 }
 
@@ -30,16 +30,16 @@ fn radiance_so_far(index: u32) -> vec4f {
 }
 
 //// any
-// Paths that look for light at every surface.
-// provides: DirectLight, forget_light, is_looking, no_light, radiance_so_far, sought_by, store_light
+// Variant for paths that sample a light at every surface.
+// provides: DirectLight, clear_light, emitter_of, needs_shadow_ray, no_light, radiance_so_far, store_light
 // needs: NO_EMITTER, PENDING, RADIANCE, SHADOW, load, store
 
 struct DirectLight {
-    // Towards it, and how far; 0 for no light.
+    // Direction towards the light, and its distance, which is 0 if there is no light.
     shadow: vec4f,
-    // What it adds, and 1 until something is found in between.
+    // Pending contribution of the light, and its visibility: 1 until an occluder is found.
     pending: vec4f,
-    // Which emitter it is, or NO_EMITTER.
+    // Index of the emitter, or NO_EMITTER.
     emitter: u32,
 }
 
@@ -47,8 +47,8 @@ fn no_light() -> DirectLight {
     return DirectLight(vec4f(0.0, 0.0, 1.0, 0.0), vec4f(0.0), NO_EMITTER);
 }
 
-// Which emitter is looked for, or NO_EMITTER.
-fn sought_by(light: DirectLight) -> u32 {
+// The index of the sampled emitter, or NO_EMITTER.
+fn emitter_of(light: DirectLight) -> u32 {
     return light.emitter;
 }
 
@@ -57,17 +57,17 @@ fn store_light(index: u32, light: DirectLight) {
     store(index, PENDING, light.pending);
 }
 
-// Leaves nothing to be looked for, or to be added.
-fn forget_light(index: u32) {
+// Stores that there is no sampled light.
+fn clear_light(index: u32) {
     store(index, SHADOW, vec4f(0.0, 0.0, 1.0, 0.0));
     store(index, PENDING, vec4f(0.0));
 }
 
-fn is_looking(light: DirectLight) -> bool {
+fn needs_shadow_ray(light: DirectLight) -> bool {
     return light.shadow.w > 0.0;
 }
 
-// With the light that was looked for last, if nothing is in between.
+// The radiance of the path, including the pending light if it is visible.
 fn radiance_so_far(index: u32) -> vec4f {
     let pending = load(index, PENDING);
     return load(index, RADIANCE) + vec4f(pending.rgb * pending.w, 0.0);

@@ -1,5 +1,5 @@
-// The nearest sphere that each path's ray hits. One dispatch per brick; each keeps what is nearer than what the bricks
-// before it found.
+// Finds the nearest sphere that the ray of each path hits. There is one dispatch for each brick, which replaces the
+// hits of earlier bricks by nearer ones.
 // dispatched: for each surface of the paths and each brick.
 // provides: extend
 // needs: CameraRay, DIRECTION, NO_PATH, PATH_ALIVE, PATH_INSIDE, Ray, enter_scene, excluded_by, has, hit_before, load,

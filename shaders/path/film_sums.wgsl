@@ -1,16 +1,16 @@
-// Sums of the samples of a pixel, of three vectors each: pixel by pixel, and in each
+// The sums over a pixel's samples. Each pixel has three vectors:
 //   colour and opacity,
-//   what rounding left out of the colour, and out of the sum of the squares of luminances,
-//   the first surface's colour, and the squares of luminances.
+//   the rounding errors of the sums of colour and of squared luminance,
+//   the albedo of the first surface, and the squared luminance.
 // provides: Sum, film, plus
 // needs: fence, fence3
 
-// Pixel by pixel, the three vectors of its sums.
+// Sums of the pixels, with three vectors for each pixel.
 @group(0) @binding(5) var<storage, read_write> film: array<vec4f>;
 
 struct Sum {
     value: vec4f,
-    // What rounding has left out of it.
+    // Accumulated rounding error of `value`.
     rest: vec4f,
 }
 
@@ -18,7 +18,8 @@ fn fence4(v: vec4f) -> vec4f {
     return vec4f(fence3(v.xyz), fence(v.w));
 }
 
-// Knuth, The Art of Computer Programming, volume 2, section 4.2.2, theorem B: what a sum of two numbers leaves out.
+// Adds a number to a sum and keeps the rounding error (Knuth, The Art of Computer Programming, volume 2, section 4.2.2,
+// theorem B).
 fn plus(sum: Sum, more: vec4f) -> Sum {
     let value = fence4(sum.value + more);
     let part = fence4(value - sum.value);

@@ -1,7 +1,8 @@
-// What is known of a path's ray before a brick is traced.
+// The hit of a path's ray before a brick is traced.
 
 //// first-brick
-// A ray that starts on a shape and goes inside hits its far side at the latest.
+// The hit before the first brick is traced: the far side of the departed shape if the ray goes inside, otherwise a
+// miss.
 // provides: hit_before
 // needs: Departure, Hit, NO_HIT, NO_ID
 
@@ -13,7 +14,7 @@ fn hit_before(index: u32, departure: Departure, is_going_inside: bool) -> Hit {
 }
 
 //// later-brick
-// What the bricks before this one found.
+// The hit of a path's ray in the bricks before this one.
 // provides: hit_before
 // needs: Departure, Hit, load_hit
 

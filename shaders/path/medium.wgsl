@@ -1,8 +1,8 @@
-// What absorbs light between two surfaces.
+// Absorption of light between two surfaces.
 
 //// none
-// A scene without glass: nothing absorbs light on the way.
-// provides: kept_by, load_medium, store_medium
+// Variant for scenes without glass, in which light is not absorbed between surfaces.
+// provides: load_medium, store_medium, transmittance
 
 fn load_medium(index: u32) -> vec3f {
     return vec3f(0.0);
@@ -10,13 +10,13 @@ fn load_medium(index: u32) -> vec3f {
 
 fn store_medium(index: u32, medium: vec3f) {}
 
-fn kept_by(medium: vec3f, distance: f32) -> vec3f {
+fn transmittance(medium: vec3f, distance: f32) -> vec3f {
     return vec3f(1.0);
 }
 
 //// glass
-// Glass absorbs light on the way (Beer's law).
-// provides: kept_by, load_medium, store_medium
+// Variant for scenes with glass, which absorbs light by Beer's law.
+// provides: load_medium, store_medium, transmittance
 // needs: MEDIUM, load, store
 
 fn load_medium(index: u32) -> vec3f {
@@ -27,6 +27,6 @@ fn store_medium(index: u32, medium: vec3f) {
     store(index, MEDIUM, vec4f(medium, 0.0));
 }
 
-fn kept_by(medium: vec3f, distance: f32) -> vec3f {
+fn transmittance(medium: vec3f, distance: f32) -> vec3f {
     return exp(-medium * distance);
 }

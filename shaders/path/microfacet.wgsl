@@ -1,11 +1,11 @@
-// The GGX distribution of small mirrors, in the frame of a normal. Twin: src/cpu/light/bsdf/ggx.rs.
+// The GGX microfacet distribution in the tangent frame of a normal. Twin: src/cpu/light/bsdf/ggx.rs.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces" (2007); Heitz, "Sampling the GGX
 // Distribution of Visible Normals", JCGT 7(4), 2018.
 // provides: ggx_lambda, mirrors_brdf, reflected_density, visible_mirror
 // needs: PI, concentric_disk, unit2
 
-// How many mirrors, by area, hide others from a direction.
+// Smith's function lambda, which measures the masking of microfacets seen from a direction.
 fn ggx_lambda(alpha: f32, cosine: f32) -> f32 {
     let c2 = max(cosine * cosine, 1e-12);
     return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - c2) / c2) - 1.0);
@@ -17,7 +17,7 @@ fn ggx_density(alpha: f32, half: vec3f) -> f32 {
     return 1.0 / (PI * alpha * alpha * q * q);
 }
 
-// A mirror among those that are seen from `out`.
+// A random normal among the microfacets that are visible from `out`.
 fn visible_mirror(alpha: f32, out: vec3f, u: vec2u) -> vec3f {
     let stretched = normalize(vec3f(alpha * out.xy, out.z));
     let across = dot(stretched.xy, stretched.xy);
@@ -33,13 +33,13 @@ fn visible_mirror(alpha: f32, out: vec3f, u: vec2u) -> vec3f {
     return normalize(vec3f(alpha * seen.xy, max(seen.z, 1e-6)));
 }
 
-// The density with which light is reflected there by a visible mirror.
+// The density with which a visible microfacet reflects the direction.
 fn reflected_density(alpha: f32, out: vec3f, half: vec3f) -> f32 {
     let seen = 1.0 / (1.0 + ggx_lambda(alpha, out.z));
     return seen * ggx_density(alpha, half) / (4.0 * out.z);
 }
 
-// Of white mirrors, the BRDF times the cosine.
+// The BRDF of perfectly reflecting microfacets, times the cosine.
 fn mirrors_brdf(alpha: f32, out: vec3f, toward: vec3f, half: vec3f) -> f32 {
     let both = 1.0 / (1.0 + ggx_lambda(alpha, out.z) + ggx_lambda(alpha, toward.z));
     return both * ggx_density(alpha, half) / (4.0 * out.z);

@@ -1,5 +1,5 @@
-// Whether anything is between a path's surface and the light that it looks for. One dispatch per brick.
-// dispatched: for each surface of the paths that look for light, and each brick.
+// Finds whether the sampled light of each path is occluded. There is one dispatch for each brick.
+// dispatched: for each surface at which paths sample lights, and each brick.
 // provides: occlude
 // needs: CameraRay, NO_PATH, PENDING, Ray, SHADOW, Search, enter_scene, excluded_by, find_any, load, load_departure,
 //   load_start, path_of, paths, report_spent, slot, start_fences
@@ -17,7 +17,7 @@ fn occlude(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let rest = shadow.w - entry.distance;
     if (rest > 0.0 && entry.is_inside) {
         if (find_any(Search(entry.ray, entry.inverse, excluded), rest)) {
-            // Nor need any other brick be searched.
+            // The light is occluded, and no other brick needs to be searched.
             paths[slot(index, SHADOW)].w = 0u;
             paths[slot(index, PENDING)].w = 0u;
         }

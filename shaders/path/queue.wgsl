@@ -1,31 +1,32 @@
-// Which paths a dispatch works on: lists of them, how long each is, and whether an invocation gave up.
+// The lists of paths that dispatches process, their lengths, and the status word.
 // provides: LIST_OF_LIGHT, NO_PATH, append, give_up, next_list, queue
 // needs: dispatch
 
 struct Queue {
-    // Not 0 if an invocation ran into the limit of iterations.
+    // Nonzero if an invocation reached the iteration limit.
     spent: atomic<u32>,
-    // How many paths each list has.
+    // Number of paths in each list.
     counts: array<atomic<u32>, 3>,
-    // The lists, one behind the other, each with room for all paths.
+    // The lists, one after another, each with room for all paths.
     entries: array<u32>,
 }
 
-// Whether an invocation gave up; lists of paths, and how long they are.
+// Status word, lengths of the lists of paths, and the lists themselves.
 @group(0) @binding(2) var<storage, read_write> queue: Queue;
 
-// Lists 0 and 1 have, by turns, the paths that go on; this one has those that look for light.
+// The list of the paths whose sampled light must be tested for occlusion. Lists 0 and 1 alternately contain the paths
+// that continue.
 const LIST_OF_LIGHT: u32 = 2u;
 
-// No path.
+// The value for an invocation without a path.
 const NO_PATH: u32 = 0xffffffffu;
 
-// The list of the paths that go on after this surface.
+// The list of the paths that continue after this surface.
 fn next_list() -> u32 {
     return dispatch.surface & 1u;
 }
 
-// The order of a list is up to the device; nothing depends on it.
+// Appends a path to a list. The order of a list depends on the device, and no result depends on the order.
 fn append(list: u32, index: u32) {
     let at = atomicAdd(&queue.counts[list], 1u);
     queue.entries[list * dispatch.paths + at] = index;

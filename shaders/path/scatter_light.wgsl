@@ -1,7 +1,7 @@
-// How a surface scatters light.
+// Scattering by the materials of a scene.
 
 //// matt
-// A scene in which everything is matt or sends out light.
+// Scattering in scenes in which every material is matt or emissive.
 // provides: reflect_toward, scatter_light
 // needs: Material, PI, Reflection, Scattered, Surface, cosine_direction
 
@@ -16,7 +16,7 @@ fn reflect_toward(material: Material, color: vec3f, out: vec3f, toward: vec3f) -
 }
 
 //// any
-// A scene of all materials.
+// Scattering in scenes with any materials.
 // provides: scatter_light
 // needs: DIELECTRIC, Scattered, Surface, scatter_dielectric, scatter_reflection
 

@@ -1,7 +1,7 @@
-// Which path an invocation works on.
+// The path that an invocation processes.
 
 //// pixels
-// A dispatch for every pixel of the tile, or of where the scene may be seen, and for every sample in flight.
+// The path of an invocation in dispatches over the pixels of a tile, or its visible region, and all samples in flight.
 // provides: path_of
 // needs: NO_PATH, dispatch, frame, pixel_in_tile
 
@@ -12,7 +12,7 @@ fn path_of(group: vec3u, lane: u32) -> u32 {
 }
 
 //// queue
-// A dispatch for every path of a list.
+// The path of an invocation in dispatches over a list of paths.
 // provides: path_of
 // needs: NO_PATH, dispatch, queue
 

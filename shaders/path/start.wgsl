@@ -1,8 +1,8 @@
-// The rays of samples of every pixel. Twin: src/cpu/light/sample.rs.
-// dispatched: once for all pixels of a tile and all samples in flight: makes the rays of the camera.
+// Starts the paths of all samples in flight with rays of the camera. Twin: src/cpu/light/sample.rs.
+// dispatched: once for all pixels of a tile and all samples in flight.
 // provides: start
 // needs: DIRECTION, Departure, FIRST, Hit, LIGHTING_TRANSPARENT, NO_EMITTER, NO_HIT, NO_ID, NO_PATH, PATH_ALIVE,
-//   PATH_FULL, RADIANCE, THROUGHPUT, address_of, camera_ray, filter_offset, forget_light, lighting, lighting_has,
+//   PATH_FULL, RADIANCE, THROUGHPUT, address_of, camera_ray, clear_light, filter_offset, lighting, lighting_has,
 //   path_of, pixel_seed, sample_location, sample_pair, start_fences, store, store_departure, store_hit, store_medium,
 //   store_start, unit2
 
@@ -26,6 +26,6 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     store(index, THROUGHPUT, vec4f(1.0));
     store(index, RADIANCE, vec4f(select(vec3f(0.0), lighting.background, is_shown), 0.0));
     store(index, FIRST, vec4f(0.0, 0.0, 0.0, made.distance));
-    forget_light(index);
+    clear_light(index);
     store_medium(index, vec3f(0.0));
 }

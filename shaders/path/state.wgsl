@@ -1,53 +1,55 @@
-// What is known of every pixel's path between two dispatches.
+// The state of all paths between two dispatches.
 // provides: ALBEDO, DEPARTURE, DIRECTION, FIRST, LOBE, MEDIUM, NORMAL, PATH_ALIVE, PATH_BACK, PATH_FULL, PATH_INSIDE,
 //   PATH_ON_GROUND, PATH_SCATTERED, PENDING, RADIANCE, SHADOW, Start, THROUGHPUT, dispatch, has, load, load_hit,
 //   load_start, paths, slot, store, store_hit, store_start
 // needs: DispatchParameters, Hit
 
-// Slot by slot, and in each sample by sample and row by row of the tile. Bits, because there are whole numbers among
-// them.
+// State of the paths, slot by slot, and in each slot by sample and by row of the tile. It is stored as bits, because
+// some of it are integers.
 @group(0) @binding(3) var<storage, read_write> paths: array<vec4u>;
-// Which sample, surface, light and list a dispatch works on.
+// Sample, surface, light and list that a dispatch processes.
 @group(0) @binding(4) var<uniform> dispatch: DispatchParameters;
 
-// Where the ray starts, and the sum of its PATH_ flags.
+// Slot of the origin of the ray and the sum of its PATH_ flags.
 const ORIGIN: u32 = 0u;
-// Where it goes, and the density with which the last surface scattered it there.
+// Slot of the direction of the ray, and of the density with which the last surface scattered it.
 const DIRECTION: u32 = 1u;
-// What it starts on: `Departure`.
+// Slot of the surface that the ray departs from, as `Departure`.
 const DEPARTURE: u32 = 2u;
-// What its light counts in the picture. In a studio: what is left for what is behind, and what the surface counts.
+// Slot of the throughput. In a studio: the weight that remains for surfaces behind, and the weight of the surface.
 const THROUGHPUT: u32 = 3u;
-// The sample's colour so far, and its opacity.
+// Slot of the radiance of the sample so far, and of its opacity.
 const RADIANCE: u32 = 4u;
-// The colour of the first surface, and how long the ray is so far.
+// Slot of the albedo of the first surface, and of the length of the ray so far.
 const FIRST: u32 = 5u;
-// What the ray has hit: the bits of t, id, place and distance.
+// Slot of the hit of the ray: the bits of t, id, shape index and distance.
 const HIT: u32 = 6u;
-// Of a path that looks for light: the direction in which, from the origin, and how far; 0 for no light.
+// Slot of the direction towards the sampled light from the origin, and of its distance; 0 for no light.
 const SHADOW: u32 = 7u;
-// What that light adds, and 1 unless something has been found in between.
+// Slot of the pending contribution of that light, and of its visibility, which is 0 once it is occluded.
 const PENDING: u32 = 8u;
-// Of a path where there is glass: what absorbs light on the way.
+// Slot of the absorption of the glass that the ray is in.
 const MEDIUM: u32 = 9u;
-// In a studio: the normal of the surface, and a bit for each of 32 lights that are hidden.
+// In a studio, slot of the normal of the surface, and of a bit for each of 32 hidden lights.
 const NORMAL: u32 = 7u;
-// The surface's colour by what it counts, and what is left for what is behind a ground that catches shadows.
+// In a studio, slot of the colour of the surface times its weight. For a ground that catches shadows, the last
+// component is the weight that remains for the background.
 const ALBEDO: u32 = 8u;
-// The surface's lobe: its share, the square of its roughness, and where its energies are.
+// In a studio, slot of the specular lobe of the surface: its share, the square of its roughness, and the index of its
+// energies.
 const LOBE: u32 = 9u;
 
-// There is a ray to be traced.
+// Flag of a path with a ray that must be traced.
 const PATH_ALIVE: u32 = 1u;
-// It starts on a sphere and goes inside.
+// Flag of a ray that starts on a sphere and goes inside.
 const PATH_INSIDE: u32 = 2u;
-// It starts on the ground.
+// Flag of a ray that starts on the ground.
 const PATH_ON_GROUND: u32 = 4u;
-// The surface is seen from inside of its sphere, which is opaque.
+// Flag of a surface that is the inside of an opaque sphere.
 const PATH_BACK: u32 = 16u;
-// No light that the ray meets has been looked for directly.
+// Flag of a ray whose hits on lights have the full weight, because light sampling could not have chosen them.
 const PATH_FULL: u32 = 32u;
-// Something has scattered it since the camera.
+// Flag of a path that has been scattered since the camera.
 const PATH_SCATTERED: u32 = 64u;
 
 fn slot(index: u32, which: u32) -> u32 {

@@ -1,25 +1,25 @@
-// A point that scatters light.
+// The structs of a surface point, of a BSDF value and of a scattered direction.
 // provides: Reflection, Scattered, Surface
 // needs: Axes, Material, Vertex
 
 struct Surface {
     vertex: Vertex,
     material: Material,
-    // Around the normal.
+    // Tangent frame around the normal.
     axes: Axes,
 }
 
 struct Reflection {
     // The BSDF times the cosine.
     value: vec3f,
-    // Of scattering light there, for each unit of solid angle.
+    // Density of scattering in this direction, per unit of solid angle.
     density: f32,
 }
 
 struct Scattered {
-    // In the frame of the normal.
+    // Direction in the tangent frame.
     direction: vec3f,
-    // What light from there counts; 0 if there is none.
+    // Factor of the throughput; 0 if the light is absorbed.
     weight: vec3f,
     density: f32,
 }

@@ -1,20 +1,20 @@
-// The textures of depth, normal and id, if they are asked for.
+// Writing the textures of depth, normal and id, if they are requested.
 
 //// none
-// No data layers.
+// Variant for renderers without data layers, which writes nothing.
 // provides: write_layers
 
 fn write_layers(pixel: vec2u, depth: f32, normal: vec3f, id: u32) {}
 
 //// all
-// Data layers: depth (NO_HIT for a miss), normal, id.
+// Writing the data layers: depth, which is NO_HIT for a miss, normal and id.
 // provides: write_layers
 
-// The caller's texture of depth.
+// The caller's depth texture.
 @group(2) @binding(1) var depth_target: texture_storage_2d<r32float, write>;
-// The caller's texture of normals.
+// The caller's normal texture.
 @group(2) @binding(2) var normal_target: texture_storage_2d<rgba32float, write>;
-// The caller's texture of ids.
+// The caller's id texture.
 @group(2) @binding(3) var id_target: texture_storage_2d<r32uint, write>;
 
 fn write_layers(pixel: vec2u, depth: f32, normal: vec3f, id: u32) {

@@ -1,10 +1,10 @@
-// One pass of an edge-avoiding filter: a mean of 25 pixels, `step` apart, of which those count that look like the one
-// in the middle. Twin: src/cpu/denoise.rs.
+// One pass of an edge-avoiding denoising filter, which averages 25 pixels with weights for their similarity. The pixels
+// are `step` pixels apart. Twin: src/cpu/denoise.rs.
 //
 // Dammertz, Sewtz, Hanika and Lensch, "Edge-Avoiding A-Trous Wavelet Transform for Fast Global Illumination
-// Filtering", HPG 2010; with the noise's variance as in Schied et al., "Spatiotemporal Variance-Guided Filtering",
+// Filtering", HPG 2010; with the variance of the noise as in Schied et al., "Spatiotemporal Variance-Guided Filtering",
 // HPG 2017.
-// dispatched: five times for each strip of a finished picture: 8x8 pixels a workgroup.
+// dispatched: five times for each strip of a finished picture, with 8x8 pixels for each workgroup.
 // provides: denoise
 // needs: luminance
 
@@ -15,28 +15,28 @@ struct Denoise {
     zero: u32,
 }
 
-// Which of the five passes.
+// Parameters of one of the five passes.
 @group(0) @binding(0) var<uniform> denoise_pass: Denoise;
-// Light, which is colour over albedo; and the variance of its luminance.
+// Light of each pixel, which is colour divided by albedo, and the variance of its luminance.
 @group(0) @binding(1) var<storage, read> lights: array<vec4f>;
-// Normal, zero for a miss; depth.
+// Normal of each pixel, zero for a miss, and its depth.
 @group(0) @binding(2) var<storage, read> shapes: array<vec4f>;
 // Albedo of each pixel.
 @group(0) @binding(3) var<storage, read> albedos: array<vec4f>;
-// The filtered light, and the variance of its luminance.
+// Filtered light of each pixel, and the variance of its luminance.
 @group(0) @binding(4) var<storage, read_write> filtered: array<vec4f>;
 
-// Of a B3 spline, by the distance from the middle.
+// Weight of a B3 spline at a distance from its centre.
 fn spline(distance: i32) -> f32 {
     return select(select(0.0625, 0.25, distance == 1), 0.375, distance == 0);
 }
 
-// How alike two pixels are in shape and colour, whatever light is on them.
+// Similarity of two pixels in shape and albedo, regardless of their light.
 fn likeness(a: u32, b: u32, distance: f32) -> f32 {
     let shape = shapes[a];
     let other = shapes[b];
     let cosine = dot(shape.xyz, other.xyz);
-    // Misses have no normal, and are alike.
+    // Misses have no normal. Two misses count as similar.
     let are_misses = dot(shape.xyz, shape.xyz) == 0.0 && dot(other.xyz, other.xyz) == 0.0;
     let c2 = max(cosine, 0.0) * max(cosine, 0.0);
     let c4 = c2 * c2;

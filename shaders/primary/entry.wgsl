@@ -1,7 +1,7 @@
-// The ray of a pixel, from where it enters the scene's box.
+// The ray of a pixel from the point where it enters the scene's box.
 
 //// made
-// The ray of a pixel, made where it is used.
+// The ray of a pixel, computed where it is used.
 // provides: entry_of
 // needs: Entry, make_entry
 
@@ -10,11 +10,12 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 }
 
 //// recorded
-// The ray of a pixel, made where it is used, and kept for src/verify.
+// The ray of a pixel, computed where it is used, and recorded for src/verify.
 // provides: entry_of
 // needs: Entry, hit_index, make_entry
 
-// Two a pixel: origin and distance; direction, and 1 for a ray that misses the scene's box or 2 for one that meets it.
+// Rays with two vectors for each pixel: origin and distance; direction, and 1 if the ray misses the scene's box or 2 if
+// it hits the box.
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
@@ -26,11 +27,12 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 }
 
 //// replayed
-// The ray of a pixel as the first brick had it: another kernel's might differ in the last bit.
+// The ray of a pixel as the kernel of the first brick recorded it. Another kernel might compute a ray that differs in
+// the last bit.
 // provides: entry_of
 // needs: Entry, Ray, hit_index, inverse_direction
 
-// As recorded.
+// Rays as in the variant `recorded`.
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {

@@ -1,9 +1,8 @@
-// What is known of a pixel before a brick is traced. The variants make kernels of their own, because a software device
-// reads what a branch that is not taken would read.
+// The hit of a pixel before a brick is traced. The variants belong to different kernels, because a software device also
+// reads the memory that a branch not taken would read.
 
 //// first-brick
-// What is known of a pixel before the first brick is traced. A kernel of its own, because a software device
-// reads what a branch that is not taken would read.
+// The hit of a pixel before the first brick is traced, which is always a miss.
 // provides: hit_before
 // needs: Hit, NO_HIT, NO_ID
 
@@ -12,7 +11,7 @@ fn hit_before(index: u32) -> Hit {
 }
 
 //// later-brick
-// What the bricks before this one found.
+// The hit of a pixel in the bricks before this one.
 // provides: hit_before
 // needs: Hit, load_hit
 

@@ -1,9 +1,9 @@
-// What each ray has hit so far.
+// Buffer of the nearest hits of all pixels so far.
 // provides: hit_index, load_hit, store_hit
 // needs: Hit, frame
 
-// Row by row, of the tile: the bits of t, id, shape index and distance. One vector, because a software device reads
-// and writes a structure word by word.
+// Hits of the tile, row by row: the bits of t, id, shape index and distance. Each is one vector, because a software
+// device reads and writes a struct word by word.
 @group(0) @binding(1) var<storage, read_write> hits: array<vec4u>;
 
 fn hit_index(pixel_in_tile: vec2u) -> u32 {

@@ -1,6 +1,6 @@
-// Whether every pixel's ray hits anything at all. Leaves at the first hit, whichever it is. A pixel's hit
-// has the distance 0 and no id.
-// dispatched: as trace, for measurements of shadow rays.
+// Finds for every pixel whether its ray hits anything. The search ends at the first hit that it finds, which need not
+// be the nearest. The recorded hit has the distance 0 and no id.
+// dispatched: like `trace`, for measurements of shadow rays.
 // provides: occluded
 // needs: Hit, NO_HIT, NO_ID, Search, entry_of, find_any, frame, hit_before, hit_index, no_exclusion, pixel_in_tile,
 //   report_spent, start_fences, store_hit

@@ -1,6 +1,6 @@
-// From hits to pixels. One dispatch per brick, each for the pixels whose nearest sphere it holds; the first
-// also for misses. Twin: src/cpu/shade.rs.
-// dispatched: for each band and each brick: 8x8 pixels a workgroup.
+// Shades the hits and writes the pixels. The dispatch of a brick shades the pixels whose nearest sphere is in the
+// brick, and that of the first brick also the misses. Twin: src/cpu/shade.rs.
+// dispatched: for each band and each brick, with 8x8 pixels for each workgroup.
 // provides: shade
 // needs: Hit, NO_HIT, NO_ID, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, make_entry, shape_normal, shapes,
 //   sphere_color, start_fences, surface_color, write_color, write_layers
@@ -13,7 +13,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     }
     var hit = load_hit(hit_index(invocation.xy));
     let group = invocation.xy / WORKGROUP_SIDE - frame.traced_first;
-    // What lies before the first has become a large number.
+    // The subtraction wraps around, so workgroups before the first traced one have a large index.
     if (any(group >= frame.traced_size)) {
         hit = Hit(NO_HIT, NO_ID, 0u, 0.0);
     }
@@ -21,13 +21,13 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     if (hit.id == NO_ID) {
         if (brick.is_first != 0u) {
             write_color(pixel, frame.background);
-            // Of a miss NO_HIT; after `occluded`, which names no spheres, its answer.
+            // The depth is NO_HIT for a miss, or the result of `occluded`, which records no ids.
             write_layers(pixel, hit.t, vec3f(0.0), NO_ID);
         }
         return;
     }
     let shape_index = hit.shape_index - brick.first_shape;
-    // What lies before the brick has become a large number.
+    // The subtraction wraps around, so shapes of earlier bricks have a large index.
     if (shape_index >= brick.shape_count) {
         return;
     }
@@ -35,6 +35,6 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     let normal = shape_normal(entry.ray, shapes[shape_index]);
     let color = sphere_color(shape_index).rgb;
     write_color(pixel, surface_color(color, normal, entry.ray));
-    // The distance that belongs to this `t`: another kernel's ray may enter the box a little elsewhere.
+    // `hit.distance` belongs to this `t`. The ray of another kernel may enter the box at a slightly different distance.
     write_layers(pixel, hit.distance + hit.t, normal, hit.id);
 }

@@ -1,4 +1,4 @@
-// The colour of a surface. Twin: `Shading` in src/render/integrator.rs.
+// The colour of a surface in pictures of primary rays. Twin: `Shading` in src/render/integrator.rs.
 // provides: surface_color
 // needs: Ray, frame
 

@@ -1,7 +1,7 @@
-// Whether an invocation was given up.
+// The status word, which reports that an invocation abandoned its search.
 // provides: give_up
 
-// Not 0 if an invocation ran into the limit of iterations.
+// Nonzero if an invocation reached the iteration limit.
 @group(0) @binding(2) var<storage, read_write> status: atomic<u32>;
 
 fn give_up() {

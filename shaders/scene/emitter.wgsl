@@ -1,8 +1,8 @@
-// One of the spheres of the scene that send out light.
+// An emissive sphere of the scene, read from the table of emitters.
 // provides: Emitter, emitter
 // needs: lighting, table, tables
 
-// The sphere; its id, the last number by which it is chosen, and with what probability; its radiance.
+// An emissive sphere, the probability with which it is sampled, and its radiance.
 struct Emitter {
     sphere: vec4f,
     id: u32,

@@ -1,8 +1,9 @@
-// Which of the spheres of the scene that send out light. Twin: src/light/emitters.rs.
+// Choosing an emissive sphere, and finding one by its id. Twin: src/light/emitters.rs.
 // provides: chosen_emitter, emitter_density, emitter_with_id
 // needs: Emitter, PI, cone_of_sphere, lighting, tables
 
-// The first emitter of which a word is at least so large; they ascend by both.
+// The index of the first emitter whose word is at least `value`. Both the ids (word 0) and the largest random number
+// that chooses an emitter (word 1) ascend.
 fn find_emitter(word: u32, value: u32) -> u32 {
     var low = 0u;
     var count = lighting.emitter_count;
@@ -24,7 +25,7 @@ fn chosen_emitter(bits: u32) -> u32 {
     return find_emitter(1u, bits);
 }
 
-// The density, for each unit of solid angle, with which a point sees a point of an emitter chosen; 0 from inside.
+// The density per unit of solid angle with which a point samples directions towards a chosen emitter; 0 from inside.
 fn emitter_density(emitter: Emitter, position: vec3f) -> f32 {
     let toward = emitter.sphere.xyz - position;
     let distance = sqrt(dot(toward, toward));

@@ -1,20 +1,20 @@
-// A camera's ray from where it enters the scene's box: no vector from there to a sphere is longer than the
-// box's diagonal, which bounds all rounding.
+// Moving the origin of a ray to the point where it enters the scene's box. No vector from there to a sphere is longer
+// than the box's diagonal, which bounds all rounding errors.
 // provides: Entry, enter_scene, inverse_direction
 // needs: CameraRay, Ray, fence, fence3, frame
 
 struct Entry {
-    // Starts in the box or on its wall.
+    // The ray, which starts in the box or on its boundary.
     ray: Ray,
-    // One over its direction, from `inverse_direction`.
+    // Reciprocals of the direction's components, from `inverse_direction`.
     inverse: vec3f,
-    // From the camera to the ray's origin.
+    // Distance from the camera to the origin of the ray.
     distance: f32,
-    // Whether there is a ray, and it meets the box.
+    // Whether there is a ray, and it hits the box.
     is_inside: bool,
 }
 
-// Smaller components of a direction are replaced by this, 2^-40, with their sign: there are no infinities.
+// Components of a direction that are smaller than this, 2^-40, are replaced by it with their sign, to avoid infinities.
 const SMALLEST_COMPONENT: f32 = 0x1p-40;
 
 fn inverse_direction(direction: vec3f) -> vec3f {

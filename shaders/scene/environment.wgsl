@@ -1,16 +1,17 @@
-// Light from all directions. Twin: src/light/environment/mod.rs. A kernel gives
-// `lighting.environment_size`, in texels, and `lighting.environment_rotation`, cosine and sine.
+// Radiance, density and sampling of an environment map. Twin: src/light/environment/mod.rs. It reads
+// `lighting.environment_size`, in texels, and `lighting.environment_rotation`, which is cosine and sine.
 // provides: environment_density, environment_radiance, sample_environment
 // needs: atan2_turns, lighting, sin_cos_turns
 
-// Row by row; the fourth component is not used.
+// Texels of the map, row by row. The fourth component is not used.
 @group(3) @binding(0) var<storage, read> environment_texels: array<vec4f>;
-// Multiples of 2^-24, which f32 subtracts exactly: height + 1 numbers for the rows, and width + 1 for each row.
+// Cumulative tables for sampling: height + 1 numbers for the rows, and width + 1 numbers for the columns of each row.
+// All are multiples of 2^-24, so that f32 subtracts them exactly.
 @group(3) @binding(1) var<storage, read> environment_shares: array<f32>;
 
 struct EnvironmentSample {
     direction: vec3f,
-    // Per steradian; zero if the map is black.
+    // Density per steradian; zero if the map is black.
     density: f32,
 }
 
@@ -35,7 +36,7 @@ fn sample_environment(u: vec2u) -> EnvironmentSample {
     let share = max(high - low, vec2f(0x1p-24));
     let along = min((chance.x - low.x + rest.x) / share.x, 1.0);
     let longitude = sin_cos_turns((f32(column) + along) / f32(size.x) - 0.5);
-    // From the nearer pole, by sin^2 of half the colatitude.
+    // Latitudes are computed from the nearer pole, as sin^2 of half the colatitude.
     let is_upper = 2u * row < size.y;
     let from_pole = f32(select(size.y - 1u - row, row, is_upper));
     let into = select(high.y - chance.y - rest.y, chance.y - low.y + rest.y, is_upper);
@@ -50,18 +51,18 @@ fn sample_environment(u: vec2u) -> EnvironmentSample {
     return EnvironmentSample(vec3f(flat.x, y, flat.y), environment_density_of(vec2u(column, row)));
 }
 
-// x and z, turned about +y.
+// Rotates x and z about the y axis.
 fn environment_turned(flat: vec2f, sign: f32) -> vec2f {
     let rotation = vec2f(lighting.environment_rotation.x, sign * lighting.environment_rotation.y);
     return rotation.x * flat + rotation.y * vec2f(flat.y, -flat.x);
 }
 
-// Where the shares of a row's columns start.
+// The index of the first number of a row's columns in the cumulative tables.
 fn environment_columns(row: u32) -> u32 {
     return lighting.environment_size.y + 1u + row * (lighting.environment_size.x + 1u);
 }
 
-// Column and row.
+// The column and row of the texel in a direction.
 fn environment_texel(direction: vec3f) -> vec2u {
     let flat = environment_turned(direction.xz, -1.0);
     let across = atan2_turns(flat.x, 0.0 - flat.y) + 0.5;
@@ -77,11 +78,12 @@ fn environment_density_of(texel: vec2u) -> f32 {
         environment_shares[texel.y + 1u] - environment_shares[texel.y]);
     let sines = sin_cos_turns(f32(2u * texel.y + 1u) / (4.0 * size.y)).x
         * sin_cos_turns(0.25 / size.y).x;
-    // 4 pi.
+    // The constant is 4 pi.
     return share.x * (share.y / (12.566371 / size.x * sines));
 }
 
-// The last of a table's entries, but for its end, that is at most the chance; tables have up to 2^12 + 1.
+// The last entry of a table, except its end, that is not greater than the random number. Tables have at most 2^12 + 1
+// entries.
 fn environment_row(chance: f32) -> u32 {
     var range = vec2u(0u, lighting.environment_size.y);
     for (var i = 0u; i < 12u; i++) {

@@ -1,4 +1,4 @@
-// Lights that are no spheres of the scene, as a surface sees them. Twin: src/cpu/light/lamp.rs.
+// Sampling the lights of the settings, which are not spheres of the scene, from a surface. Twin: src/cpu/light/lamp.rs.
 // provides: LAMP_DIRECTIONAL, LAMP_HEAD, LAMP_SPHERE, Lamp, lamp_kind, sample_lamp
 // needs: NO_HIT, axes_around, cone_direction, cone_of_sphere, table, tables, to_world
 
@@ -8,13 +8,13 @@ const LAMP_POINT: u32 = 2u;
 const LAMP_SPHERE: u32 = 3u;
 
 struct Lamp {
-    // Towards it.
+    // Unit vector towards the light.
     direction: vec3f,
-    // How far it is.
+    // Distance to the light.
     distance: f32,
-    // What it adds to a white surface that faces it.
+    // Radiance that a white surface facing the light would reflect.
     strength: vec3f,
-    // Of a sun, 1 minus the cosine of its angular radius; else 0.
+    // 1 minus the cosine of the angular radius of a sun; 0 for other lights.
     sun: f32,
 }
 
@@ -22,7 +22,7 @@ fn lamp_kind(light: u32) -> u32 {
     return tables[3u * light].w;
 }
 
-// A point of the light, chosen by `u`.
+// Light from a point of the light that `u` chooses.
 fn sample_lamp(light: u32, position: vec3f, u: vec2u) -> Lamp {
     let light_record = table(3u * light);
     let power = table(3u * light + 1u);
@@ -30,7 +30,7 @@ fn sample_lamp(light: u32, position: vec3f, u: vec2u) -> Lamp {
     if (kind == LAMP_DIRECTIONAL) {
         let k = power.w;
         let direction = to_world(axes_around(light_record.xyz), cone_direction(u, k));
-        // Radiance times solid angle over pi: strength / sin^2 * 2 k, with sin^2 = k (2 - k).
+        // The strength is radiance times solid angle divided by pi: strength / sin^2 * 2 k, with sin^2 = k (2 - k).
         return Lamp(direction, NO_HIT, power.rgb * (2.0 / (2.0 - k)), k);
     }
     let toward = light_record.xyz - position;

@@ -1,11 +1,11 @@
-// What lights, sky, ground and materials are.
+// The parameters and tables of lights, sky, ground and materials.
 // provides: filter_table, ground_distance, lighting, lighting_has, table, tables
 // needs: LIGHTING_GROUND, LightingParameters, NO_HIT, Ray
 
-// Sky, ground, sampling, and where the tables start.
+// Parameters of sky, ground and sampling, and the indices at which the tables start.
 @group(2) @binding(0) var<uniform> lighting: LightingParameters;
-// Lights, emitters, materials and energies, each at its own place. Bits, because there are whole numbers among them,
-// which as f32 are subnormal and might be flushed.
+// Tables of lights, emitters, materials and energies, one after another. They are stored as bits, because some are
+// integers, which as f32 would be subnormal and might be flushed to zero.
 @group(2) @binding(1) var<storage, read> tables: array<vec4u>;
 
 fn table(index: u32) -> vec4f {
@@ -20,7 +20,8 @@ fn filter_table(index: u32) -> f32 {
     return lighting.filter_table[index >> 2u][index & 3u];
 }
 
-// Where a ray meets the ground from above, or NO_HIT; perhaps behind its origin, as far as it has come already.
+// The distance at which a ray hits the ground from above, or NO_HIT. It may be negative, down to -`behind`, the
+// distance that the ray has travelled before its origin.
 fn ground_distance(ray: Ray, behind: f32) -> f32 {
     let toward = dot(ray.direction, lighting.ground_normal);
     let height = dot(ray.origin - lighting.ground_point, lighting.ground_normal);

@@ -1,67 +1,67 @@
-// Records of lit pictures. Twins: the structs of the same names in src/gpu/passes/lit/records.rs; a test compares names,
-// offsets and sizes.
+// Records that the host writes for lit pictures. Twins: the structs of the same names in src/gpu/passes/lit/records.rs.
+// A test compares names, offsets and sizes.
 // provides: DispatchParameters, LIGHTING_CATCHER, LIGHTING_GROUND, LIGHTING_SKY_SEEN, LIGHTING_TRANSPARENT,
 //   LIGHT_CHANCE, LIGHT_DIRECT, LIGHT_MULTIPLE, LightingParameters
 
-// What one dispatch does.
+// The parameters of a dispatch.
 struct DispatchParameters {
-    // Which of the samples of every pixel.
+    // Index of the first sample of every pixel.
     sample: u32,
-    // Which of the surfaces that a ray meets, from 0.
+    // Index of the surface along the path, from 0.
     surface: u32,
-    // Whether it is the last.
+    // Whether the surface is the last.
     is_last: u32,
-    // The light, or the direction of ambient light, that is looked for; or the first of some.
+    // Index of the light or of the direction of ambient light that is tested, or the first of several.
     light: u32,
-    // How many of them; how many samples are in flight; or how many workgroups a slice of a list has.
+    // Number of lights or directions; or of samples in flight; or of workgroups in a slice of a list.
     count: u32,
-    // The list of paths that is worked on.
+    // Index of the list of paths that is processed.
     list: u32,
-    // Whether lists that are filled next are to be emptied.
+    // Whether the lists that are filled next must be emptied.
     is_new: u32,
-    // How many paths there is room for.
+    // Number of paths that the buffers have room for.
     paths: u32,
-    // The first workgroup.
+    // Index of the first workgroup.
     first: vec2u,
 }
 
 struct LightingParameters {
     background: vec3f,
-    // Sums of the LIGHTING_ constants.
+    // Sum of the LIGHTING_ constants that apply.
     flags: u32,
     ambient: vec3f,
     light_count: u32,
-    // Of a sky: straight up, level, straight down; radiance.
+    // Radiance of the sky straight up, at the horizon (`horizon`) and straight down (`nadir`).
     zenith: vec3f,
     roulette_from: u32,
     horizon: vec3f,
-    // How many sources of direct light there are to choose from.
+    // Number of light sources that can be sampled.
     source_count: u32,
     nadir: vec3f,
-    // LIGHT_CHANCE, LIGHT_DIRECT or LIGHT_MULTIPLE.
+    // Method of light sampling: LIGHT_CHANCE, LIGHT_DIRECT or LIGHT_MULTIPLE.
     light_sampling: u32,
     cue_color: vec3f,
     cue_near: f32,
     ground_normal: vec3f,
-    // One over the depth in which colour fades; 0 if it does not.
+    // Reciprocal of the depth over which colour fades; 0 if it does not fade.
     cue_scale: f32,
-    // In the scene's frame.
+    // A point of the ground in the scene's frame.
     ground_point: vec3f,
     occlusion_radius: f32,
     ground_color: vec3f,
     occlusion_samples: u32,
     seed: u32,
-    // Where emitters and materials start in `tables`.
+    // Index of the first emitter in `tables`; `material_first` is that of the first material.
     emitter_first: u32,
     emitter_count: u32,
     material_first: u32,
     environment_size: vec2u,
-    // Cosine and sine.
+    // Cosine and sine of the rotation of the sky's image.
     environment_rotation: vec2f,
     environment_strength: f32,
-    // How many of the sources are lights that are no spheres of the scene.
+    // Number of light sources that are lights of the settings and not spheres of the scene.
     lamp_sources: u32,
-    // What inside a pixel samples are taken by; see filter.wgsl.
+    // Distribution of samples in a pixel, see filter.wgsl.
     filter_table: array<vec4f, 65>,
 }
 

@@ -1,23 +1,23 @@
-// New words of colour for the spheres of a range of ids, wherever they stand in a brick.
-// dispatched: for an update of colours and each brick: one invocation for each of its spheres.
+// Writes new colour words for the spheres of a range of ids.
+// dispatched: for an update of colours and each brick, with one invocation for each sphere of the brick.
 // provides: recolor
 
 struct RecolorRange {
-    // Which spheres.
+    // First id and number of ids of the range.
     first: u32,
     count: u32,
-    // How many spheres the brick has.
+    // Number of spheres of the brick.
     shape_count: u32,
     zero: u32,
 }
 
 // The range of ids that is updated.
 @group(0) @binding(0) var<uniform> range: RecolorRange;
-// A word of colour for each sphere of the range.
+// Colour words, one for each sphere of the range.
 @group(0) @binding(1) var<storage, read> new_words: array<u32>;
-// The ids of the brick, as in accel/brick.wgsl.
+// Ids of the spheres of the brick, see accel/brick.wgsl.
 @group(0) @binding(2) var<storage, read> ids: array<u32>;
-// The words of the brick, as in scene/appearance.wgsl.
+// Appearance words of the brick, see scene/appearance.wgsl.
 @group(0) @binding(3) var<storage, read_write> appearances: array<u32>;
 
 @compute @workgroup_size(64)
@@ -30,7 +30,7 @@ fn recolor(
     if (shape_index >= range.shape_count) {
         return;
     }
-    // What lies before the first has become a large number.
+    // The subtraction wraps around, so ids before the range become large numbers.
     let at = ids[shape_index] - range.first;
     if (at < range.count) {
         appearances[shape_index] = new_words[at];

@@ -1,13 +1,13 @@
-// Records that the host writes. Twins: the structs of the same names in src/gpu/shader/records.rs;
-// a test compares names, offsets and sizes.
+// Records that the host writes for frames and bricks. Twins: the structs of the same names in
+// src/gpu/shader/records.rs. A test compares names, offsets and sizes.
 // provides: Brick, FrameParameters
 
 struct Camera {
-    // In the scene's frame: the camera, moved by `advance` times `forward`, up to the scene's box. All that
-    // kernels compute is then as exact as the scene is large, however far away the camera is.
+    // Position of the camera in the scene's frame, moved by `advance` times `forward` up to the scene's box. The
+    // accuracy of the kernels then depends on the size of the scene only, however far away the camera is.
     origin: vec3f,
     advance: f32,
-    // What the three vectors and the three numbers mean is up to the camera in use.
+    // The meaning of the three vectors and the three numbers depends on the kind of camera.
     right: vec3f,
     first: f32,
     up: vec3f,
@@ -22,7 +22,7 @@ struct FrameParameters {
     shading: u32,
     // The box of all spheres, a little larger.
     scene_min: vec3f,
-    // How many iterations of loops an invocation may take.
+    // Maximum number of loop iterations of an invocation.
     iteration_limit: u32,
     scene_max: vec3f,
     // +1 if y = +1 is the top row, -1 if it is the bottom row.
@@ -31,14 +31,14 @@ struct FrameParameters {
     // The part of the film that this dispatch renders, in pixels.
     tile_origin: vec2u,
     tile_size: vec2u,
-    // Where that part lies in the target textures.
+    // Position of that part in the target textures.
     target_origin: vec2u,
-    // The workgroups of the tile that may meet the scene's box: the first, and how many. The rest are misses.
+    // The first of the tile's workgroups whose rays may hit the scene's box, and their number. All others are misses.
     traced_first: vec2u,
     traced_size: vec2u,
-    // The first workgroup of the slice of those that is traced now.
+    // The first workgroup of the slice that is traced now.
     first_group: vec2u,
-    // Row i of them is row i * row_step modulo their number.
+    // Row i of a dispatch is row i * row_step, modulo the number of rows.
     row_step: u32,
     // Zero; see fence.wgsl.
     zero: u32,
@@ -46,22 +46,22 @@ struct FrameParameters {
 
 // A part of the scene that fits into bindings.
 struct Brick {
-    // Of a grid: its corner, and its cells.
+    // Corner of the grid, size of its cells and their numbers, if the structure is a grid.
     min: vec3f,
     cell_size: f32,
     cell_counts: vec3u,
-    // How many elements `shapes` has.
+    // Number of elements of `shapes`.
     shape_count: u32,
-    // How many places there are in the bricks before this one.
+    // Number of shapes in the bricks before this one.
     first_shape: u32,
     is_first: u32,
-    // The index of the last element of `looks`.
+    // Index of the last element of `appearances`.
     last_appearance: u32,
-    // Where the parts of a colour stand in `palette`: at a word of colour, moved right by so many bits times 0, 1, 2
-    // and 3, of which these bits count.
+    // Component k of a colour is in the element of `palette` whose index is the colour word, shifted right by
+    // k * color_shift bits and masked by color_mask.
     color_shift: u32,
     color_mask: u32,
-    // Where words of material start in `looks`, and which of their bits count.
+    // Index of the first material word in `appearances`, and the mask of its valid bits.
     material_first: u32,
     material_mask: u32,
 }

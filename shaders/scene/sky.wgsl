@@ -1,7 +1,7 @@
-// Light from the sky. Twin: src/light/sky.rs.
+// Radiance and sampling of the sky. Twin: src/light/sky.rs.
 
 //// plain
-// A sky without an image.
+// Sky of constant colour or with a vertical gradient.
 // provides: sample_sky, sky_density, sky_radiance
 // needs: lighting
 
@@ -10,7 +10,7 @@ fn sky_radiance(direction: vec3f) -> vec3f {
     return mix(lighting.horizon, end, abs(direction.y));
 }
 
-// It is found by chance alone.
+// The density is 0, because light sampling never chooses this sky.
 fn sky_density(direction: vec3f) -> f32 {
     return 0.0;
 }
@@ -20,7 +20,7 @@ fn sample_sky(u: vec2u) -> vec4f {
 }
 
 //// image
-// A sky with an image.
+// Sky with an environment map.
 // provides: sample_sky, sky_density, sky_radiance
 // needs: environment_density, environment_radiance, lighting, sample_environment
 
@@ -32,7 +32,7 @@ fn sky_density(direction: vec3f) -> f32 {
     return environment_density(direction);
 }
 
-// A direction, and the density with which it is chosen.
+// A random direction, and its density.
 fn sample_sky(u: vec2u) -> vec4f {
     let found = sample_environment(u);
     return vec4f(found.direction, found.density);

@@ -1,26 +1,25 @@
-// Spheres: one ray against one of them, and its normal.
+// Intersection of a ray with a sphere, and the sphere's normal.
 //
-// Haines, Guenther and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray
-// Tracing Gems, chapter 7 (2019): the discriminant from the foot point (after Hearn and Baker), so
-// that it does not drown in the squared distance, and the roots as q and c/q, so that neither is a
-// difference of nearly equal numbers. Changed here: the direction must have unit length, and only the
-// root that counts is computed. A tangent ray hits.
+// Haines, Guenther and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, chapter
+// 7 (2019): the discriminant is computed from the foot point (after Hearn and Baker), so that it is not lost in the
+// squared distance, and the roots as q and c/q, so that neither is a difference of nearly equal numbers. Changes: the
+// direction must have unit length, and only the relevant root is computed. A tangent ray hits.
 // provides: Shape, bare, intersect, is_same, no_shape, shape_normal, sphere_normal
 // needs: NO_HIT, Ray, fence, fence3
 
-// Centre in the scene's frame, and radius.
+// A sphere: its centre in the scene's frame, and its radius.
 alias Shape = vec4f;
 
 fn no_shape() -> Shape {
     return vec4f(0.0);
 }
 
-// What a structure needs no more than to find a shape.
+// A shape without the marks that a structure stores in it, such as the sign of the radius.
 fn bare(shape: Shape) -> Shape {
     return vec4f(shape.xyz, abs(shape.w));
 }
 
-// The second must be bare.
+// Whether two shapes are equal. The second must have no marks, see `bare`.
 fn is_same(a: Shape, b: Shape) -> bool {
     return all(a.xyz == b.xyz) && abs(a.w) == b.w;
 }
@@ -33,34 +32,34 @@ struct SphereHit {
     foot_to_center: vec3f,
 }
 
-// Without branches: software devices run both sides of one and pay for the masks.
+// Intersects a ray with a sphere, without branches, because software devices execute both sides of a branch.
 fn intersect(ray: Ray, sphere: Shape) -> SphereHit {
     let radius = sphere.w;
     let to_center = fence3(sphere.xyz - ray.origin);
     let b = fence(dot(to_center, ray.direction));
     let foot_to_center = fence3(to_center - b * ray.direction);
     let discriminant = fence(radius * radius - dot(foot_to_center, foot_to_center));
-    // The product of the distances to both walls: positive outside, zero on the wall.
+    // The product of the distances to both sides: positive outside, zero on the sphere.
     let c = dot(to_center, to_center) - radius * radius;
     let half_chord = sqrt(max(discriminant, 0.0));
     let from_foot = select(half_chord, -half_chord, c > 0.0);
-    // b + from_foot; where the two would cancel, from (b + from_foot)(b - from_foot) = c.
+    // The result is b + from_foot. Where the two would cancel, it follows from (b + from_foot)(b - from_foot) = c.
     let is_sum = b * from_foot >= 0.0;
     let t = select(c / select(b - from_foot, 1.0, is_sum), b + from_foot, is_sum);
-    // Behind the origin t is negative; on the wall and leaving it is zero.
+    // t is negative behind the origin, and zero for a ray that leaves the sphere.
     let is_hit = discriminant >= 0.0 && t > 0.0;
     return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
 }
 
-// The normal where a ray meets a sphere.
+// The normal at the point where a ray hits a sphere.
 fn shape_normal(ray: Ray, sphere: Shape) -> vec3f {
     return sphere_normal(ray, intersect(ray, sphere));
 }
 
-// Unit normal, pointing away from the centre. From the right triangle of the intersection, not from
-// the hit point, which far away from a small sphere is nothing but rounding. There the triangle is not
-// quite right-angled either, so its hypotenuse is measured instead of taken to be the radius; it is
-// never zero, because its two legs were made from the radius.
+// The unit normal, which points away from the centre. It is computed from the right triangle of the intersection and
+// not from the hit point, whose rounding errors may exceed the radius of a small and distant sphere. The triangle is
+// not exactly right-angled there either, so its hypotenuse is computed instead of taken to be the radius. It is never
+// zero, because its legs were computed from the radius.
 fn sphere_normal(ray: Ray, hit: SphereHit) -> vec3f {
     let outward = fence3(hit.from_foot * ray.direction - hit.foot_to_center);
     return fence3(outward / sqrt(dot(outward, outward)));

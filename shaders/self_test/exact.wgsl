@@ -1,21 +1,21 @@
-// Operations that may not round, and numbers that a device may flush to zero.
-// dispatched: by the self-test, one invocation for each input.
+// Computes operations whose results must be exact, and subnormal numbers, which a device may flush to zero.
+// dispatched: by the self-test, with one invocation for each input.
 // provides: exact
 // needs: fence
 
 struct Values {
-    // Below 2^31 in size.
+    // A number with an absolute value below 2^31.
     f: f32,
     g: f32,
-    // An integer that f32 holds.
+    // An integer that f32 represents exactly.
     whole: u32,
     i: u32,
     j: u32,
-    // Normal; their difference is subnormal, and so is the product of one with `scale`.
+    // Normal numbers whose difference is subnormal, as is the product of `small` and `scale`.
     small: f32,
     other: f32,
     scale: f32,
-    // Subnormal, and so is their sum.
+    // Subnormal numbers whose sum is subnormal.
     tiny: f32,
     speck: f32,
 }
@@ -28,7 +28,7 @@ struct Exact {
     smaller: f32,
     larger: f32,
     selected: f32,
-    // One bit each.
+    // The result of each comparison, in one bit.
     comparisons: u32,
     bits: u32,
     from_bits: f32,
@@ -46,9 +46,9 @@ struct Exact {
     tiny_sum: f32,
 }
 
-// One struct of numbers for each invocation.
+// Inputs, with one struct for each invocation.
 @group(0) @binding(1) var<storage, read> values: array<Values>;
-// What the device made of them.
+// Results of the device, with one struct for each invocation.
 @group(0) @binding(2) var<storage, read_write> answers: array<Exact>;
 
 fn bit(condition: bool, number: u32) -> u32 {

@@ -1,18 +1,18 @@
-// Loops, which some devices leave silently.
-// dispatched: by the self-test, one workgroup, three times.
+// Executes long loops, which some devices leave silently.
+// dispatched: by the self-test, three times with one workgroup.
 // provides: loops
 // needs: self_test
 
 struct Looped {
     count: u32,
-    // Of a sequence that no compiler shortens; it tells whether the count is true.
+    // Element of a sequence that no compiler can shorten, which shows whether the count is true.
     state: u32,
 }
 
-// How often each loop ran.
+// Number of iterations of each invocation.
 @group(0) @binding(2) var<storage, read_write> answers: array<Looped>;
 
-// Numerical Recipes' linear congruential generator.
+// The linear congruential generator of Numerical Recipes.
 fn step(looped: Looped) -> Looped {
     return Looped(looped.count + 1u, looped.state * 1664525u + 1013904223u);
 }
@@ -23,7 +23,8 @@ fn loops(@builtin(local_invocation_index) index: u32) {
     for (var i = 0u; i < self_test.single; i++) {
         looped = step(looped);
     }
-    // Each invocation in a turn of its own, so that what runs them together loops for all of them.
+    // Each invocation loops in a different outer iteration, so that a device that runs invocations together executes
+    // the loops of all of them.
     for (var i = 0u; i < self_test.outer; i++) {
         let inner = select(0u, self_test.inner, i == index);
         for (var j = 0u; j < inner; j++) {

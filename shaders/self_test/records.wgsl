@@ -1,18 +1,18 @@
-// What the kernels of this folder have in common: they compute, and src/gpu/self_test judges, whether a device
-// keeps what the error bounds of src/verify count on.
+// The record that the kernels of the self-test share. These kernels compute numbers by which src/gpu/self_test judges
+// whether a device has the properties that the error bounds of src/verify assume.
 // provides: runtime_zero, self_test
 
-// Twin: the record of the same name in src/gpu/self_test/records.rs, as of all structs of these kernels.
+// Twin: the struct of the same name in src/gpu/self_test/records.rs. All structs of these kernels have twins there.
 struct SelfTest {
     // Zero; see fence.wgsl.
     zero: u32,
-    // Iterations, for loops.wgsl.
+    // Numbers of iterations for loops.wgsl.
     single: u32,
     outer: u32,
     inner: u32,
 }
 
-// Zero, and how long loops are.
+// A zero for fences, and the numbers of iterations of loops.
 @group(0) @binding(0) var<uniform> self_test: SelfTest;
 
 fn runtime_zero() -> u32 {

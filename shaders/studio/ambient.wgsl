@@ -1,6 +1,6 @@
-// In a studio: whether something is near in some directions of ambient light. One dispatch per brick. Twin:
-// src/cpu/light/studio.rs.
-// dispatched: for up to 32 directions of ambient light and each brick of what casts shadows.
+// Finds whether ambient light from some random directions is occluded, in a studio. There is one dispatch for each
+// brick. Twin: src/cpu/light/studio.rs.
+// dispatched: for up to 32 directions of ambient light and each brick of occluders.
 // provides: ambient
 // needs: NORMAL, NO_PATH, address_of, axes_around, cosine_direction, dispatch, excluded_by, hide, is_hidden, lighting,
 //   load, load_departure, load_start, path_of, pixel_seed, report_spent, sample_pair, start_fences, to_world
@@ -20,10 +20,10 @@ fn ambient(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let normal = load(index, NORMAL).xyz;
     let axes = axes_around(normal);
     var hidden = 0u;
-    // Not a uniform by itself: Mesa's lavapipe would build the kernel anew for every dispatch.
+    // If this number depended on a uniform only, Mesa's lavapipe would compile the kernel again for every dispatch.
     let count = dispatch.count + (index >> 31u);
-    for (var turn = 0u; turn < count; turn++) {
-        let light = dispatch.light + turn;
+    for (var i = 0u; i < count; i++) {
+        let light = dispatch.light + i;
         let sample = address.sample * lighting.occlusion_samples + light;
         let u = sample_pair(seed, sample, 2u + 4096u * dispatch.surface + 4095u);
         let direction = to_world(axes, cosine_direction(u));

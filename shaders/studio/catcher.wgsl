@@ -1,9 +1,10 @@
-// In a studio: a ground on which only shadows are seen.
+// Shadow catchers in a studio, which are grounds on which only shadows are visible.
 // provides: caught, central_light, light_to_catch
 // needs: LAMP_DIRECTIONAL, LAMP_HEAD, LAMP_SPHERE, LIGHTING_TRANSPARENT, cone_of_sphere, lamp_kind, lighting,
 //   lighting_has, luminance, table
 
-// How bright a light is on it, by the light's middle; of a head light, which casts no shadow, nothing.
+// The luminance that the centre of a light contributes to the ground. It is 0 for a light at the eye, which casts no
+// shadow.
 fn central_light(light: u32, position: vec3f) -> f32 {
     let light_record = table(3u * light);
     let power = table(3u * light + 1u);
@@ -19,7 +20,7 @@ fn central_light(light: u32, position: vec3f) -> f32 {
     return select(light_there, 0.0, kind == LAMP_HEAD);
 }
 
-// What all light together is; 1 where there is none, of which no share is missing.
+// The luminance that all lights together contribute, or 1 if there is no light, so that it can be a divisor.
 fn light_to_catch(is_caught: bool, position: vec3f) -> f32 {
     var sum = luminance(lighting.ambient);
     for (var light = 0u; light < select(0u, lighting.light_count, is_caught); light++) {
@@ -28,7 +29,8 @@ fn light_to_catch(is_caught: bool, position: vec3f) -> f32 {
     return select(sum, 1.0, sum == 0.0);
 }
 
-// What a shadow of a share of all light does to a background that is seen through the ground.
+// The change of radiance and opacity if a share of all light is missing on the ground, behind which the background is
+// visible.
 fn caught(share: f32, left_over: f32) -> vec4f {
     let alpha = left_over * share;
     let behind = select(alpha, 0.0, lighting_has(LIGHTING_TRANSPARENT)) * lighting.background;

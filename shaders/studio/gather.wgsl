@@ -1,5 +1,5 @@
-// In a studio: ambient light from some directions, of which each has a bit that says whether something is near.
-// Twin: src/cpu/light/studio.rs.
+// Adds ambient light from some directions in a studio, using a bit for each occluded direction. Twin:
+// src/cpu/light/studio.rs.
 // dispatched: after up to 32 directions of ambient light.
 // provides: gather
 // needs: ALBEDO, NORMAL, NO_PATH, RADIANCE, caught, dispatch, light_to_catch, lighting, load, load_start, luminance,

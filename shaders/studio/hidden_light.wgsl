@@ -1,9 +1,10 @@
-// In a studio: whether something hides a light from a surface.
+// Testing whether a light is hidden from a surface, in a studio.
 // provides: hide, is_hidden
 // needs: CameraRay, Excluded, NORMAL, PATH_BACK, PATH_ON_GROUND, Ray, Search, Start, enter_scene, find_any,
 //   ground_distance, has, paths, slot
 
-// Searches the brick; `excluded` must be the shape on which the ray starts, `to_center` the way to its centre.
+// Searches the brick for an occluder. `excluded` must be the shape on which the ray starts, and `to_center` the vector
+// to its centre.
 fn is_hidden(start: Start, excluded: Excluded, to_center: vec3f, direction: vec3f, distance: f32) -> bool {
     let ray = Ray(start.position, direction);
     let to_far_side = max(2.0 * dot(to_center, direction), 0.0);
@@ -18,7 +19,7 @@ fn is_hidden(start: Start, excluded: Excluded, to_center: vec3f, direction: vec3
     return is_hidden;
 }
 
-// Keeps which of 32 lights are hidden, each in a bit.
+// Sets the bits of hidden lights, one for each of 32 lights.
 fn hide(index: u32, lights: u32) {
     if (lights != 0u) {
         paths[slot(index, NORMAL)].w |= lights;

@@ -1,11 +1,12 @@
-// In a studio: some lights on the surface that every pixel sees. Twin: src/cpu/light/studio.rs.
+// Adds the contributions of some lights to the visible surface of every path, in a studio. Twin:
+// src/cpu/light/studio.rs.
 // dispatched: after the shadows of up to 32 lights.
 // provides: illuminate
 // needs: ALBEDO, DIRECTION, LAMP_HEAD, LOBE, Lamp, NORMAL, NO_PATH, PI, RADIANCE, THROUGHPUT, address_of, caught,
 //   central_light, dispatch, energy, lamp_kind, light_to_catch, lighting, load, load_start, mirrors_brdf, path_of,
 //   paths, pixel_seed, sample_lamp, sample_pair, slot, start_fences, store, table
 
-// The light of a lobe, on a surface that counts 1.
+// The light that a specular lobe reflects, for a surface of weight 1.
 fn lobe_light(lobe: vec3f, normal: vec3f, out: vec3f, toward: vec3f) -> f32 {
     let half = normalize(out + toward);
     let o = vec3f(0.0, 0.0, max(dot(normal, out), 1e-6));

@@ -1,6 +1,6 @@
-// In a studio: whether one light is hidden from the surface that every pixel sees. One dispatch per brick. Twin:
-// src/cpu/light/studio.rs.
-// dispatched: for each light and each brick of what casts shadows.
+// Finds whether a light is hidden from the visible surface of every path, in a studio. There is one dispatch for each
+// brick. Twin: src/cpu/light/studio.rs.
+// dispatched: for each light and each brick of occluders.
 // provides: shadow
 // needs: NORMAL, NO_PATH, address_of, dispatch, excluded_by, hide, is_hidden, lighting, load, load_departure,
 //   load_start, path_of, pixel_seed, report_spent, sample_lamp, sample_pair, start_fences
@@ -19,7 +19,7 @@ fn shadow(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
     let seed = pixel_seed(address.pixel, lighting.seed);
     let u = sample_pair(seed, address.sample, 2u + 4096u * dispatch.surface + dispatch.light);
     let lamp = sample_lamp(dispatch.light, start.position, u);
-    // What is behind the surface needs no search, and is no shadow.
+    // A light behind the surface needs no search and casts no shadow.
     let normal = load(index, NORMAL).xyz;
     let is_before = dot(normal, lamp.direction) > 0.0;
     let is_shadow = is_hidden(start, excluded, bitcast<f32>(departure.word) * normal, lamp.direction, select(0.0, lamp.distance, is_before));

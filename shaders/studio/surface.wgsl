@@ -1,13 +1,14 @@
-// In a studio: what a ray meets, and what of it needs no further ray. Twin: src/cpu/light/studio.rs.
+// Finds the surface that each ray hits, and adds all light that needs no shadow rays, in a studio. Twin:
+// src/cpu/light/studio.rs.
 // dispatched: for each surface that the camera sees and each brick.
 // provides: surface
-// needs: ALBEDO, DIRECTION, Departure, EMISSIVE, FIRST, GROUND_MET, LAMBERT, LIGHTING_CATCHER, LIGHTING_TRANSPARENT,
-//   LIST_OF_LIGHT, LOBE, NOBODY, NORMAL, NOTHING_MET, NO_PATH, PATH_ALIVE, PATH_BACK, PATH_INSIDE, PATH_ON_GROUND,
-//   RADIANCE, Ray, THROUGHPUT, append, come_from_camera, dispatch, exit_distance_of, has, lighting, lighting_has, load,
-//   load_hit, load_start, material_of, next_list, path_of, paths, slot, start_fences, store, store_departure,
-//   store_start, vertex_of, what_is_met
+// needs: ALBEDO, DIRECTION, Departure, EMISSIVE, FIRST, HIT_GROUND, HIT_NOTHING, LAMBERT, LIGHTING_CATCHER,
+//   LIGHTING_TRANSPARENT, LIST_OF_LIGHT, LOBE, NORMAL, NO_PATH, OTHER_BRICK, PATH_ALIVE, PATH_BACK, PATH_INSIDE,
+//   PATH_ON_GROUND, RADIANCE, Ray, THROUGHPUT, append, classify_hit, dispatch, distance_from_camera, exit_distance_of,
+//   has, lighting, lighting_has, load, load_hit, load_start, material_of, next_list, path_of, paths, slot,
+//   start_fences, store, store_departure, store_start, vertex_of
 
-// How much of the colour is lost in the distance.
+// The fraction of the colour that depth cueing replaces at a distance.
 fn faded(distance: f32) -> f32 {
     return clamp((distance - lighting.cue_near) * lighting.cue_scale, 0.0, 1.0);
 }
@@ -26,22 +27,22 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let ray = Ray(start.position, load(index, DIRECTION).xyz);
     let hit = load_hit(index);
     let first = load(index, FIRST);
-    let behind = come_from_camera(first.w);
-    let met = what_is_met(ray, hit, has(start.flags, PATH_ON_GROUND), behind);
-    if (met == NOBODY) {
+    let behind = distance_from_camera(first.w);
+    let kind = classify_hit(ray, hit, has(start.flags, PATH_ON_GROUND), behind);
+    if (kind == OTHER_BRICK) {
         return;
     }
     let radiance = load(index, RADIANCE);
     let left_over = load(index, THROUGHPUT).x;
     let shown = select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
-    if (met == NOTHING_MET) {
+    if (kind == HIT_NOTHING) {
         store(index, RADIANCE, radiance + vec4f(left_over * shown, 0.0));
         store_start(index, vec3f(0.0), 0u);
         return;
     }
-    let vertex = vertex_of(index, ray, hit, met, start.flags, behind);
+    let vertex = vertex_of(index, ray, hit, kind, start.flags, behind);
     let material = material_of(vertex);
-    let is_caught = met == GROUND_MET && lighting_has(LIGHTING_CATCHER);
+    let is_caught = kind == HIT_GROUND && lighting_has(LIGHTING_CATCHER);
     let is_emitter = material.kind == EMISSIVE;
     let far = first.w + vertex.distance;
     let fade = faded(far);
@@ -64,13 +65,13 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     store(index, ALBEDO, vec4f(vertex.color * lit, select(0.0, left_over, is_caught)));
     let share = select(0.0, material.parameter, material.kind == LAMBERT);
     paths[slot(index, LOBE)] = vec4u(bitcast<vec2u>(vec2f(share, material.alpha)), material.energies, 0u);
-    let goes_on = select(PATH_ALIVE, 0u, is_last) | select(PATH_INSIDE, 0u, vertex.is_back || met == GROUND_MET);
-    // What lets light through hides none.
+    let next_flags = select(PATH_ALIVE, 0u, is_last) | select(PATH_INSIDE, 0u, vertex.is_back || kind == HIT_GROUND);
+    // A surface that is not opaque hides no light.
     let is_closed = vertex.is_back && vertex.opacity >= 1.0;
     let is_back = select(0u, PATH_BACK, is_closed);
-    let on_ground = select(0u, PATH_ON_GROUND, met == GROUND_MET);
-    store_start(index, vertex.position, goes_on | is_back | on_ground);
-    if (has(goes_on, PATH_ALIVE)) {
+    let on_ground = select(0u, PATH_ON_GROUND, kind == HIT_GROUND);
+    store_start(index, vertex.position, next_flags | is_back | on_ground);
+    if (has(next_flags, PATH_ALIVE)) {
         append(next_list(), index);
     }
     if (!is_emitter) {

@@ -4,7 +4,8 @@ use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPre
 
 use crate::gpu::error::GpuError;
 
-/// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than once.
+/// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than
+/// once.
 const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
     Backends::METAL
 } else if cfg!(windows) {
@@ -72,8 +73,9 @@ pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
     candidates(name)?.into_iter().next().ok_or(GpuError::NoAdapter)
 }
 
-/// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment variable
-/// `WGPU_ADAPTER_NAME` if `name` is `None`. Upper and lower case are not distinguished. Without either, it is the first.
+/// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment
+/// variable `WGPU_ADAPTER_NAME` if `name` is `None`. Upper and lower case are not distinguished. Without either, it is
+/// the first.
 ///
 /// # Errors
 /// If there is no adapter, or none with such a name.

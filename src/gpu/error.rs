@@ -121,7 +121,8 @@ pub enum GpuError {
         /// The integrator that was requested.
         integrator: &'static str,
     },
-    /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded without.
+    /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded
+    /// without.
     #[error(
         "some spheres of this scene are not opaque, and the scene was uploaded without the structure of the spheres that \
          cast shadows in a studio; upload the structures that `RenderPlan::build` returns for a plan with these settings"
@@ -211,8 +212,8 @@ pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Re
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let created = create();
-    // Scopes nest, so they are popped in reverse order. A resource without memory also causes validation errors wherever
-    // it is used, so the scope that is popped last, the one for memory, is reported first.
+    // Scopes nest, so they are popped in reverse order. A resource without memory also causes validation errors
+    // wherever it is used, so the scope that is popped last, the one for memory, is reported first.
     let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
     match errors.iter().rev().flatten().next() {
         Some(error) => Err(GpuError::from_wgpu(error)),

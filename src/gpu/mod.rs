@@ -1,9 +1,9 @@
 //! The renderer that uses compute shaders. This is the only module that uses wgpu.
 //!
 //! State is divided by its lifetime: [`Renderer`] holds pipelines, [`SceneBuffers`] holds a scene on a device, and
-//! [`Frame`] holds the data that change from picture to picture. [`Renderer::record`] records commands into the caller's
-//! encoder, which write to the caller's textures, and never submits them. [`Headless`] owns a device and is built on the
-//! same functions.
+//! [`Frame`] holds the data that change from picture to picture. [`Renderer::record`] records commands into the
+//! caller's encoder, which write to the caller's textures, and never submits them. [`Headless`] owns a device and is
+//! built on the same functions.
 
 pub use wgpu;
 

@@ -9,16 +9,16 @@ use crate::gpu::edit::ShaderEdit;
 /// Options for opening a headless device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
-    /// Selects the adapter whose name contains this text, as [`candidates`](crate::gpu::adapter::candidates) does. `None`
-    /// selects the best adapter.
+    /// Selects the adapter whose name contains this text, as [`candidates`](crate::gpu::adapter::candidates) does.
+    /// `None` selects the best adapter.
     pub adapter: Option<String>,
     /// The limits that the device is opened with.
     pub limits: LimitChoice,
     /// The time that one submission may take before the render fails. The size of submissions adapts to the device, so
     /// that each takes about 60 milliseconds.
     pub timeout: Duration,
-    /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off. The
-    /// picture does not depend on this option.
+    /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off.
+    /// The picture does not depend on this option.
     pub indirect: bool,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,

@@ -30,8 +30,8 @@ impl Derived<'_> {
         }
     }
 
-    /// Sets the layers that follow from ids in some columns of a row: opacity, albedo, and the number of samples and the
-    /// variance of pixels with a single ray each.
+    /// Sets the layers that follow from ids in some columns of a row: opacity, albedo, and the number of samples and
+    /// the variance of pixels with a single ray each.
     pub(in crate::gpu) fn set_by_ids(
         &self,
         row: &mut RowMut<'_>,

@@ -179,8 +179,8 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Computes the sums, over all pixels, of the variances of their means and of their luminances. All pixels must have
-    /// the same number of samples.
+    /// Computes the sums, over all pixels, of the variances of their means and of their luminances. All pixels must
+    /// have the same number of samples.
     pub(in crate::gpu) fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
         let mut sums = [0.0; 2];
         for (tile, samples) in self.samples.clone().into_iter().enumerate() {

@@ -18,8 +18,8 @@ use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
 use crate::render::{PrimarySettings, RenderSettings};
 
-/// Size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a picture that
-/// could be returned.
+/// Size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a picture
+/// that could be returned.
 fn batch(done: u32, total: u32) -> u32 {
     done.clamp(1, 32).min(total - done)
 }
@@ -105,8 +105,8 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Takes samples until all are complete or the caller finishes the render, and writes their means to the image. Returns
-    /// the number of samples that every pixel has.
+    /// Takes samples until all are complete or the caller finishes the render, and writes their means to the image.
+    /// Returns the number of samples that every pixel has.
     fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
         let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
@@ -163,8 +163,8 @@ impl Work<'_> {
         Ok((every, totals))
     }
 
-    /// Takes some samples of every pixel. `go_on` is called with the completed fraction of all work, and decides whether to
-    /// continue.
+    /// Takes some samples of every pixel. `go_on` is called with the completed fraction of all work, and decides
+    /// whether to continue.
     fn batch<'a>(
         &'a self,
         frame: &'a LitFrame,

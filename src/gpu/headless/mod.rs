@@ -58,8 +58,8 @@ pub struct Headless {
     timeout: Duration,
     is_indirect: bool,
     faults: Arc<Faults>,
-    /// The renderers that were built so far. The mutex is locked during a whole render, because faults that wgpu reports
-    /// cannot be attributed to a render.
+    /// The renderers that were built so far. The mutex is locked during a whole render, because faults that wgpu
+    /// reports cannot be attributed to a render.
     renderers: Mutex<Renderers>,
 }
 
@@ -186,12 +186,12 @@ impl Headless {
     /// Renders a picture.
     ///
     /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
-    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data, another
-    /// structure is built. A device renders one picture at a time; other threads wait.
+    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data,
+    /// another structure is built. A device renders one picture at a time; other threads wait.
     ///
     /// # Errors
-    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the device
-    /// or of the host, or if the device fails.
+    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
+    /// device or of the host, or if the device fails.
     pub fn render(
         &self,
         scene: &Scene,
@@ -256,8 +256,8 @@ impl Headless {
         }
     }
 
-    /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and records
-    /// the elapsed time for the size of the next submission.
+    /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and
+    /// records the elapsed time for the size of the next submission.
     pub(in crate::gpu) fn submit_slice(
         &self,
         encoder: CommandEncoder,

@@ -24,8 +24,8 @@ use crate::verify::{
     PathRecording, PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
 };
 
-/// Maximum side in pixels of the rectangle whose paths are recorded. A sample of eight surfaces then takes 130 MB of host
-/// memory.
+/// Maximum side in pixels of the rectangle whose paths are recorded. A sample of eight surfaces then takes 130 MB of
+/// host memory.
 const LONGEST_SIDE: u32 = 256;
 
 /// Collects the recorded states of the samples of a tile.
@@ -114,8 +114,8 @@ fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
 
 impl Headless {
     /// Traces the paths of some samples and records their state after every pass, from which
-    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. If a side of the film has more
-    /// than 256 pixels, only a rectangle in the middle of the film is recorded.
+    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. If a side of the film has
+    /// more than 256 pixels, only a rectangle in the middle of the film is recorded.
     ///
     /// # Errors
     /// [`GpuError::NotPaths`] if the integrator is not `path`; the same errors as for [`Headless::render_uploaded`];

@@ -15,8 +15,8 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::{Checker, TracedPixel, Verdict};
 
-/// The resources that a render by [`Headless`](super::Headless) needs. Sizes are upper bounds for buffers and textures; a
-/// few hundred bytes of records for each brick are not included.
+/// The resources that a render by [`Headless`](super::Headless) needs. Sizes are upper bounds for buffers and textures;
+/// a few hundred bytes of records for each brick are not included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
     /// The structure of all spheres, and the reason for its choice.
@@ -66,7 +66,8 @@ pub struct PictureRequest<'a> {
     pub settings: &'a RenderSettings,
     /// The layers of the picture.
     pub layers: LayerSet,
-    /// Host memory in bytes that the caller needs for each pixel in addition to the image itself, for example to encode it.
+    /// Host memory in bytes that the caller needs for each pixel in addition to the image itself, for example to encode
+    /// it.
     pub host_bytes_per_pixel: u64,
 }
 
@@ -168,8 +169,8 @@ impl RenderPlan {
         }
     }
 
-    /// Returns the minimum number of submissions: one for every brick of every tile. There are usually more, because they
-    /// are divided so that each takes about 60 milliseconds.
+    /// Returns the minimum number of submissions: one for every brick of every tile. There are usually more, because
+    /// they are divided so that each takes about 60 milliseconds.
     #[must_use]
     pub fn least_submissions(&self) -> u64 {
         self.tile_count * self.accel.brick_count as u64
@@ -182,8 +183,8 @@ impl RenderPlan {
         (count > 0).then(|| self.device_bytes as f64 / count as f64)
     }
 
-    /// Checks that the plan fits into the limits of a device and into the free host memory in bytes. If `memory` is `None`,
-    /// because the free memory is not known, only the limits are checked.
+    /// Checks that the plan fits into the limits of a device and into the free host memory in bytes. If `memory` is
+    /// `None`, because the free memory is not known, only the limits are checked.
     ///
     /// # Errors
     /// [`GpuError::Limit`] with the first limit that is too low; [`GpuError::HostMemory`] if the memory is too small.

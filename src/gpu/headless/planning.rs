@@ -27,9 +27,9 @@ impl RenderPlan {
 }
 
 impl Headless {
-    /// Plans the structures, buffers, tiles and host memory of a picture on this device. `choice` determines all structures,
-    /// including the separate one for shadows that a studio needs if some spheres are not opaque. `host_bytes_per_pixel` is
-    /// explained in [`PictureRequest`].
+    /// Plans the structures, buffers, tiles and host memory of a picture on this device. `choice` determines all
+    /// structures, including the separate one for shadows that a studio needs if some spheres are not opaque.
+    /// `host_bytes_per_pixel` is explained in [`PictureRequest`].
     #[must_use]
     pub fn plan(
         &self,

@@ -14,8 +14,8 @@ pub struct Progress {
     pub total: u32,
     /// Completed fraction of the work, from 0 to 1.
     pub part: f64,
-    /// Remaining noise of a lit picture: the square root of the mean variance of pixels, divided by the mean luminance. It
-    /// is known after two samples, if [`Decision::MeasureNoise`] requested it.
+    /// Remaining noise of a lit picture: the square root of the mean variance of pixels, divided by the mean luminance.
+    /// It is known after two samples, if [`Decision::MeasureNoise`] requested it.
     pub noise: Option<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! Recording primary rays for the checker: the rays and hits that the device computed, and the numbers that it was given.
+//! Recording primary rays for the checker: the rays and hits that the device computed, and the numbers that it was
+//! given.
 
 use crate::accel::AccelChoice;
 use crate::camera::{Camera, View};
@@ -63,8 +64,8 @@ impl Headless {
     /// [`Checker::certify`] judges the device.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit picture.
-    /// [`Headless::record_paths`] records the paths of such pictures.
+    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
+    /// picture. [`Headless::record_paths`] records the paths of such pictures.
     pub fn record(
         &self,
         scene: &SceneBuffers,
@@ -87,8 +88,8 @@ impl Headless {
         })
     }
 
-    /// Records a picture like [`Headless::record`], and renders the view a second time with [`Headless::render_uploaded`],
-    /// whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
+    /// Records a picture like [`Headless::record`], and renders the view a second time with
+    /// [`Headless::render_uploaded`], whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
     ///
     /// # Errors
     /// The same as for [`Headless::record`].
@@ -105,8 +106,8 @@ impl Headless {
         Ok(recording)
     }
 
-    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels of
-    /// [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
+    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels
+    /// of [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
     ///
     /// # Errors
     /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A

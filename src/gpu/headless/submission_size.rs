@@ -2,15 +2,15 @@
 
 use std::time::Duration;
 
-/// The time that a submission should take: so long that the wait between two submissions is negligible, and short enough
-/// for a watchdog, a progress bar and Ctrl-C.
+/// The time that a submission should take: so long that the wait between two submissions is negligible, and short
+/// enough for a watchdog, a progress bar and Ctrl-C.
 const TARGET: Duration = Duration::from_millis(60);
 
 /// Number of workgroups of the first submission, which take a software device a few milliseconds.
 const FIRST: u64 = 2048;
 
-/// Maximum number of intersection tests in a submission, for structures in which every ray tests all spheres. They take a
-/// software device less than half a second.
+/// Maximum number of intersection tests in a submission, for structures in which every ray tests all spheres. They take
+/// a software device less than half a second.
 const MAX_TESTS: u64 = 1 << 27;
 
 /// Number of workgroups of a submission, which adapts from one submission to the next.
@@ -24,8 +24,8 @@ impl SubmissionSize {
     /// The initial size for rays that each test about `tests_per_ray` spheres.
     pub(in crate::gpu) fn new(tests_per_ray: usize) -> Self {
         let tests_per_group = 64 * tests_per_ray.max(1) as u64;
-        // A list of spheres costs a thousand times as much as a structure. Moreover, its rays cost either nothing or the
-        // full amount, so times that were measured in the background do not predict those of other regions.
+        // A list of spheres costs a thousand times as much as a structure. Moreover, its rays cost either nothing or
+        // the full amount, so times that were measured in the background do not predict those of other regions.
         let max = (MAX_TESTS / tests_per_group).max(1);
         Self { next: FIRST.min(max / 16).max(1), max }
     }
@@ -35,8 +35,8 @@ impl SubmissionSize {
         self.next
     }
 
-    /// Adapts the size to the time that a submission took. A quick submission may have contained background only, so the
-    /// size grows by a factor of 8 at most.
+    /// Adapts the size to the time that a submission took. A quick submission may have contained background only, so
+    /// the size grows by a factor of 8 at most.
     pub(in crate::gpu) fn adapt(&mut self, groups: u64, elapsed: Duration) {
         if groups == 0 {
             return;
@@ -79,7 +79,8 @@ mod tests {
         assert_eq!(submission_size.groups(), FIRST / 2);
     }
 
-    /// A workgroup of 64 rays that each test 49,152 spheres makes three million tests, which take a hundredth of a second.
+    /// A workgroup of 64 rays that each test 49,152 spheres makes three million tests, which take a hundredth of a
+    /// second.
     #[test]
     fn without_a_structure_submissions_are_short() {
         let mut submission_size = SubmissionSize::new(3 << 14);

@@ -18,8 +18,8 @@ pub struct TraceTime {
     pub longest: Duration,
     /// Number of submissions.
     pub submissions: u32,
-    /// Number of traced pixels, in whole workgroups, counted once for every brick. Only pixels in which the scene's box may
-    /// be visible are traced.
+    /// Number of traced pixels, in whole workgroups, counted once for every brick. Only pixels in which the scene's box
+    /// may be visible are traced.
     pub pixels: u64,
 }
 

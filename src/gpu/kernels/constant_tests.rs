@@ -111,11 +111,11 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "NO_EMITTER",
     "ALBEDO",
     "PATH_BACK",
-    // Whose turn it is to go on with a path.
-    "NOBODY",
-    "NOTHING_MET",
-    "GROUND_MET",
-    "SPHERE_MET",
+    // Kinds of hits, which decide the dispatch that shades a path.
+    "OTHER_BRICK",
+    "HIT_NOTHING",
+    "HIT_GROUND",
+    "HIT_SPHERE",
 ];
 
 fn bits(module: &Module, expression: Handle<Expression>) -> Bits {

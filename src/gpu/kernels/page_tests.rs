@@ -1,7 +1,7 @@
 //! What every part says of itself, and the tables of `shaders/README.md` that are made of it.
 //!
-//! A part starts with a comment: what it is for, then `provides:` and `needs:`, and of an entry point `dispatched:`. After
-//! a change of parts, `PINHOLE_UPDATE_SHADERS=1 cargo test -p pinhole --lib kernels::page` writes both anew.
+//! A part starts with a comment: what it is for, then `provides:` and `needs:`, and of an entry point `dispatched:`.
+//! After a change of parts, `PINHOLE_UPDATE_SHADERS=1 cargo test -p pinhole --lib kernels::page` writes both anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

@@ -1,5 +1,5 @@
-//! Dividing pictures of primary rays into bands, and the sizes of the buffers that a band needs. Both plans and frames use
-//! these sizes.
+//! Dividing pictures of primary rays into bands, and the sizes of the buffers that a band needs. Both plans and frames
+//! use these sizes.
 
 use wgpu::Limits;
 
@@ -44,8 +44,8 @@ impl BandBuffers {
     }
 }
 
-/// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into one
-/// binding.
+/// Number of rows that are traced before they are shaded. Their hits, and their rays if they are kept, each fit into
+/// one binding.
 pub(in crate::gpu) fn rows_per_band(
     limits: &Limits,
     [width, height]: [u32; 2],
@@ -57,8 +57,8 @@ pub(in crate::gpu) fn rows_per_band(
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 
-/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps the
-/// rays of its last band only.
+/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
+/// the rays of its last band only.
 pub(in crate::gpu) fn tile_size(limits: &Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
     let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
     let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };

@@ -15,8 +15,8 @@ use crate::gpu::shader::records;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
 
-/// Textures of the caller that a picture is written to. All must be two-dimensional, of the same size, and have the usage
-/// `STORAGE_BINDING`.
+/// Textures of the caller that a picture is written to. All must be two-dimensional, of the same size, and have the
+/// usage `STORAGE_BINDING`.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
     /// Texture for the colour, in the format of the renderer's [`ColorTarget`](super::ColorTarget).
@@ -89,7 +89,8 @@ impl Frame {
     /// A picture whose hits (16 bytes for each pixel) do not fit into one binding is rendered in bands.
     ///
     /// # Errors
-    /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory left.
+    /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory
+    /// left.
     pub fn new(
         renderer: &Renderer,
         device: &Device,
@@ -188,8 +189,8 @@ impl Frame {
     /// The new values are queued on `queue` and take effect with its next submission.
     ///
     /// # Errors
-    /// If the sizes of film and targets differ; [`GpuError::NotPrimary`] if the integrator is not `primary`, because frames
-    /// support no other yet; the errors of [`RenderSettings::check`].
+    /// If the sizes of film and targets differ; [`GpuError::NotPrimary`] if the integrator is not `primary`, because
+    /// frames support no other yet; the errors of [`RenderSettings::check`].
     pub fn set_view(
         &mut self,
         queue: &Queue,
@@ -297,11 +298,11 @@ impl Frame {
     }
 
     /// Returns a buffer of one `u32`, which kernels set if the search of a ray was abandoned because it reached the
-    /// iteration limit; some pixels are then wrong. It is 0 after creation and is never reset: read it after a submission
-    /// has finished, and clear it.
+    /// iteration limit; some pixels are then wrong. It is 0 after creation and is never reset: read it after a
+    /// submission has finished, and clear it.
     ///
-    /// Its usages are `COPY_SRC` and `COPY_DST`. On software devices the limit is 8,000 spheres and cells, because old ones
-    /// leave long loops silently.
+    /// Its usages are `COPY_SRC` and `COPY_DST`. On software devices the limit is 8,000 spheres and cells, because old
+    /// ones leave long loops silently.
     #[must_use]
     pub fn status(&self) -> &Buffer {
         &self.status
@@ -343,9 +344,9 @@ impl Frame {
 
 /// Maximum number of loop iterations of an invocation.
 ///
-/// The lavapipe of Mesa 22.3 leaves all loops silently after 65,535 iterations of the invocations that it runs together.
-/// These are eight by default, so an eighth of that number is safe; the nested loops of the self-test check this. On other
-/// devices the limit only bounds the run time of a kernel with a defect.
+/// The lavapipe of Mesa 22.3 leaves all loops silently after 65,535 iterations of the invocations that it runs
+/// together. These are eight by default, so an eighth of that number is safe; the nested loops of the self-test check
+/// this. On other devices the limit only bounds the run time of a kernel with a defect.
 pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
     let info = device.adapter_info();
     match info.device_type {

@@ -33,8 +33,8 @@ pub struct HostedSums<'a> {
     pub origin: [u32; 2],
     /// Width and height of the part, in pixels.
     pub size: [u32; 2],
-    /// Buffer with three `vec4f` for each pixel, row by row: the sums of colour and opacity, the rounding errors of the sums
-    /// of colour, and the sums of the first surfaces' albedos. Its usages are `STORAGE` and `COPY_SRC`.
+    /// Buffer with three `vec4f` for each pixel, row by row: the sums of colour and opacity, the rounding errors of the
+    /// sums of colour, and the sums of the first surfaces' albedos. Its usages are `STORAGE` and `COPY_SRC`.
     pub buffer: &'a Buffer,
 }
 

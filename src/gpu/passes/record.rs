@@ -11,12 +11,12 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 impl Renderer {
     /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
     ///
-    /// Nothing is submitted. The frame's targets contain the picture after the device has executed the encoder. They are
-    /// overwritten completely.
+    /// Nothing is submitted. The frame's targets contain the picture after the device has executed the encoder. They
+    /// are overwritten completely.
     ///
     /// # Errors
-    /// If the frame has no view of this scene, was made for other targets, or has a camera that this renderer was not built
-    /// for.
+    /// If the frame has no view of this scene, was made for other targets, or has a camera that this renderer was not
+    /// built for.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -5,7 +5,8 @@ use crate::camera::CameraKind;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::shader::formats::ColorTarget;
 
-/// The cameras, structures and targets that a renderer is built for. A renderer with fewer cameras is built more quickly.
+/// The cameras, structures and targets that a renderer is built for. A renderer with fewer cameras is built more
+/// quickly.
 #[derive(Clone, Debug)]
 pub struct RendererOptions {
     /// Format of the colour texture.

@@ -2,8 +2,8 @@
 
 use crate::camera::film::Film;
 
-/// Maximum number of pixels of a tile of a headless render. The buffers and textures of such a tile take 48 MiB, which is
-/// little compared with a large scene. A picture of 1024² pixels is a single tile.
+/// Maximum number of pixels of a tile of a headless render. The buffers and textures of such a tile take 48 MiB, which
+/// is little compared with a large scene. A picture of 1024² pixels is a single tile.
 pub(in crate::gpu) const MAX_TILE_PIXELS: u64 = 1 << 20;
 
 /// Maximum number of pixels of a band, whose hits share one buffer.

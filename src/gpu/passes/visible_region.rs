@@ -18,8 +18,8 @@ pub(in crate::gpu) struct VisibleRegion {
 const PIXELS_AROUND: f64 = 2.0;
 
 impl VisibleRegion {
-    /// The rectangle around the projections of the box's eight corners, or the whole film if a corner is not in front of the
-    /// camera.
+    /// The rectangle around the projections of the box's eight corners, or the whole film if a corner is not in front
+    /// of the camera.
     ///
     /// If the camera projects straight lines to straight lines and has no lens, the picture of the box lies within the
     /// rectangle of its corners. For other cameras the region is the whole film.

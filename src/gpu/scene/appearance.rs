@@ -177,8 +177,8 @@ mod tests {
         }
     }
 
-    /// Spheres need no material word if all have the same material, and a material that does not depend on the colour needs
-    /// a single row.
+    /// Spheres need no material word if all have the same material, and a material that does not depend on the colour
+    /// needs a single row.
     #[test]
     fn materials_are_told_apart_only_where_they_differ() {
         let colors = vec![[1, 2, 3, 255], [4, 5, 6, 255], [7, 8, 9, 255], [1, 2, 3, 0]];

@@ -52,15 +52,15 @@ impl Recolor {
         Ok(Self { layout, pipeline })
     }
 
-    /// Records the new colours of an update into the caller's encoder. The update must already have been applied to `scene`
-    /// with [`Scene::apply`]. No buffer is replaced, so bind groups and the views of frames stay valid.
+    /// Records the new colours of an update into the caller's encoder. The update must already have been applied to
+    /// `scene` with [`Scene::apply`]. No buffer is replaced, so bind groups and the views of frames stay valid.
     ///
     /// The new colours are queued on `queue`. They take effect for commands that follow in the encoder or are submitted
     /// later.
     ///
     /// # Errors
-    /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no memory
-    /// left.
+    /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no
+    /// memory left.
     pub fn record(
         &self,
         device: &Device,
@@ -133,9 +133,10 @@ impl Recolor {
 }
 
 impl SceneBuffers {
-    /// Returns whether [`Recolor`] can apply an update to these buffers. It can if no sphere moves or changes its radius,
-    /// unless a colour affects more than the look of its sphere. This is the case if glass absorbs light according to its
-    /// colour, or if spheres become opaque or cease to be opaque in a scene that was planned for a studio.
+    /// Returns whether [`Recolor`] can apply an update to these buffers. It can if no sphere moves or changes its
+    /// radius, unless a colour affects more than the look of its sphere. This is the case if glass absorbs light
+    /// according to its colour, or if spheres become opaque or cease to be opaque in a scene that was planned for a
+    /// studio.
     #[must_use]
     pub fn takes_in_place(&self, scene: &Scene, update: &SceneUpdate<'_>) -> bool {
         let absorbs = |surface: &SurfaceProperties| {

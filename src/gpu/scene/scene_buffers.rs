@@ -78,8 +78,8 @@ impl SceneBuffers {
     /// The copy is queued and precedes everything that is submitted later.
     ///
     /// # Errors
-    /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if the
-    /// scene does not fit into its memory.
+    /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
+    /// the scene does not fit into its memory.
     pub fn with_accel(
         renderer: &Renderer,
         device: &Device,
@@ -91,8 +91,8 @@ impl SceneBuffers {
         Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, &ids, || Ok(()))
     }
 
-    /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can submit
-    /// the queued copy and free its memory.
+    /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can
+    /// submit the queued copy and free its memory.
     pub(in crate::gpu) fn upload(
         renderer: &Renderer,
         device: &Device,
@@ -198,8 +198,8 @@ impl SceneBuffers {
         self.id
     }
 
-    /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres, the
-    /// iteration limit bounds their number.
+    /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres,
+    /// the iteration limit bounds their number.
     pub(in crate::gpu) fn rays_at_once(&self, max: u32) -> u32 {
         let fits = LIST_LEN / self.tests_per_ray.max(1);
         u32::try_from(fits).unwrap_or(u32::MAX).clamp(1, max)
@@ -210,8 +210,8 @@ impl SceneBuffers {
         *self.submission_size.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of this
-    /// one, because most pictures of a scene cost about the same.
+    /// Adapts the submission size to the time that a submission took. The next picture starts with the last size of
+    /// this one, because most pictures of a scene cost about the same.
     pub(in crate::gpu) fn adapt_submission_size(&self, groups: Groups, elapsed: Duration) {
         self.submission_size
             .lock()

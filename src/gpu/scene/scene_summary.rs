@@ -1,4 +1,5 @@
-//! The data of a scene, besides its buffers, that pictures need. With them the host's scene can be dropped after the upload.
+//! The data of a scene, besides its buffers, that pictures need. With them the host's scene can be dropped after the
+//! upload.
 
 use std::sync::Arc;
 

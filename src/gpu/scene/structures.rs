@@ -16,7 +16,8 @@ pub struct Structures {
 }
 
 impl From<Accel> for Structures {
-    /// Returns the structures for pictures of primary rays and of paths, and for studios in which every sphere is opaque.
+    /// Returns the structures for pictures of primary rays and of paths, and for studios in which every sphere is
+    /// opaque.
     fn from(accel: Accel) -> Self {
         Self { accel, occluders: None }
     }
@@ -32,8 +33,8 @@ impl RenderPlan {
         Structures { accel, occluders }
     }
 
-    /// Returns the choice to try next if rays need too many steps in the planned structures: a tree instead of a grid, or a
-    /// list instead of a tree. It is `None` for lists, which always stay within the limit.
+    /// Returns the choice to try next if rays need too many steps in the planned structures: a tree instead of a grid,
+    /// or a list instead of a tree. It is `None` for lists, which always stay within the limit.
     #[must_use]
     pub fn instead(&self) -> Option<AccelChoice> {
         let planned = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
@@ -52,11 +53,12 @@ pub struct Retry {
     pub next: AccelChoice,
 }
 
-/// Plans structures for a choice and calls `work` with the plan. If the choice is [`AccelChoice::Auto`] and rays need too
-/// many steps in the planned structures ([`GpuError::Steps`]), this is repeated with another choice, after a call of
-/// `retrying`.
+/// Plans structures for a choice and calls `work` with the plan. If the choice is [`AccelChoice::Auto`] and rays need
+/// too many steps in the planned structures ([`GpuError::Steps`]), this is repeated with another choice, after a call
+/// of `retrying`.
 ///
-/// `plan` makes a plan for a choice, as [`Headless::plan`](super::Headless::plan) does; `work` builds, uploads and renders.
+/// `plan` makes a plan for a choice, as [`Headless::plan`](super::Headless::plan) does; `work` builds, uploads and
+/// renders.
 ///
 /// # Errors
 /// The outer error is the caller's own and ends the function at once; the inner error is that of the device.

@@ -1,7 +1,7 @@
 //! Shaders: kernels are lists of parts, put one behind the other.
 //!
-//! WGSL has no modules and does not care about the order of declarations, so a list of parts is a module system. Each part
-//! starts with what it provides and what it needs; a test compares both with its text and writes the tables of
+//! WGSL has no modules and does not care about the order of declarations, so a list of parts is a module system. Each
+//! part starts with what it provides and what it needs; a test compares both with its text and writes the tables of
 //! `shaders/README.md`.
 
 pub(super) mod formats;

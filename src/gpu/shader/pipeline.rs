@@ -58,6 +58,7 @@ fn shader_module(
     // levels and cells ask `spend` in every iteration and leave when it says so. The others end by data: a
     // loop over all spheres at a number from a uniform, a loop over a list or a leaf at a mark in buffers that
     // only `SceneBuffers` writes, from structures whose builders end every list, and the loops of the self-test,
-    // of samples in flight and of directions of light at numbers from a uniform; and reads beyond a buffer are bounded all the same.
+    // of samples in flight and of directions of light at numbers from a uniform; and reads beyond a buffer are bounded
+    // all the same.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }

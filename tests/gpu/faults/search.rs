@@ -176,8 +176,8 @@ pub(super) const TREES: &[Row] = &[
         views::balls,
         BINARY,
         "accel/binary_tree.wgsl",
-        "            stack[top] = far_way;\n            top++;",
-        "            stack[top] = far_way;",
+        "            stack[top] = far_entry;\n            top++;",
+        "            stack[top] = far_entry;",
     ),
     (
         "leaves_pruned_too_soon",

@@ -202,8 +202,8 @@ const SURFACES: &[Row] = &[
         Vertex,
         scenes::matt,
         "path/scatter.wgsl",
-        "Departure(vertex.id, vertex.shape_index, exit_distance, sought_by(next.light))",
-        "Departure(vertex.id ^ 1u, vertex.shape_index, exit_distance, sought_by(next.light))",
+        "Departure(vertex.id, vertex.shape_index, exit_distance, emitter_of(next.light))",
+        "Departure(vertex.id ^ 1u, vertex.shape_index, exit_distance, emitter_of(next.light))",
     ),
     (
         "frame_with_a_sign_wrong",
@@ -654,8 +654,8 @@ const ENDS: &[Row] = &[
         Occlude,
         scenes::matt,
         "path/scatter.wgsl",
-        "if (is_looking(next.light)) {",
-        "if (is_looking(next.light) && (index & 15u) != 3u) {",
+        "if (needs_shadow_ray(next.light)) {",
+        "if (needs_shadow_ray(next.light) && (index & 15u) != 3u) {",
     ),
     (
         "list_of_another_surface",
@@ -670,7 +670,7 @@ const ENDS: &[Row] = &[
         Start,
         scenes::matt,
         "path/address.wgsl",
-        "index - row * size.x, row - turn * size.y)",
-        "index - row * size.x, row - turn * size.y + 1u)",
+        "index - row * size.x, row - in_flight * size.y)",
+        "index - row * size.x, row - in_flight * size.y + 1u)",
     ),
 ];
