@@ -124,8 +124,9 @@ pub enum GpuError {
     /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded
     /// without.
     #[error(
-        "some spheres of this scene are not opaque, and the scene was uploaded without the structure of the spheres that \
-         cast shadows in a studio; upload the structures that `RenderPlan::build` returns for a plan with these settings"
+        "some spheres of this scene are not opaque, and the scene was uploaded without the structure of the spheres \
+         that cast shadows in a studio; upload the structures that `RenderPlan::build` returns for a plan with these \
+         settings"
     )]
     NoOccluders,
     /// `Renderer::record` was called before `Frame::set_view`.

@@ -1,4 +1,4 @@
-//! Constants that kernels and the host must agree on, as naga evaluates them in the composed kernels.
+//! Tests that kernels and the host use the same constants. naga evaluates the constants of the composed kernels.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,10 +16,10 @@ use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
 use crate::light::codes;
 
-/// Of every component, the bits.
+/// The bits of each component of a constant.
 type Bits = Vec<u32>;
 
-/// The constants that the host has as well, by their names in WGSL.
+/// The constants that kernels and host share, with their names in WGSL.
 fn of_the_host() -> Vec<(&'static str, Bits)> {
     let vectors = |bytes: usize| (bytes / size_of::<[u32; 4]>()) as u32;
     let words = [
@@ -65,7 +65,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("PATH_ON_GROUND", codes::path::ON_GROUND),
         ("PATH_FULL", codes::path::FULL),
         ("PATH_SCATTERED", codes::path::SCATTERED),
-        // The last slot of each kind of path: the host says how many there are.
+        // The last slot of each kind of path. The host defines the numbers of slots.
         ("HIT", lit::records::COMMON_SLOTS as u32 - 1),
         ("PENDING", lit::records::LIGHT_SLOTS as u32 - 1),
         ("MEDIUM", lit::records::MEDIUM_SLOTS as u32 - 1),
@@ -74,7 +74,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("ENERGIES", crate::light::energy::ENTRIES as u32),
     ];
     let floats = [
-        // Each has a name of its own for it.
+        // Two modules of the host define this constant.
         ("NO_HIT", records::NO_HIT),
         ("NO_HIT", accel::query::NO_HIT),
         ("NO_ENTRY", NO_ENTRY),
@@ -92,7 +92,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         .collect()
 }
 
-/// Constants that kernels alone know, and the shadings, which a test of `records.rs` compares.
+/// Constants that only kernels use, and the shadings, which a test of `records.rs` compares.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_SHAPE",
     "NO_PATH",
@@ -131,19 +131,19 @@ fn bits(module: &Module, expression: Handle<Expression>) -> Bits {
 
 #[test]
 fn constants_are_the_same_in_rust_and_wgsl() {
-    let mut met: BTreeMap<String, BTreeSet<Bits>> = BTreeMap::new();
+    let mut found: BTreeMap<String, BTreeSet<Bits>> = BTreeMap::new();
     for kernel in all_kernels() {
         let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
         for (_, constant) in module.constants.iter() {
             let name = constant.name.clone().unwrap();
-            met.entry(name).or_default().insert(bits(&module, constant.init));
+            found.entry(name).or_default().insert(bits(&module, constant.init));
         }
     }
     let of_the_host = of_the_host();
     for (name, expected) in &of_the_host {
-        assert_eq!(met.get(*name), Some(&BTreeSet::from([expected.clone()])), "{name}");
+        assert_eq!(found.get(*name), Some(&BTreeSet::from([expected.clone()])), "{name}");
     }
     let known: BTreeSet<&str> =
         of_the_host.iter().map(|(name, _)| *name).chain(OF_KERNELS_ALONE.iter().copied()).collect();
-    assert_eq!(met.keys().map(String::as_str).collect::<BTreeSet<_>>(), known);
+    assert_eq!(found.keys().map(String::as_str).collect::<BTreeSet<_>>(), known);
 }

@@ -1,15 +1,15 @@
-//! What a part declares, and which names it uses: read from its text, as WGSL is simple enough for that.
+//! The names that a part declares and uses. They are read from its text, because WGSL is simple enough for that.
 
 use std::collections::BTreeSet;
 
-/// Names in one part.
+/// The names in a part.
 #[derive(Debug, Default)]
 pub(super) struct Declarations {
-    /// What it declares for the whole kernel: functions, structs, constants, bindings, variables.
+    /// Names that the part declares for the whole kernel: functions, structs, constants, bindings and variables.
     pub(super) global: BTreeSet<String>,
-    /// Of these, the variables that each invocation has.
+    /// Names of the private variables among them.
     pub(super) private_variables: BTreeSet<String>,
-    /// Names that it uses, without its own parameters, fields and local variables.
+    /// Names that the part uses, without its own parameters, fields and local variables.
     pub(super) used: BTreeSet<String>,
 }
 
@@ -33,7 +33,7 @@ impl Declarations {
                     found.global.insert(next.to_owned());
                 }
                 "var" if depth == 0 => {
-                    // `var<private> name: T` and its kin.
+                    // Declarations such as `var<private> name: T`.
                     let end = tokens[at..].iter().position(|token| *token == ">").unwrap_or(0);
                     let end = if next == "<" { at + end + 1 } else { at + 1 };
                     let name = tokens[end].to_owned();
@@ -54,7 +54,7 @@ impl Declarations {
                 _ => {}
             }
         }
-        // A name that is declared for all is no local one, even if `:` follows it.
+        // A name that is declared for the whole kernel is not a local name, even if `:` follows it.
         let own: BTreeSet<String> = local.difference(&found.global).cloned().collect();
         found.used = &(&found.used - &own) - &found.global;
         found
@@ -65,7 +65,7 @@ fn is_name(token: &str) -> bool {
     token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
 }
 
-/// Names and numbers as a whole, everything else character by character.
+/// Splits text into tokens: names and numbers are single tokens, and all other characters are tokens of their own.
 fn tokens(code: &str) -> Vec<&str> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut tokens = Vec::new();

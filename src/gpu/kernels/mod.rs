@@ -1,4 +1,4 @@
-//! Every kernel that there is, and what tests say of all of them.
+//! The list of all kernels, and tests of all of them.
 
 use std::collections::BTreeMap;
 
@@ -18,26 +18,26 @@ mod page_tests;
 #[cfg(test)]
 mod tests;
 
-/// A kernel as a device is given it.
+/// A composed kernel, as it is passed to a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ComposedKernel {
-    /// The entry point and the parts that distinguish it from the other kernels with this entry point, with blanks in
-    /// between; unique among all kernels.
+    /// Name of the kernel, which is unique: its entry point and the parts that distinguish it from other kernels with
+    /// the same entry point, separated by spaces.
     pub name: String,
-    /// The WGSL of all its parts; before each, a comment names its file in the folder `shaders`.
+    /// WGSL of all parts. A comment before each part names its file in the folder `shaders`.
     pub source: String,
 }
 
-/// Every kernel of this crate, ordered by name: for readers, and for other compilers of WGSL.
+/// Returns all kernels of this crate, ordered by name, for readers and for other compilers of WGSL.
 pub fn composed_kernels() -> impl Iterator<Item = ComposedKernel> {
-    // Some settings of lit pictures need the same kernel.
+    // Some settings of lit pictures share a kernel.
     let sources: BTreeMap<String, String> =
         all_kernels().iter().map(|kernel| (kernel.name(), kernel.source())).collect();
     sources.into_iter().map(|(name, source)| ComposedKernel { name, source })
 }
 
-/// Every kernel that can be composed.
+/// All kernels that can be composed.
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     let mut kernels =
         [Probe::Arithmetic, Probe::Exact, Probe::Loops].map(self_test_kernel).to_vec();

@@ -1,7 +1,8 @@
-//! What every part says of itself, and the tables of `shaders/README.md` that are made of it.
+//! Tests of the comments at the start of parts, and of the tables in `shaders/README.md` that are generated from them.
 //!
-//! A part starts with a comment: what it is for, then `provides:` and `needs:`, and of an entry point `dispatched:`.
-//! After a change of parts, `PINHOLE_UPDATE_SHADERS=1 cargo test -p pinhole --lib kernels::page` writes both anew.
+//! The comment of a part contains its purpose, then `provides:` and `needs:`, and for an entry point `dispatched:`.
+//! After a change of parts, `PINHOLE_UPDATE_SHADERS=1 cargo test -p pinhole --lib kernels::page` generates the lists
+//! and the tables.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -14,10 +15,10 @@ use crate::gpu::shader::{VARIANT, variants};
 
 type Names = BTreeSet<String>;
 
-/// The width of a line.
+/// Maximum width of a generated line.
 const WIDTH: usize = 120;
 
-/// What is known of a part from the kernels that have it.
+/// The names and entry points of a part, found from the kernels that use it.
 #[derive(Default)]
 struct Known {
     provides: Names,
@@ -44,7 +45,7 @@ fn known_parts() -> BTreeMap<String, Known> {
     known
 }
 
-/// Names after a word, wrapped.
+/// A comment with a word and a list of names, wrapped.
 fn list(word: &str, names: &Names) -> String {
     if names.is_empty() {
         return String::new();
@@ -63,7 +64,7 @@ fn list(word: &str, names: &Names) -> String {
     text + "\n"
 }
 
-/// A source without what it provides and needs.
+/// A source without its lists of provided and needed names.
 fn without_lists(source: &str) -> String {
     let mut is_list = false;
     source
@@ -78,7 +79,7 @@ fn without_lists(source: &str) -> String {
         .collect()
 }
 
-/// A source with what it provides and needs, behind its first comment.
+/// A source with the lists of provided and needed names after its first comment.
 fn with_lists(source: &str, known: &Known) -> String {
     let source = without_lists(source);
     let comment: usize =
@@ -114,7 +115,7 @@ fn code(names: &Names) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// What the rest of a line that starts so is.
+/// The rest of the first line that starts with `start`.
 fn after<'a>(text: &'a str, start: &str) -> &'a str {
     text.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_default().trim_end_matches('.')
 }
@@ -183,7 +184,7 @@ fn binding_table() -> String {
     table
 }
 
-/// The page with its tables, each between a pair of marks.
+/// The page with its tables, each of which is between a pair of marks.
 fn expected_page(page: &str, tables: &[(&str, String)]) -> String {
     tables.iter().fold(page.to_owned(), |page, (name, table)| {
         let (start, end) = (format!("<!-- {name} -->\n"), "<!-- end -->");
@@ -214,7 +215,7 @@ fn parts_say_what_they_provide_and_need_and_the_readme_lists_them() {
         }
         assert!(
             std::env::var_os("PINHOLE_UPDATE_SHADERS").is_some(),
-            "{} does not say what is so; run this test with PINHOLE_UPDATE_SHADERS=1",
+            "{} is not up to date; run this test with PINHOLE_UPDATE_SHADERS=1",
             path.display()
         );
         std::fs::write(&path, text).unwrap();

@@ -1,4 +1,4 @@
-//! Every kernel, without a device.
+//! Tests of all kernels that need no device.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -17,7 +17,7 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
         .map_err(|error| readable(error.emit_to_string(&source)))?;
     naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
-        // Nothing beyond WebGPU's core.
+        // Kernels may use only the core features of WebGPU.
         naga::valid::Capabilities::empty(),
     )
     .validate(&module)
@@ -45,7 +45,7 @@ fn every_kernel_composes_and_validates() {
     }
 }
 
-/// Names are file names of `pinhole info --dump-shaders`, and labels in messages.
+/// Names of kernels are file names of `pinhole info --dump-shaders` and labels in messages, so they must be unique.
 #[test]
 fn no_two_kernels_have_the_same_name() {
     let mut sources = BTreeMap::new();
@@ -56,7 +56,7 @@ fn no_two_kernels_have_the_same_name() {
     }
 }
 
-/// A zero that a kernel has not set is one that the compiler knows.
+/// Every kernel must call `start_fences`, because a compiler knows the value of a zero that was never set.
 #[test]
 fn every_kernel_sets_what_fences_need() {
     let uses_frame =
@@ -69,7 +69,7 @@ fn every_kernel_sets_what_fences_need() {
     }
 }
 
-/// Parts talk by arguments: what one keeps in a variable of the module, no other part reads or writes.
+/// Parts pass data by arguments: no part reads or writes a private variable of another.
 #[test]
 fn no_part_uses_a_private_variable_of_another() {
     for kernel in all_kernels() {
@@ -98,7 +98,7 @@ fn an_error_names_the_file_and_its_line() {
     assert!(message.contains("broken.wgsl:7:"), "{message}");
 }
 
-/// Paths of all files below `shaders`.
+/// The paths of all files in the folder `shaders`.
 pub(super) fn files() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut found = BTreeMap::new();
@@ -131,7 +131,7 @@ fn every_file_and_variant_is_used_and_short() {
     assert_eq!(used, there);
 }
 
-/// A part with a twin says where it is.
+/// The twins that parts name must exist.
 #[test]
 fn twins_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

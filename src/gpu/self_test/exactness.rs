@@ -1,4 +1,4 @@
-//! Judges operations that may not round, and what becomes of subnormal numbers.
+//! Judging operations whose results must be exact, and the treatment of subnormal numbers.
 
 use super::float::is_neighbour;
 use super::records::{Exact, Values};
@@ -8,7 +8,7 @@ pub(super) fn judge(values: &[Values], answers: &[Exact]) -> Vec<TestedProperty>
     vec![subnormals(values, answers), comparison_and_conversion(values, answers)]
 }
 
-/// What three operations make of subnormal numbers, and what they would be.
+/// The results of three operations with subnormal numbers, and the exact results.
 fn of_subnormals(v: &Values, answer: &Exact) -> [(&'static str, f32, f64); 3] {
     let wide = f64::from;
     [
@@ -20,15 +20,15 @@ fn of_subnormals(v: &Values, answer: &Exact) -> [(&'static str, f32, f64); 3] {
 
 fn subnormals(values: &[Values], answers: &[Exact]) -> TestedProperty {
     let mut tally = Tally::default();
-    // Of each operation, those that were kept and those that could have been.
+    // For each operation, the number of results that were kept and the number of all results.
     let mut kept = [(0, 0); 3];
     for (v, answer) in values.iter().zip(answers) {
         for (count, (operation, got, exact)) in kept.iter_mut().zip(of_subnormals(v, answer)) {
-            // One subnormal operand of a sum may be flushed as well as both.
+            // A device may flush one subnormal operand of a sum, or both.
             let is_operand = operation == "sum" && (got == v.tiny || got == v.speck);
             tally.check(got == 0.0 || is_operand || is_neighbour(got, exact), || {
                 format!(
-                    "a {operation} of {v:?}, which gives {got:e}, neither kept nor flushed to zero"
+                    "the {operation} of {v:?} is {got:e}, which is neither kept nor flushed to zero"
                 )
             });
             if exact.abs() >= f64::from(f32::from_bits(1)) {
@@ -72,12 +72,12 @@ fn comparison_and_conversion(values: &[Values], answers: &[Exact]) -> TestedProp
     tally.property("comparison_and_conversion", words, Vec::new())
 }
 
-/// Every operation, and whether its result is the one that the CPU has.
+/// All operations, and whether their results are the same as on the CPU.
 fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
     let Values { f, g, whole, i, j, .. } = *v;
     let orders = [f < g, f <= g, f == g, f != g, f >= g, f > g];
     let comparisons = (0..).zip(orders).fold(0, |bits, (bit, is)| bits | u32::from(is) << bit);
-    // The kernel's shifts ask for these.
+    // The kernel shifts by these numbers of bits.
     let shift = j & 31;
     [
         ("f32(whole)", f64::from(got.from_whole) == f64::from(whole)),
@@ -98,7 +98,7 @@ fn operations(v: &Values, got: &Exact) -> [(&'static str, bool); 19] {
         ("i << j", got.shifted_left == i << shift),
         ("i >> j", got.shifted_right == i >> shift),
         ("countOneBits(i)", got.ones == i.count_ones()),
-        // WGSL's answer for zero is all ones.
+        // In WGSL the result for zero is all ones.
         ("firstTrailingBit(i)", got.lowest == if i == 0 { u32::MAX } else { i.trailing_zeros() }),
     ]
 }

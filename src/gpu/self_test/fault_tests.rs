@@ -1,4 +1,4 @@
-//! A device that computes as the CPU does passes; one fault in one answer fails the property that it concerns.
+//! Tests that a device that computes like the CPU passes, and that a fault in one result fails the right property.
 
 use super::records::{Arithmetic, Exact, Operands, Values};
 use super::report::{PropertyOutcome, TestedProperty};
@@ -59,7 +59,7 @@ fn honest_exact(v: &Values) -> Exact {
     }
 }
 
-/// The properties that fail, after `plant` has changed one answer.
+/// The properties that fail after `plant` has changed one result.
 fn failing_arithmetic(at: usize, plant: impl Fn(&Operands, &mut Arithmetic)) -> Vec<&'static str> {
     let operands = inputs::operands(COUNT);
     let mut answers: Vec<_> = operands.iter().map(honest_arithmetic).collect();
@@ -78,7 +78,7 @@ fn names_of_failing(properties: &[TestedProperty]) -> Vec<&'static str> {
     properties.iter().filter(|property| !property.passed()).map(|property| property.name).collect()
 }
 
-/// Moves a number by so many neighbours, away from zero.
+/// Moves a number away from zero by some neighbouring f32.
 fn off(number: &mut f32, neighbours: u32) {
     *number = f32::from_bits(number.to_bits() + neighbours);
 }
@@ -96,14 +96,14 @@ fn no_answers_fail() {
     }
 }
 
-/// What optimisers make of expressions without fences.
+/// Tests the results of optimisers that rewrite expressions without fences.
 #[test]
 fn fences_that_leak_are_found() {
     let is_fence = |names: Vec<&str>| names == ["fence"];
     let found = |plant: fn(&Operands, &mut Arithmetic)| {
         (0..COUNT).filter(|at| is_fence(failing_arithmetic(*at, plant))).count()
     };
-    // Of a few sums nothing is lost, and of a few products nothing differs.
+    // A few sums have no rounding error, and a few products do not change.
     assert!(found(|_, answer| answer.error = 0.0) > COUNT * 9 / 10);
     assert!(found(|o, answer| answer.back = o.b) > COUNT * 9 / 10);
     assert!(found(|o, answer| answer.scaled = (o.p + o.q) * o.factor) > COUNT * 9 / 10);
@@ -140,7 +140,7 @@ fn a_sum_a_difference_and_a_product_beyond_the_neighbours_are_found() {
     }
 }
 
-/// A device may round down, and then a half of its results are not the nearest.
+/// A device may round down. Half of its results are then not the nearest numbers.
 #[test]
 fn rounding_down_is_legal() {
     let operands = inputs::operands(COUNT);
@@ -173,7 +173,7 @@ fn errors_beyond_their_bounds_are_found() {
     for (name, allowed, field) in bounded {
         let failing = |neighbours| failing_arithmetic(3, |_, a| off(field(a), neighbours));
         assert!(failing(allowed).is_empty(), "{name}");
-        // An error of the honest one may point the other way.
+        // The error of the correct result may have the opposite sign.
         assert_eq!(failing(allowed + 2), [name]);
         for wrong in [f32::NAN, f32::INFINITY, 0.0] {
             assert_eq!(
@@ -183,14 +183,14 @@ fn errors_beyond_their_bounds_are_found() {
             );
         }
     }
-    // The first radicand is zero, whose root is exact, of either sign.
+    // The first radicand is zero, whose root must be zero of either sign.
     assert_eq!(failing_arithmetic(0, |_, answer| answer.root = f32::MIN_POSITIVE), ["sqrt"]);
     assert!(failing_arithmetic(0, |_, answer| answer.root = -0.0).is_empty());
 }
 
 #[test]
 fn a_dot_product_of_less_precision_is_found() {
-    // As wide as an f16's mantissa, rounded once.
+    // The mantissa is cut to the width of that of an f16.
     let narrowed = |v: f32| f32::from_bits(v.to_bits() & !0x1fff);
     let names = (0..COUNT).map(|at| failing_arithmetic(at, |_, a| a.dot = narrowed(a.dot)));
     assert!(names.filter(|names| names == &["dot"]).count() > COUNT / 2);
@@ -220,7 +220,7 @@ fn every_operation_that_is_not_exact_is_found() {
         |answer| answer.ones += 1,
         |answer| answer.lowest ^= 1,
     ];
-    // One whose f is small enough for its floor to change by one.
+    // An input whose f is so small that its floor can change by one.
     let values = inputs::values(COUNT);
     let at = values.iter().position(|v| v.f.abs() < 1000.0).unwrap();
     for (index, fault) in faults.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! How far an f32 is from what f64 says that it should be.
+//! Comparing an f32 with a more exact f64.
 
-/// Errors of f64 itself, of a quotient or a root, in ULP of f32: less than 2⁻⁵⁰ of the value.
+/// Bound of the errors of f64 quotients and roots, which are less than 2⁻⁵⁰ of the value, in ULP of f32.
 pub(super) const PAD: f64 = 1.0 / (1_u64 << 26) as f64;
 
-/// Whether `got` is a neighbour of the exact value, above or below, or the value itself.
+/// Whether `got` is one of the two f32 that enclose the exact value, or the value itself.
 pub(super) fn is_neighbour(got: f32, exact: f64) -> bool {
     let value = f64::from(got);
     if value < exact {
@@ -11,12 +11,12 @@ pub(super) fn is_neighbour(got: f32, exact: f64) -> bool {
     } else if value > exact {
         f64::from(got.next_down()) < exact
     } else {
-        // Not so of NaN.
+        // This is false for NaN.
         value <= exact
     }
 }
 
-/// The largest f32 that is not above the exact value, and the smallest that is not below.
+/// The largest f32 that is not greater than the exact value, and the smallest that is not less.
 pub(super) fn neighbours(exact: f64) -> [f32; 2] {
     let nearest = exact as f32;
     let value = f64::from(nearest);
@@ -29,13 +29,13 @@ pub(super) fn neighbours(exact: f64) -> [f32; 2] {
     }
 }
 
-/// The distance of two f32 in the binade of a value.
+/// The distance between neighbouring f32 in the binade of a value.
 fn ulp(value: f64) -> f64 {
     let exponent = ((value.to_bits() >> 52) & 0x7ff).max(1023 - 126);
     f64::from_bits((exponent - 23) << 52)
 }
 
-/// The error in ULP.
+/// The error of `got` in ULP.
 pub(super) fn error_in_ulp(got: f32, exact: f64) -> f64 {
     (f64::from(got) - exact).abs() / ulp(exact)
 }
@@ -58,7 +58,7 @@ mod tests {
             }
             assert!(!is_neighbour(below.next_down(), between), "{one}");
             assert!(!is_neighbour(above.next_up(), between), "{one}");
-            // What f32 holds may not be rounded.
+            // A value that f32 represents exactly must not be rounded.
             assert!(!is_neighbour(above, f64::from(below)), "{one}");
         }
         assert!(!is_neighbour(f32::NAN, 1.0));

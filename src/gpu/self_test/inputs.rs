@@ -1,11 +1,11 @@
-//! What the self-test has a device compute with: random numbers, the same in every run.
+//! The inputs of the self-test: random numbers that are the same in every run.
 
 use bytemuck::Zeroable;
 
 use super::records::{Operands, Values};
 use crate::generate::Uniform;
 
-/// The numbers of one invocation, by slot.
+/// The random numbers of an invocation, indexed by slot.
 struct Numbers<'a> {
     uniform: &'a Uniform,
     index: u64,
@@ -13,23 +13,23 @@ struct Numbers<'a> {
 
 impl Numbers<'_> {
     fn bits(&self, slot: u64) -> u32 {
-        // Truncation is what is wanted.
+        // Only the low bits are used.
         self.uniform.bits(self.index, slot) as u32
     }
 
-    /// From `first` to `last`, both included.
+    /// An integer from `first` to `last`, inclusive.
     fn integer(&self, slot: u64, first: i32, last: i32) -> i32 {
         let count = f64::from(last - first + 1);
         first + (self.uniform.number(self.index, slot) * count) as i32
     }
 
-    /// Any sign and mantissa. Takes one slot.
+    /// A number with the given exponent and random sign and mantissa. It uses one slot.
     fn float(&self, slot: u64, exponent: i32) -> f32 {
         let bits = self.bits(slot);
         f32::from_bits(((exponent + 127) as u32) << 23 | bits & 0x807f_ffff)
     }
 
-    /// Any sign and mantissa, and an exponent between both. Takes two slots.
+    /// A number with random sign and mantissa, and an exponent from `first` to `last`. It uses two slots.
     fn float_between(&self, slot: u64, first: i32, last: i32) -> f32 {
         self.float(slot, self.integer(slot + 1, first, last))
     }
@@ -40,8 +40,9 @@ fn all<T>(seed: u64, count: usize, make: impl Fn(&Numbers<'_>) -> T) -> Vec<T> {
     (0..count as u64).map(|index| make(&Numbers { uniform: &uniform, index })).collect()
 }
 
-/// Exponents are such that nothing overflows, that nothing is subnormal, that f64 holds sums and products
-/// exactly, and that f32 holds what a sum loses, whichever way it is rounded.
+/// Inputs of operations whose results may be rounded. Exponents are chosen so that nothing overflows or is subnormal,
+/// that f64 represents sums and products exactly, and that f32 represents the rounding error of a sum, in whichever
+/// direction it is rounded.
 pub(super) fn operands(count: usize) -> Vec<Operands> {
     let mut operands = all(1, count, |numbers| {
         let exponent = numbers.integer(0, -50, 59);
@@ -49,14 +50,14 @@ pub(super) fn operands(count: usize) -> Vec<Operands> {
         let b = numbers.float_between(2, exponent - 20, exponent - 1);
         let p = numbers.float_between(4, -20, 20);
         let quotient = numbers.integer(8, -100, 100);
-        // Division is bounded for divisors from 2^-126 to 2^126.
+        // WGSL bounds the error of division for divisors from 2^-126 to 2^126.
         let divisor = numbers.integer(9, (-126).max(-126 - quotient), 125.min(125 - quotient));
         let vector = |slot: u64| [0, 2, 4].map(|axis| numbers.float_between(slot + axis, -10, 10));
         Operands {
             a,
             b,
             p,
-            // Equal but for the lowest bits of the mantissa.
+            // q equals -p except for the lowest bits of the mantissa.
             q: f32::from_bits((-p).to_bits() ^ numbers.bits(6) & 0xfff),
             factor: numbers.float_between(7, -20, 20),
             dividend: numbers.float(10, divisor + quotient),
@@ -89,7 +90,7 @@ pub(super) fn values(count: usize) -> Vec<Values> {
             },
             whole: (numbers.bits(6) >> 8) << numbers.integer(7, 0, 8),
             i: numbers.bits(8) << numbers.integer(9, 0, 31),
-            // The CPU has no quotient by zero.
+            // The divisor is not zero.
             j: (numbers.bits(10) >> numbers.integer(11, 0, 31)).max(1),
             small,
             other: f32::from_bits(small.to_bits() ^ numbers.bits(12) & MANTISSA),

@@ -1,20 +1,20 @@
-//! Judges whether loops run to their end.
+//! Judging whether loops run to their end.
 
 use super::records::{Looped, SelfTest};
 use super::report::{PropertyOutcome, Tally, TestedProperty};
 
-/// Invocations of the one workgroup.
+/// Number of invocations of the single workgroup.
 pub(super) const INVOCATIONS: u32 = 64;
 
-/// How many iterations the longest loop has, whatever the device.
+/// Number of iterations of the longest loop, on every device.
 pub(super) const LONGEST: u32 = 1_000_000;
 
-/// How many iterations nested loops have together, at most; a GPU whose invocations run in groups takes that
-/// many for each of a group.
+/// Maximum total number of iterations of nested loops. A GPU that runs invocations in groups executes so many for each
+/// invocation of a group.
 const NESTED: u32 = 1 << 16;
 
-/// What is run, one after the other: a loop up to a limit of iterations, two nested ones, and the longest,
-/// which need not end.
+/// The runs of the kernel, one after another: a loop up to the iteration limit, two nested loops, and the longest loop,
+/// which a device may leave early.
 pub(super) fn runs(limit: u32) -> [SelfTest; 3] {
     let inner = limit.min(NESTED).saturating_sub(INVOCATIONS);
     [
@@ -24,7 +24,7 @@ pub(super) fn runs(limit: u32) -> [SelfTest; 3] {
     ]
 }
 
-/// Judges the answers to [`runs`].
+/// Judges the results of [`runs`].
 pub(super) fn judge(limit: u32, answers: &[Vec<Looped>]) -> TestedProperty {
     let mut tally = Tally::default();
     let runs = runs(limit);
@@ -32,7 +32,7 @@ pub(super) fn judge(limit: u32, answers: &[Vec<Looped>]) -> TestedProperty {
     for (what, run, answers) in
         [("a loop", single, answers.first()), ("two nested loops", nested, answers.get(1))]
     {
-        // One of `single` and `inner` is zero.
+        // Either `single` or `inner` is zero.
         let expected = run.single + run.inner;
         for index in 0..INVOCATIONS {
             let got = answers.and_then(|answers| answers.get(index as usize));
@@ -71,15 +71,15 @@ pub(super) fn judge(limit: u32, answers: &[Vec<Looped>]) -> TestedProperty {
     property
 }
 
-/// How many iterations the longest loop had in all invocations, if what they computed agrees.
+/// Number of iterations of the longest loop, if all invocations agree on it.
 fn longest(answers: &[Looped]) -> Option<u32> {
     let is_true = (0..).zip(answers).all(|(index, got)| *got == after(index, got.count));
     let shortest = answers.iter().map(|got| got.count).min();
     shortest.filter(|_| is_true && answers.len() == INVOCATIONS as usize)
 }
 
-/// What an invocation has after so many iterations of `step` in `shaders/self_test/loops.wgsl`, by squaring
-/// its linear function.
+/// The state of an invocation after `count` iterations of `step` in `shaders/self_test/loops.wgsl`, computed by
+/// repeated squaring of the linear function.
 fn after(index: u32, count: u32) -> Looped {
     let (mut factor, mut summand) = (1_664_525_u32, 1_013_904_223_u32);
     let (mut state, mut left) = (index, count);
@@ -128,7 +128,7 @@ mod tests {
             answers[run][17] = after(17, answers[run][17].count - 1);
             assert_eq!(judge(8_000, &answers).outcome, PropertyOutcome::Failed);
         }
-        // The count is right, and the work was not done.
+        // The count is right, but the iterations were not executed.
         let mut made_up = answers(8_000);
         made_up[0][3].state ^= 1;
         assert_eq!(judge(8_000, &made_up).outcome, PropertyOutcome::Failed);

@@ -1,8 +1,10 @@
-//! Whether a device computes as bounds of errors assume: WGSL leaves devices freedom, and some take more.
+//! The self-test, which tests whether the arithmetic of a device has the properties that the error bounds of the
+//! checker assume. WGSL leaves devices some freedom, and some devices take more.
 //!
-//! Kernels compute and the host judges, in f64; what judges needs no device, and its tests plant faults.
+//! Kernels compute results, and the host judges them in f64. The judging code needs no device, and its tests insert
+//! faults.
 
-#![expect(clippy::float_cmp, reason = "whether numbers are equal is what is asked")]
+#![expect(clippy::float_cmp, reason = "the self-test compares numbers for equality")]
 
 mod exactness;
 #[cfg(test)]

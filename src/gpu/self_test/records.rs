@@ -1,5 +1,5 @@
-//! Records of the self-test that cross to WGSL. Twins: the structs of the same names in
-//! `shaders/self_test`; the test of `gpu/shader/records.rs` compares them.
+//! Records of the self-test that kernels read and write. Twins: the structs of the same names in
+//! `shaders/self_test/*.wgsl`. The test of `gpu/shader/records.rs` compares them.
 
 use bytemuck::{Pod, Zeroable};
 

@@ -1,42 +1,42 @@
-//! What the self-test found.
+//! The report of the self-test.
 
 use std::fmt;
 
-/// How much is tested.
+/// The extent of the self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfTestExtent {
-    /// Operations that round, on a few hundred inputs each: a few milliseconds.
+    /// Tests operations that round, with a few hundred inputs each. It takes a few milliseconds.
     Quick,
-    /// All, on 131,072 inputs each.
+    /// Tests all operations, with 131,072 inputs each.
     Full,
 }
 
-/// What became of a property.
+/// The result of the test of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PropertyOutcome {
-    /// The device has it.
+    /// The device has the property.
     Passed,
-    /// The device has it, and does something beside it that is worth knowing.
+    /// The device has the property, and shows another behaviour that is worth knowing.
     Noted,
-    /// The device lacks it: bounds of errors do not hold there.
+    /// The device lacks the property, so error bounds are not valid for it.
     Failed,
 }
 
-/// A property that the bounds of errors count on.
+/// A tested property, on which the error bounds depend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestedProperty {
-    /// One word, which does not change between versions.
+    /// Name of the property, a single word that does not change between versions.
     pub name: &'static str,
-    /// What became of it.
+    /// Result of the test.
     pub outcome: PropertyOutcome,
-    /// What was measured, in one sentence without a full stop.
+    /// The measurements, as a sentence without a full stop.
     pub words: String,
-    /// The same in numbers, by names that say their units.
+    /// The measurements as numbers, with names that contain their units.
     pub figures: Vec<(&'static str, f64)>,
 }
 
 impl TestedProperty {
-    /// Whether the device has it.
+    /// Returns whether the device has the property.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.outcome != PropertyOutcome::Failed
@@ -44,45 +44,45 @@ impl TestedProperty {
 }
 
 impl fmt::Display for TestedProperty {
-    /// The name and the words.
+    /// Writes the name and the words.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.name, self.words)
     }
 }
 
-/// What a self-test found, property by property.
+/// The results of a self-test, property by property.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelfTestReport {
     properties: Vec<TestedProperty>,
 }
 
 impl SelfTestReport {
-    /// A report of what was tested.
+    /// Creates a report of tested properties.
     #[must_use]
     pub fn new(properties: Vec<TestedProperty>) -> Self {
         Self { properties }
     }
 
-    /// All that were tested, in a fixed order.
+    /// Returns all tested properties, in a fixed order.
     #[must_use]
     pub fn properties(&self) -> &[TestedProperty] {
         &self.properties
     }
 
-    /// Whether the device has all of them.
+    /// Returns whether the device has all properties.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.first_failure().is_none()
     }
 
-    /// The first that the device lacks.
+    /// Returns the first property that the device lacks.
     #[must_use]
     pub fn first_failure(&self) -> Option<&TestedProperty> {
         self.properties.iter().find(|property| !property.passed())
     }
 }
 
-/// Goes through inputs and keeps the first that is wrong.
+/// Counts correct and wrong results, and keeps the description of the first wrong one.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     tested: usize,
@@ -103,7 +103,7 @@ impl Tally {
         self.tested
     }
 
-    /// The property, `words` being for the case that nothing was wrong.
+    /// The tested property. `words` describe the measurements if no result was wrong.
     pub(super) fn property(
         self,
         name: &'static str,
@@ -113,7 +113,7 @@ impl Tally {
         figures.insert(0, ("tested", self.tested as f64));
         figures.insert(1, ("wrong", self.wrong as f64));
         let (outcome, words) = match self.first {
-            // A test of nothing is no test.
+            // A test without inputs fails.
             None if self.tested == 0 => (PropertyOutcome::Failed, "nothing was tested".to_owned()),
             None => (PropertyOutcome::Passed, words),
             Some(first) => {
@@ -125,7 +125,7 @@ impl Tally {
     }
 }
 
-/// What part of all, in percent; 0 of nothing.
+/// The percentage of `part` in `all`; 0 if `all` is 0.
 pub(super) fn percent(part: usize, all: usize) -> f64 {
     100.0 * part as f64 / all.max(1) as f64
 }

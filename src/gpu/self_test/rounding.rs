@@ -1,22 +1,22 @@
-//! Judges operations that may round.
+//! Judging operations whose results may be rounded.
 
 use super::float::{PAD, error_in_ulp, is_neighbour, neighbours};
 use super::records::{Arithmetic, Operands};
 use super::report::{Tally, TestedProperty, percent};
 use crate::verify::{DIVIDE_ULP, SQRT_ULP, gamma};
 
-/// The largest error of 1/√x in ULP; those of others are those that the checker counts on.
+/// Maximum allowed error of 1/√x in ULP. The bounds of other operations are those of the checker.
 const INVERSE_SQRT: f64 = 2.0;
 
-/// Relative to the sum of absolute products, the largest error of a dot product of three components.
+/// Maximum allowed error of a dot product of three components, relative to the sum of the absolute products.
 const DOT: f64 = gamma(3);
 
-/// What is lost of f64's own sums.
+/// Bound of the rounding errors of the sums in f64.
 const DOT_PAD: f64 = 4.0 * f64::EPSILON;
 
 type Pair<'a> = (&'a Operands, &'a Arithmetic);
 
-/// All properties of operations that may round.
+/// All properties of operations whose results may be rounded.
 pub(super) fn judge(operands: &[Operands], answers: &[Arithmetic]) -> Vec<TestedProperty> {
     let pairs: Vec<Pair<'_>> = operands.iter().zip(answers).collect();
     vec![
@@ -39,14 +39,14 @@ fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
         tally.check(wide(sum) + wide(error) == wide(a) + wide(b), || {
             format!("TwoSum of {a:e} and {b:e}, which gives {sum:e} and {error:e}")
         });
-        // Exact, because |a| is the larger one.
+        // This difference is exact, because |a| >= |b|.
         tally.check(wide(back) == wide(sum) - wide(a), || {
             format!("({a:e} + {b:e}) - {a:e}, which gives {back:e}")
         });
         tally.check(is_sum_of_products(scaled, p, q, factor), || {
             format!("{p:e}*{factor:e} + {q:e}*{factor:e}, which gives {scaled:e}")
         });
-        // Where nothing is lost, zero is right.
+        // If the sum has no rounding error, zero is the right result.
         if error != 0.0 {
             tested += 1;
             unfenced += usize::from(unfenced_error != error);
@@ -54,7 +54,7 @@ fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
     }
     let rewritten = percent(unfenced, tested);
     let reassociates = if unfenced == 0 {
-        "this compiler leaves unfenced ones alone".to_owned()
+        "this compiler does not rewrite unfenced ones".to_owned()
     } else {
         format!("this compiler reassociates: {rewritten:.1} % of unfenced sums that round")
     };
@@ -65,7 +65,7 @@ fn fence(pairs: &[Pair<'_>]) -> TestedProperty {
     tally.property("fence", words, vec![("unfenced_rewritten_percent", rewritten)])
 }
 
-/// Whether p d + q d was rounded after each of three operations.
+/// Whether a result is p d + q d with a rounding after each of the three operations.
 fn is_sum_of_products(got: f32, p: f32, q: f32, d: f32) -> bool {
     let product = |v: f32| neighbours(f64::from(v) * f64::from(d)).map(f64::from);
     let second = product(q);
@@ -95,7 +95,8 @@ fn add_multiply(pairs: &[Pair<'_>]) -> TestedProperty {
     tally.property("add_multiply", words, vec![("nearest_percent", nearest)])
 }
 
-/// Results that are bounded in ULP: what was computed, in words, the device's result and the exact one.
+/// Judges results whose errors are bounded in ULP. Each has a description, the result of the device and the exact
+/// value.
 fn in_ulp(
     name: &'static str,
     bound: f64,
@@ -109,7 +110,7 @@ fn in_ulp(
         } else {
             error_in_ulp(got, exact)
         };
-        // A NaN is within no bound.
+        // A NaN fails this comparison.
         tally.check(error <= bound + PAD, || format!("{what} = {got:e}, off by {error:.2} ULP"));
         worst = worst.max(error);
     }
@@ -134,7 +135,7 @@ fn sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
 }
 
 fn inverse_sqrt(pairs: &[Pair<'_>]) -> TestedProperty {
-    // The kernel takes 1 for 0.
+    // The kernel replaces 0 by 1.
     let results = pairs.iter().filter(|(o, _)| o.radicand != 0.0).map(|(o, answer)| {
         let exact = 1.0 / f64::from(o.radicand).sqrt();
         (format!("inverseSqrt({:e})", o.radicand), answer.inverse_root, exact)

@@ -1,4 +1,4 @@
-//! A self-test on a device: recorded here, submitted by `Headless`.
+//! Running the self-test on a device. Its dispatches are recorded here, and `Headless` submits them.
 
 use std::marker::PhantomData;
 
@@ -17,13 +17,13 @@ use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Probe, self_test_kernel};
 
-/// Inputs of each operation: multiples of a workgroup.
+/// Numbers of inputs of each operation, which are multiples of the workgroup size.
 const QUICK: usize = 512;
 const FULL: usize = 1 << 17;
 
 const WORKGROUP: u32 = 64;
 
-/// All that is dispatched, with its inputs.
+/// The dispatches of a self-test, with their inputs.
 #[derive(Debug)]
 pub(in crate::gpu) struct SelfTestRun {
     operands: Vec<Operands>,
@@ -31,7 +31,7 @@ pub(in crate::gpu) struct SelfTestRun {
     full: Option<Full>,
 }
 
-/// What a quick test leaves out.
+/// The dispatches that a quick test leaves out.
 #[derive(Debug)]
 struct Full {
     values: Vec<Values>,
@@ -68,12 +68,12 @@ impl SelfTestRun {
         }
     }
 
-    /// What must be mapped before it is judged.
+    /// The buffers that must be mapped before [`SelfTestRun::judge`].
     pub(in crate::gpu) fn buffers(&self) -> Vec<&Buffer> {
         self.dispatches().map(|dispatch| dispatch.readable.buffer()).collect()
     }
 
-    /// Judges what the device has computed.
+    /// Judges the results of the device.
     pub(in crate::gpu) fn judge(&self) -> Result<SelfTestReport, GpuError> {
         let mut properties = rounding::judge(&self.operands, &self.arithmetic.read()?);
         if let Some(Full { values, exact, limit, loops }) = &self.full {
@@ -92,7 +92,7 @@ impl Full {
         let exact = kernel.dispatch(device, &SelfTest::default(), &values)?;
         let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops)?;
         let limit = iteration_limit(device);
-        // Nothing but how many there are counts.
+        // Only the number of inputs matters, because the kernel does not read them.
         let invocations = [0_u32; loops::INVOCATIONS as usize];
         let loops = loops::runs(limit)
             .iter()
@@ -102,14 +102,14 @@ impl Full {
     }
 }
 
-/// A kernel, built as those of a renderer are.
+/// A kernel of the self-test, built in the same way as those of a renderer.
 struct TestKernel<Input, Answer> {
     pipeline: ComputePipeline,
     layout: BindGroupLayout,
     records: PhantomData<(Input, Answer)>,
 }
 
-/// A kernel and what it reads and writes.
+/// A dispatch of a kernel, with its pipeline and buffers.
 #[derive(Debug)]
 struct Dispatch {
     pipeline: ComputePipeline,
@@ -126,7 +126,7 @@ impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
         Ok(Self { pipeline, layout, records: PhantomData })
     }
 
-    /// One invocation for each input.
+    /// Creates a dispatch with one invocation for each input.
     fn dispatch(
         &self,
         device: &Device,
@@ -141,7 +141,7 @@ impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
                     usage,
                     mapped_at_creation: true,
                 });
-                // What could not be created, the error scope around us has noted.
+                // If the buffer could not be created, the enclosing error scope has recorded it.
                 if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
                     target.copy_from_slice(bytes);
                 }
@@ -189,13 +189,14 @@ impl Dispatch {
         self.readable.record_copy(encoder, &self.answers);
     }
 
-    /// What was computed; unmaps the buffer, which must be mapped.
+    /// Returns the results, and unmaps the buffer, which must be mapped.
     fn read<Answer: Pod>(&self) -> Result<Vec<Answer>, GpuError> {
         self.readable.read(<[Answer]>::to_vec)
     }
 }
 
-/// Group 0 of a kernel of the self-test: what all share, an input and an answer for each invocation.
+/// Layout of bind group 0 of a kernel of the self-test: the shared record, and an input and a result for each
+/// invocation.
 fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
     let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
     layout(device, "pinhole self-test", &kinds)

@@ -1,4 +1,4 @@
-//! The textures that kernels write.
+//! The formats of the textures that kernels write.
 
 use wgpu::TextureFormat;
 
@@ -6,25 +6,25 @@ pub(in crate::gpu) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 pub(in crate::gpu) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 pub(in crate::gpu) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
 
-/// The texture that colour is written to. All of them work on every WebGPU device.
+/// The format of the colour texture. Every WebGPU device supports all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ColorTarget {
-    /// `Rgba8Unorm`, holding sRGB: a flat colour comes out as exactly its bytes. To sample it as
-    /// linear light, view the texture as `Rgba8UnormSrgb`.
+    /// sRGB in the format `Rgba8Unorm`. A flat colour is written as exactly the bytes that were given. To sample the
+    /// texture as linear light, create a view with the format `Rgba8UnormSrgb`.
     #[default]
     Srgb8,
-    /// `Rgba16Float`, holding linear light.
+    /// Linear light in the format `Rgba16Float`.
     Linear16,
-    /// `Rgba32Float`, holding linear light.
+    /// Linear light in the format `Rgba32Float`.
     Linear32,
 }
 
 impl ColorTarget {
-    /// All of them.
+    /// All variants.
     pub const ALL: &'static [Self] = &[Self::Srgb8, Self::Linear16, Self::Linear32];
 
-    /// The format that the caller's texture must have.
+    /// Returns the format that the caller's texture must have.
     #[must_use]
     pub const fn texture_format(self) -> TextureFormat {
         match self {

@@ -1,4 +1,4 @@
-//! Kernels: lists of parts, put one behind the other.
+//! Kernels, whose source is the concatenation of a list of parts.
 
 use super::part::Part;
 use crate::camera::CameraKind;
@@ -12,7 +12,7 @@ pub(in crate::gpu) struct Kernel {
     pub(in crate::gpu) parts: Vec<Part>,
 }
 
-/// The structures, which are alternatives of each other in files of their own.
+/// The files of structures, which are alternatives to each other.
 const STRUCTURES: &[&str] = &[
     "accel/list.wgsl",
     "accel/grid.wgsl",
@@ -46,7 +46,7 @@ impl Kernel {
         self
     }
 
-    /// The kernel with the changes that concern its parts.
+    /// The kernel after the edits of its parts.
     pub(in crate::gpu) fn edited(mut self, edits: &[ShaderEdit]) -> Result<Self, GpuError> {
         for edit in edits {
             for part in self.parts.iter_mut().filter(|part| part.name == edit.file) {
@@ -59,14 +59,14 @@ impl Kernel {
         Ok(self)
     }
 
-    /// The composed WGSL; a comment names each part.
+    /// The composed WGSL, in which a comment names each part.
     pub(in crate::gpu) fn source(&self) -> String {
         self.parts.iter().flat_map(|part| ["//// ", part.name, "\n", &part.source, "\n"]).collect()
     }
 
-    /// Replaces every position in the composed WGSL, in a message of naga's or wgpu's, by one in a file.
+    /// Replaces every position in the composed WGSL that occurs in a message of naga or wgpu by a position in a file.
     ///
-    /// The parser calls the text `wgsl`, the validator by its label, which is the kernel's name.
+    /// The parser names the source `wgsl`, and the validator names it by its label, which is the name of the kernel.
     pub(in crate::gpu) fn with_positions_in_files(&self, message: &str) -> String {
         let positions = self.replace_positions("wgsl:", message);
         self.replace_positions(&format!("{}:", self.name()), &positions)
@@ -85,12 +85,12 @@ impl Kernel {
         text
     }
 
-    /// The file, and the line in it, that a line of the composed WGSL comes from; lines count from 1.
+    /// The file and line of a line of the composed WGSL. Lines are counted from 1.
     fn position(&self, line: usize) -> Option<(&'static str, usize)> {
         // The first line of a part is the comment that names it.
         let mut comment = 1;
         for part in &self.parts {
-            // One more for the line end that `source` adds.
+            // `source` adds a line end to every part.
             let lines = part.source.matches('\n').count() + 1;
             if (comment..=comment + lines).contains(&line) {
                 let in_source = line.saturating_sub(comment).max(1);

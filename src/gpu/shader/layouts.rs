@@ -9,16 +9,16 @@ use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records;
 
-/// The layouts of all groups that the kernels use.
+/// The layouts of all bind groups of the kernels for primary rays.
 #[derive(Debug)]
 pub(in crate::gpu) struct Layouts {
-    /// Group 0 of every kernel.
+    /// Layout of bind group 0 of every kernel.
     pub(in crate::gpu) frame: BindGroupLayout,
-    /// Group 1 of `trace` and `occluded`: brick, shapes, ids, and the words of the structure.
+    /// Layouts of bind group 1 of `trace` and `occluded`: brick, shapes, ids, and the words of the structure.
     pub(in crate::gpu) brick: Vec<(BrickKind, BindGroupLayout)>,
-    /// Group 1 of `shade`, for spheres.
+    /// Layout of bind group 1 of `shade`, for spheres.
     pub(in crate::gpu) surface: BindGroupLayout,
-    /// Group 2 of `shade`.
+    /// Layout of bind group 2 of `shade`.
     pub(in crate::gpu) targets: BindGroupLayout,
 }
 
@@ -68,7 +68,7 @@ impl Layouts {
 }
 
 impl Layouts {
-    /// Group 1 of `shade`.
+    /// Layout of bind group 1 of `shade`.
     pub(in crate::gpu) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
         match primitive {
             Primitive::Sphere => &self.surface,
@@ -76,14 +76,14 @@ impl Layouts {
     }
 }
 
-/// The shapes of a brick.
+/// Binding type of the shapes of a brick.
 fn shapes(primitive: Primitive) -> BindingType {
     match primitive {
         Primitive::Sphere => storage::<records::Sphere>(true),
     }
 }
 
-/// A layout of bindings that are numbered from 0 on.
+/// Creates a layout of bindings that are numbered from 0.
 pub(in crate::gpu) fn layout(
     device: &Device,
     label: &str,
@@ -93,7 +93,7 @@ pub(in crate::gpu) fn layout(
     layout_of(device, label, &kinds)
 }
 
-/// A layout of some bindings.
+/// Creates a layout of bindings with the given numbers.
 pub(in crate::gpu) fn layout_of(
     device: &Device,
     label: &str,
@@ -106,7 +106,7 @@ pub(in crate::gpu) fn layout_of(
     })
 }
 
-/// What a structure consists of beside its spheres, from binding 3 on.
+/// Binding types of the buffers of a structure besides its shapes and ids, from binding 3 on.
 fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
         Structure::List => vec![],
@@ -124,7 +124,8 @@ fn entry(binding: u32, ty: BindingType) -> BindGroupLayoutEntry {
     BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
 }
 
-/// With a minimum size, wgpu compares record and WGSL when a pipeline is created.
+/// Binding type of a uniform record. Because of the minimum size, wgpu compares the sizes of the record and of the WGSL
+/// struct when a pipeline is created.
 pub(in crate::gpu) fn uniform<Record>() -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,

@@ -1,8 +1,8 @@
-//! Shaders: kernels are lists of parts, put one behind the other.
+//! Shaders. The source of a kernel is the concatenation of a list of parts.
 //!
-//! WGSL has no modules and does not care about the order of declarations, so a list of parts is a module system. Each
-//! part starts with what it provides and what it needs; a test compares both with its text and writes the tables of
-//! `shaders/README.md`.
+//! WGSL has no modules, and the order of its declarations does not matter, so a list of parts serves as a module
+//! system. The comment at the start of each part lists what it provides and needs. A test compares the lists with the
+//! source, and writes the tables of `shaders/README.md`.
 
 pub(super) mod formats;
 mod kernel;

@@ -1,21 +1,21 @@
-//! Parts of kernels: the WGSL files of the folder `shaders`, or one variant of such a file.
+//! Parts of kernels. A part is a WGSL file of the folder `shaders`, or a variant of such a file.
 
 use std::borrow::Cow;
 
-/// How a variant starts in its file; the rest of the line is its name.
+/// The start of the line that begins a variant in its file. The rest of the line is the name of the variant.
 pub(in crate::gpu) const VARIANT: &str = "//// ";
 
 /// A WGSL file, or one variant of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct Part {
-    /// The file's path below `shaders`; of a variant also `#` and its name.
+    /// Path of the file relative to `shaders`. For a variant, `#` and its name follow.
     pub(in crate::gpu) name: &'static str,
     pub(in crate::gpu) source: Cow<'static, str>,
-    /// Lines of the file before the source.
+    /// Number of lines of the file before the source.
     skipped: usize,
 }
 
-/// A part by its file and, if the file has variants, the variant's name.
+/// Creates a part from its file and, if the file has variants, the name of the variant.
 macro_rules! part {
     ($file:literal) => {
         $crate::gpu::shader::Part::whole(
@@ -37,7 +37,8 @@ impl Part {
         Self { name, source: Cow::Borrowed(source), skipped: 0 }
     }
 
-    /// The variant that the name says; empty if the file has none of that name, which a test of all kernels finds.
+    /// The variant with the given name. Its source is empty if the file has no such variant, which a test of all
+    /// kernels detects.
     pub(in crate::gpu) fn variant(name: &'static str, file: &'static str) -> Self {
         let wanted = name.split_once('#').map(|(_, variant)| variant);
         let found = variants(file).find(|(variant, ..)| Some(*variant) == wanted);
@@ -45,18 +46,18 @@ impl Part {
         Self { name, source: Cow::Borrowed(source), skipped }
     }
 
-    /// The file's path below `shaders`.
+    /// Path of the file relative to `shaders`.
     pub(in crate::gpu) fn file(&self) -> &'static str {
         self.name.split('#').next().unwrap_or(self.name)
     }
 
-    /// The line in the file of a line of the source; both count from 1.
+    /// The line of the file that corresponds to a line of the source. Both are counted from 1.
     pub(super) fn line_in_file(&self, line: usize) -> usize {
         self.skipped + line
     }
 }
 
-/// The variants of a file: name, source without the line that names it, and how many lines come before the source.
+/// The variants of a file: name, source without the line of the name, and number of lines before the source.
 pub(in crate::gpu) fn variants(file: &str) -> impl Iterator<Item = (&str, &str, usize)> {
     let starts = file.match_indices(VARIANT).map(|(at, _)| at);
     let starts: Vec<usize> = starts.filter(|at| file[..*at].ends_with('\n')).collect();

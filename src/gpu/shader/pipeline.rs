@@ -1,11 +1,11 @@
-//! Pipelines of kernels.
+//! Creating the pipelines of kernels.
 
 use wgpu::{ComputePipeline, Device};
 
 use super::kernel::Kernel;
 use crate::gpu::error::{GpuError, scoped};
 
-/// A pipeline of a kernel, with its groups in their order.
+/// Creates the pipeline of a kernel. `groups` are the layouts of its bind groups, in order.
 pub(in crate::gpu) fn pipeline(
     device: &Device,
     kernel: &Kernel,
@@ -43,8 +43,8 @@ pub(in crate::gpu) fn pipeline(
     })
 }
 
-/// Without the counter that wgpu puts into every loop against endless ones, which takes 4 to 14 % of a
-/// trace; bounds checks stay.
+/// Creates a shader module without the counter that wgpu inserts into every loop to stop endless ones, because it takes
+/// 4 to 14 % of the time of a trace. Bounds checks stay enabled.
 #[expect(unsafe_code, reason = "every loop of our kernels ends by itself, see below")]
 fn shader_module(
     device: &Device,
@@ -54,11 +54,10 @@ fn shader_module(
         force_loop_bounding: false,
         ..wgpu::ShaderRuntimeChecks::checked()
     };
-    // SAFETY: what a loop without wgpu's counter must not do is run for ever. Loops over a tree's or a grid's
-    // levels and cells ask `spend` in every iteration and leave when it says so. The others end by data: a
-    // loop over all spheres at a number from a uniform, a loop over a list or a leaf at a mark in buffers that
-    // only `SceneBuffers` writes, from structures whose builders end every list, and the loops of the self-test,
-    // of samples in flight and of directions of light at numbers from a uniform; and reads beyond a buffer are bounded
-    // all the same.
+    // SAFETY: a loop without wgpu's counter must not run forever. Loops over the levels and cells of a tree or a grid
+    // call `spend` in every iteration and leave when it returns false. The others are bounded by data: a loop over all
+    // spheres by a number from a uniform; a loop over a list or a leaf by a mark in buffers that only `SceneBuffers`
+    // writes, from structures whose builders terminate every list; and the loops of the self-test, over samples in
+    // flight and over directions of light by numbers from a uniform. Accesses beyond a buffer are still checked.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }

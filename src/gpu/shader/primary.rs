@@ -6,24 +6,25 @@ use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
 use crate::camera::{CameraKind, camera_table};
 use crate::gpu::shader::formats::ColorTarget;
 
-/// Whether a brick is the first that a picture's rays meet.
+/// Whether a brick is the first that is traced for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) enum BrickPass {
     First,
     Later,
 }
 
-/// What a kernel of the self-test tries.
+/// The operations that a kernel of the self-test executes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) enum Probe {
-    /// Operations that may round.
+    /// Operations whose results may be rounded.
     Arithmetic,
-    /// Operations that may not.
+    /// Operations whose results must be exact.
     Exact,
+    /// Long loops.
     Loops,
 }
 
-/// Finds the nearest sphere of every ray; the rays may be kept.
+/// The kernel that finds the nearest sphere of every ray, and may record the rays.
 pub(in crate::gpu) fn trace_kernel(
     camera: CameraKind,
     kind: BrickKind,
@@ -40,7 +41,7 @@ pub(in crate::gpu) fn trace_kernel(
     Kernel { entry_point: "trace", parts }
 }
 
-/// Finds whether every ray hits anything.
+/// The kernel that finds whether each ray hits anything.
 pub(in crate::gpu) fn occluded_kernel(
     camera: CameraKind,
     kind: BrickKind,
@@ -72,7 +73,7 @@ fn walk_parts(
     parts
 }
 
-/// What walks a structure.
+/// The parts that traverse a structure.
 pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
     match structure {
         Structure::List => vec![part!("accel/list.wgsl")],
@@ -98,7 +99,7 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
     }
 }
 
-/// Turns hits into colour and, if wanted, data layers.
+/// The kernel that computes colours and, if requested, data layers from hits.
 pub(in crate::gpu) fn shade_kernel(
     camera: CameraKind,
     primitive: Primitive,
@@ -124,7 +125,7 @@ pub(in crate::gpu) fn shade_kernel(
     Kernel { entry_point: "shade", parts }
 }
 
-/// Does what the self-test judges.
+/// The kernel of the self-test that executes some operations.
 pub(in crate::gpu) fn self_test_kernel(probe: Probe) -> Kernel {
     let (entry_point, part) = match probe {
         Probe::Arithmetic => ("arithmetic", part!("self_test/arithmetic.wgsl")),
@@ -144,7 +145,7 @@ fn list_part(layout: ListLayout) -> Part {
     }
 }
 
-/// What a primitive is: `Shape`, `intersect` and `shape_normal`.
+/// The part of a primitive, which provides `Shape`, `intersect` and `shape_normal`.
 fn primitive_part(primitive: Primitive) -> Part {
     match primitive {
         Primitive::Sphere => part!("scene/sphere.wgsl"),
@@ -167,7 +168,7 @@ fn common_parts(camera: CameraKind, primitive: Primitive) -> Vec<Part> {
     parts
 }
 
-/// A camera, and what cameras compute with.
+/// The parts of a camera, including the functions that cameras use.
 pub(in crate::gpu) fn camera_parts(camera: CameraKind) -> [Part; 3] {
     [part!("math/trigonometry.wgsl"), part!("math/disk.wgsl"), camera_part(camera)]
 }

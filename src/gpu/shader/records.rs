@@ -1,4 +1,4 @@
-//! Records that cross to WGSL. Twins: the structs of the same names in `shaders/`.
+//! Records that the host writes and kernels read. Twins: the structs of the same names in `shaders/`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -61,16 +61,17 @@ pub(in crate::gpu) struct Brick {
     pub(in crate::gpu) _pad: u32,
 }
 
-/// Whether an invocation was given up.
+/// The status word, which is nonzero if an invocation reached its iteration limit.
 pub(in crate::gpu) type Status = u32;
 
-/// The bits of t, id and place, and of where the ray starts: one `vec4u`.
+/// A hit, which is a `vec4u`: the bits of t, the id, the shape index, and the bits of the distance to the ray's origin.
 pub(in crate::gpu) type Hit = [u32; 4];
 
-/// Origin and distance, direction and a number that is not 0 if there is one: two `vec4f`.
+/// A recorded ray, which is two `vec4f`: origin and distance; direction, and a number that is nonzero if there is a
+/// ray.
 pub(in crate::gpu) type TracedRay = [f32; 8];
 
-/// Where a scene lies: its frame in the world, and in it the box that rays are moved to.
+/// The position of a scene: the origin of its frame in world space, and its box in that frame, to which rays are moved.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct SceneSpace {
     pub(in crate::gpu) origin: DVec3,
@@ -85,24 +86,24 @@ impl SceneSpace {
     }
 }
 
-/// Centre in the scene's frame, and radius: one `vec4f`.
+/// A sphere, which is a `vec4f`: its centre in the scene's frame, and its radius.
 pub(in crate::gpu) type Sphere = [f32; 4];
 
-/// Linear red, green and blue, and alpha: one `vec4f`.
+/// A colour, which is a `vec4f`: linear red, green and blue, and alpha.
 pub(in crate::gpu) type Color = [f32; 4];
 
-/// `NO_HIT` in `shaders/scene/frame.wgsl`.
+/// Distance of a miss, `NO_HIT` in `shaders/scene/frame.wgsl`.
 pub(in crate::gpu) use crate::verify::NO_HIT;
 
 impl Camera {
-    /// Moves the camera into the scene's frame in f64, and along its forward vector up to the scene's box if
-    /// its rays can start there, then narrows.
+    /// Computes the record in f64 and rounds it to f32: the camera is transformed to the scene's frame and moved along
+    /// its forward vector up to the scene's box, if its rays can start there.
     pub(in crate::gpu) fn new(camera: &RequestedCamera, scene: &SceneSpace) -> Self {
         let RequestedCamera { kind, vectors } = camera;
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let origin = vectors.origin - scene.origin;
         let forward = vectors.forward;
-        // How many times `forward` it is to the plane across the view of the box's nearest corner.
+        // The distance to the plane through the nearest corner of the box, in units of the length of `forward`.
         let across = vectors.right.cross(vectors.up);
         let nearest = scene
             .corners()
@@ -163,7 +164,7 @@ impl FrameParameters {
 }
 
 impl FrameParameters {
-    /// For lit pictures, whose colours other records decide.
+    /// The record for lit pictures, whose colours depend on other records.
     pub(in crate::gpu) fn of_tile(
         view: &View<'_>,
         scene: &SceneSpace,
@@ -176,8 +177,8 @@ impl FrameParameters {
     }
 }
 
-/// The step with which rows of workgroups are taken: about the golden ratio of their number, so that any
-/// run of rows is spread evenly over the picture, and without a common factor, so that none is left out.
+/// The step between consecutive rows of workgroups. It is about the golden ratio of their number, so that any run of
+/// rows is spread evenly over the picture, and coprime to their number, so that no row is left out.
 fn row_step(row_count: u32) -> u32 {
     let has_common_factor = |step: u32| {
         let (mut a, mut b) = (row_count, step);
@@ -205,10 +206,10 @@ mod tests {
     use crate::gpu::scene::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
 
-    /// Name, offset and size of every field, and the size of the whole.
+    /// The name, offset and size of every field, and the size of the struct.
     type Layout = (Vec<(String, usize, usize)>, usize);
 
-    /// Fields are listed once, in the order of the struct; padding is left out.
+    /// Implements the trait from the list of fields, in the order of the struct and without padding.
     macro_rules! layout {
         ($record:ident { $($field:ident),+ }) => {{
             let record = $record::zeroed();
@@ -363,7 +364,7 @@ mod tests {
         for kernel in kernels::all_kernels() {
             let module = naga::front::wgsl::parse_str(&kernel.source()).unwrap();
             for (name, in_rust) in &records {
-                // A kernel that does not use a record has no part that declares it.
+                // A kernel that does not use a record does not declare it.
                 if kernel.source().contains(&format!("struct {name} ")) {
                     declared.insert(*name);
                     assert_eq!(

@@ -1,4 +1,4 @@
-//! Buffers of a lit picture: what all tiles share, and the sums of each.
+//! Buffers of a lit picture: those that all tiles share, and the sums of each tile.
 
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
@@ -13,24 +13,24 @@ use crate::gpu::scene::scene_buffers::part;
 use crate::gpu::shader::records::FrameParameters;
 use crate::light::environment::Environment;
 
-/// How many dispatches one submission has at most.
+/// Maximum number of dispatches in a submission.
 pub(in crate::gpu) const MAX_DISPATCHES: usize = 1024;
 
-/// Which workgroups of a tile a dispatch may have, and what box its rays are moved to.
+/// The workgroups of a tile that a dispatch covers, and the box to which the origins of its rays are moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) enum Area {
-    /// All of the tile.
+    /// All workgroups of the tile.
     Whole,
-    /// Where the scene may be seen.
+    /// The workgroups in which the scene may be visible.
     Visible,
-    /// The same for what casts shadows.
+    /// The same workgroups, with the box of the spheres that cast shadows.
     Occluders,
 }
 
-/// Records of a tile, by [`Area`].
+/// Records of a tile, indexed by [`Area`].
 pub(in crate::gpu) type Frames = [FrameParameters; 3];
 
-/// A lit picture in progress. Per picture.
+/// The buffers of a lit picture in progress.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitFrame {
     pub(in crate::gpu) sizes: LitSizes,
@@ -44,7 +44,7 @@ pub(in crate::gpu) struct LitFrame {
     pub(super) lighting: BindGroup,
     pub(super) sky: Option<BindGroup>,
     pub(in crate::gpu) tiles: Vec<LitTile>,
-    /// Whether an invocation gave up.
+    /// Read-back buffer of the status word, which is nonzero if an invocation reached its iteration limit.
     pub(in crate::gpu) spent_back: ReadableBuffer,
     pub(in crate::gpu) film_back: ReadableBuffer,
     pub(in crate::gpu) variations_back: ReadableBuffer,
@@ -56,22 +56,22 @@ pub(in crate::gpu) struct LitTile {
     pub(in crate::gpu) tile: Tile,
     pub(super) frames: Frames,
     film: Buffer,
-    /// Group 0 of most passes, by [`Area`].
+    /// Bind group 0 of most passes, indexed by [`Area`].
     pub(super) groups: [BindGroup; 3],
     pub(super) advance: BindGroup,
-    /// Group 0 of those that work on sums.
+    /// Bind group 0 of the passes that process sums.
     pub(super) sums: BindGroup,
 }
 
 impl LitTile {
-    /// The sums of its pixels: `shaders/path/film_sums.wgsl`.
+    /// The sums of the tile's pixels, as in `shaders/path/film_sums.wgsl`.
     pub(in crate::gpu) fn film(&self) -> &Buffer {
         &self.film
     }
 }
 
 impl LitFrame {
-    /// Buffers for some tiles, none of which is larger than the sizes say.
+    /// Creates the buffers for some tiles, none of which may be larger than `sizes.tile`.
     pub(in crate::gpu) fn new(
         device: &Device,
         queue: &Queue,
@@ -142,7 +142,7 @@ impl LitFrame {
         })
     }
 
-    /// Queues what the next submission's dispatches do; at most [`MAX_DISPATCHES`].
+    /// Queues the parameters of the next submission's dispatches, of which there may be at most [`MAX_DISPATCHES`].
     pub(in crate::gpu) fn queue_parameters(
         &self,
         queue: &Queue,
@@ -155,28 +155,28 @@ impl LitFrame {
         queue.write_buffer(&self.parameters, 0, &bytes);
     }
 
-    /// Where the record of a dispatch lies, counted from the first of a submission.
+    /// Offset in bytes of the parameters of a dispatch, given its index in the submission.
     pub(super) fn parameter_offset(&self, number: usize) -> u32 {
-        // No more than MAX_DISPATCHES of them, so it fits.
+        // There are at most MAX_DISPATCHES of them, so it fits into u32.
         (number * self.parameter_stride) as u32
     }
 
-    /// Records that lists are empty.
+    /// Records a command that empties the lists.
     pub(in crate::gpu) fn record_clear_lists(&self, encoder: &mut CommandEncoder) {
         encoder.clear_buffer(&self.queue, 4, Some(QUEUE_HEAD - 4));
     }
 
-    /// Records that nothing is summed up yet in a tile.
+    /// Records a command that clears the sums of a tile.
     pub(in crate::gpu) fn record_clear_film(&self, encoder: &mut CommandEncoder, tile: usize) {
         encoder.clear_buffer(&self.tiles[tile].film, 0, None);
     }
 
-    /// Records the copy of whether an invocation gave up.
+    /// Records the copy of the status word.
     pub(in crate::gpu) fn record_copy_spent(&self, encoder: &mut CommandEncoder) {
         self.spent_back.record_copy(encoder, &self.queue);
     }
 
-    /// An error if rays were given up; what was copied must be mapped.
+    /// Returns an error if the searches of some rays were abandoned. The copy of the status word must be mapped.
     pub(in crate::gpu) fn read_spent(&self) -> Result<(), GpuError> {
         match self.spent_back.read(|words: &[u32]| words[0])? {
             0 => Ok(()),
@@ -189,20 +189,20 @@ impl LitFrame {
         self.film_back.record_copy(encoder, &self.tiles[tile].film);
     }
 
-    /// Records the copy of how much the samples of a tile vary.
+    /// Records the copy of the sums of variances and luminances of a tile.
     pub(in crate::gpu) fn record_copy_variations(&self, encoder: &mut CommandEncoder) {
         self.variations_back.record_copy(encoder, &self.variations);
     }
 }
 
-/// What makes buffers and groups.
+/// Creates buffers and bind groups.
 #[derive(Clone, Copy)]
 struct Make<'a> {
     device: &'a Device,
     queue: &'a Queue,
 }
 
-/// What all tiles share.
+/// The passes and buffers that all tiles share.
 struct Shared<'a> {
     passes: &'a LitPasses,
     parameters: &'a Buffer,
@@ -254,7 +254,7 @@ impl Make<'_> {
         }
         let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        // Read back whole, so all are of one size.
+        // The buffers are copied completely, so all have the same size.
         let film = self.buffer("pinhole sums", sizes.film_bytes() as usize, usage);
         let common = |area: usize| -> Vec<Entry<'_>> {
             vec![

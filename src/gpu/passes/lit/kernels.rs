@@ -5,7 +5,7 @@ use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
 use crate::gpu::shader::{BrickPass, Kernel, Part, camera_parts, part, structure_parts};
 
-/// What of a lighting decides which kernels it needs.
+/// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) enum Mode {
     Studio,
@@ -13,12 +13,12 @@ pub(in crate::gpu) enum Mode {
 }
 
 impl Mode {
-    /// Whether paths look for light.
+    /// Whether paths sample lights.
     pub(in crate::gpu) fn samples_light(self) -> bool {
         matches!(self, Self::Path(_, Sources::Any, _))
     }
 
-    /// Whether something may absorb light on the way.
+    /// Whether light may be absorbed between surfaces.
     pub(in crate::gpu) fn has_medium(self) -> bool {
         matches!(self, Self::Path(Materials::Any, ..))
     }
@@ -47,7 +47,7 @@ pub(in crate::gpu) enum Materials {
     Any,
 }
 
-/// Whether there is a light that can be looked for.
+/// Whether there is a light source that can be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) enum Sources {
     None,
@@ -61,12 +61,12 @@ pub(in crate::gpu) enum SkyKind {
     Image,
 }
 
-/// Which paths a dispatch works on.
+/// The paths that a dispatch processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Schedule {
-    /// One for each pixel and each sample in flight.
+    /// One path for each pixel and each sample in flight.
     Pixels,
-    /// Those of a list.
+    /// The paths of a list.
     Queue,
 }
 
@@ -79,7 +79,7 @@ impl Schedule {
     }
 }
 
-/// Makes the rays of samples.
+/// The kernel that starts paths with camera rays.
 pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
@@ -94,7 +94,7 @@ pub(super) fn start_kernel(camera: CameraKind, mode: Mode) -> Kernel {
     Kernel { entry_point: "start", parts }
 }
 
-/// Finds the nearest sphere of every path's ray.
+/// The kernel that finds the nearest sphere of every path's ray.
 pub(super) fn extend_kernel(
     structure: Structure,
     exclude_by: ExcludeBy,
@@ -113,7 +113,7 @@ pub(super) fn extend_kernel(
     Kernel { entry_point: "extend", parts }
 }
 
-/// Finds whether anything is between paths' surfaces and lights.
+/// The kernel that finds whether sampled lights are occluded.
 pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = base(Schedule::Queue);
     parts.extend([
@@ -134,21 +134,21 @@ pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Ker
     Kernel { entry_point: "occlude", parts }
 }
 
-/// In a studio, finds whether a light is hidden.
+/// The kernel of studios that finds whether a light is hidden.
 pub(super) fn shadow_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = hidden_light(structure, exclude_by);
     parts.extend([part!("scene/lamp.wgsl"), part!("studio/shadow.wgsl")]);
     Kernel { entry_point: "shadow", parts }
 }
 
-/// In a studio, finds whether something is near in a direction of ambient light.
+/// The kernel of studios that finds whether directions of ambient light are occluded.
 pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Kernel {
     let mut parts = hidden_light(structure, exclude_by);
     parts.push(part!("studio/ambient.wgsl"));
     Kernel { entry_point: "ambient", parts }
 }
 
-/// How rays that start on a shape are told apart from it.
+/// The parts that exclude the shape on which a ray starts.
 fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
     match exclude_by {
         ExcludeBy::Index => {
@@ -176,7 +176,7 @@ fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     parts
 }
 
-/// In a studio, turns hits into surfaces.
+/// The kernel of studios that computes surfaces from hits.
 pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
     let mut parts = shading(schedule);
     parts.extend([
@@ -188,7 +188,7 @@ pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
     Kernel { entry_point: "surface", parts }
 }
 
-/// In a studio, adds some lights.
+/// The kernel of studios that adds the contributions of some lights.
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
@@ -201,14 +201,14 @@ pub(super) fn illuminate_kernel() -> Kernel {
     Kernel { entry_point: "illuminate", parts }
 }
 
-/// In a studio, adds ambient light from some directions.
+/// The kernel of studios that adds ambient light from some directions.
 pub(super) fn gather_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.push(part!("studio/gather.wgsl"));
     Kernel { entry_point: "gather", parts }
 }
 
-/// Scatters paths.
+/// The kernel that shades hits and scatters paths.
 pub(super) fn scatter_kernel(
     schedule: Schedule,
     materials: Materials,
@@ -253,7 +253,7 @@ pub(super) fn scatter_kernel(
     Kernel { entry_point: "scatter", parts }
 }
 
-/// Adds samples to pixels.
+/// The kernel that accumulates samples.
 pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
@@ -265,14 +265,14 @@ pub(super) fn accumulate_kernel(mode: Mode) -> Kernel {
     Kernel { entry_point: "accumulate", parts }
 }
 
-/// Says how many workgroups the next dispatches need.
+/// The kernel that computes the numbers of workgroups of the next indirect dispatches.
 pub(super) fn advance_kernel() -> Kernel {
     let mut parts = base(Schedule::Queue);
     parts.extend([part!("path/advance.wgsl")]);
     Kernel { entry_point: "advance", parts }
 }
 
-/// Sums up how much samples vary.
+/// The kernel that sums variances and luminances of pixels.
 pub(super) fn noise_kernel() -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend([
@@ -332,7 +332,7 @@ fn studio_light() -> Vec<Part> {
     parts
 }
 
-/// Every kernel of lit pictures that can be composed.
+/// All kernels of lit pictures that can be composed.
 pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     const SCHEDULES: [Schedule; 2] = [Schedule::Pixels, Schedule::Queue];
     let mut modes = vec![Mode::Studio];

@@ -1,4 +1,4 @@
-//! A lighting as kernels have it: one record, and one buffer of lights, emitters, materials and energies.
+//! The data of a lighting for kernels: one uniform record, and one buffer of lights, emitters, materials and energies.
 
 use std::sync::Arc;
 
@@ -20,26 +20,26 @@ use crate::light::{LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings};
 use crate::scene::material::{Material, SurfaceProperties};
 
-/// What a picture's kernels get to know of its lighting.
+/// The data of a picture's lighting for its kernels.
 #[derive(Debug)]
 pub(in crate::gpu) struct LightingData {
     pub(in crate::gpu) mode: Mode,
     pub(in crate::gpu) parameters: LightingParameters,
-    /// Never empty.
+    /// The tables of lights, emitters, materials and energies, which are never empty.
     pub(in crate::gpu) tables: Vec<[f32; 4]>,
-    /// How many surfaces a ray meets: of a path at most, and one more that it may end on; in a studio one if every
-    /// sphere is opaque.
-    pub(super) most_surfaces: u32,
-    /// In a studio, whether lights cast shadows.
+    /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
+    /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
+    pub(super) max_surfaces: u32,
+    /// Whether lights cast shadows in a studio.
     pub(super) has_shadows: bool,
-    /// The image that paths are lit by.
+    /// The image of the sky that illuminates paths.
     pub(super) sky: Option<Arc<Environment>>,
-    /// Of each light, whether shadow rays are sent to it.
+    /// For each light, whether shadow rays are traced towards it.
     pub(super) casts_shadow: Vec<bool>,
 }
 
 impl LightingData {
-    /// Of a lighting that has been checked, for a scene in its own frame.
+    /// Computes the data for settings that have been checked. Positions are in the scene's frame.
     pub(in crate::gpu) fn new(
         settings: &RenderSettings,
         scene: &SceneSummary,
@@ -80,7 +80,7 @@ impl LightingData {
             mode: mode_of(settings, scene, &sources),
             parameters,
             tables,
-            most_surfaces: match &settings.integrator {
+            max_surfaces: match &settings.integrator {
                 Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
                 Integrator::Path(path) => path.max_depth,
@@ -98,16 +98,16 @@ impl LightingData {
 }
 
 impl LightingData {
-    /// What its tables take on the device.
+    /// Size of the tables on the device in bytes.
     pub(in crate::gpu) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }
 }
 
-/// What direct light is chosen among.
+/// The light sources among which light sampling chooses.
 #[derive(Debug)]
 struct SourceList {
-    /// Which of the lights.
+    /// Indices of the lights that can be sampled.
     lamps: Vec<u32>,
     emitters: bool,
     image: bool,
@@ -118,12 +118,10 @@ impl SourceList {
         let Integrator::Path(path) = &settings.integrator else {
             return Self { lamps: Vec::new(), emitters: false, image: false };
         };
-        let is_looked_for = path.light_sampling != LightSampling::Chance;
+        let is_sampled = path.light_sampling != LightSampling::Chance;
         let lamps = lights.iter().zip(0..).filter(|(light, _)| match light {
             LightKind::Head { .. } => false,
-            LightKind::Directional { angular_radius, .. } => {
-                *angular_radius == 0.0 || is_looked_for
-            }
+            LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 || is_sampled,
             LightKind::Point { .. } | LightKind::Sphere { .. } => true,
         });
         let image = match &settings.sky.light {
@@ -134,8 +132,8 @@ impl SourceList {
         };
         Self {
             lamps: lamps.map(|(_, index)| index).collect(),
-            emitters: is_looked_for && !emitters.ids().is_empty(),
-            image: is_looked_for && image,
+            emitters: is_sampled && !emitters.ids().is_empty(),
+            image: is_sampled && image,
         }
     }
 
@@ -234,14 +232,14 @@ fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
     [x, y, z, w]
 }
 
-/// As `shaders/scene/lamp.wgsl` reads it.
+/// The record of a light in the layout of `shaders/scene/lamp.wgsl`.
 fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
     let kind = f32::from_bits(codes::of_light(light));
     let near = |position: DVec3| (position - origin).as_vec3().to_array();
     let [position, power] = match *light {
         LightKind::Head { strength } => [four([0.0; 3], kind), four(strength.to_array(), 0.0)],
         LightKind::Directional { toward, strength, angular_radius } => {
-            // 1 minus the cosine, without cancellation.
+            // 1 minus the cosine of the angle, computed without cancellation.
             let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
             [four(toward.as_vec3().to_array(), kind), four(strength.to_array(), k as f32)]
         }
@@ -255,12 +253,12 @@ fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] 
     [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
 }
 
-/// As `shaders/scene/emitters.wgsl` reads them.
+/// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
 fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     let emitters = &scene.emitters;
     emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
         let EmissiveSphere { sphere, color, surface } = *emissive;
-        // A surface that lets light through sends out its share.
+        // A surface that is not opaque emits the fraction of light that its opacity gives.
         let strength = match surface.material {
             Material::Emissive { strength } => strength * surface.opacity,
             _ => 0.0,
@@ -274,7 +272,7 @@ fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     })
 }
 
-/// As `shaders/scene/material.wgsl` reads it.
+/// The record of a material in the layout of `shaders/scene/material.wgsl`.
 fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32) -> [[f32; 4]; 2] {
     let kind = codes::of_material(&surface.material);
     let record = |parameter: f32, roughness: f32, absorption: [f32; 3]| {

@@ -1,13 +1,13 @@
-//! Lit pictures: many samples of every pixel, surface by surface.
+//! Lit pictures, which take many samples of every pixel and trace them surface by surface.
 //!
-//! Between two dispatches a path is in a buffer (`shaders/path/state.wgsl`). A sample starts at the camera; then one
-//! pass finds what all rays meet, one shades it and makes new rays, one finds whether lights are hidden. Which paths
-//! go on, and how many they are, only the device knows: passes write lists of them, and dispatches are as large as the
-//! lists are long. The sums of samples stay on the device, each pixel's in the order of its samples, so that a picture
-//! depends on nothing but scene, size, samples and seed.
+//! Between two dispatches the state of all paths is in a buffer (`shaders/path/state.wgsl`). A sample starts at the
+//! camera. For each surface, one pass finds the hits of all rays, one shades them and scatters new rays, and one tests
+//! whether the sampled lights are occluded. Only the device knows which paths continue: passes append them to lists,
+//! and the sizes of dispatches follow the lengths of the lists. The sums of samples stay on the device and are
+//! accumulated in the order of the samples, so that a picture depends only on scene, size, samples and seed.
 //!
-//! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] writes them
-//! into whatever encoder it is given.
+//! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] records them
+//! into any encoder.
 
 mod frame;
 mod kernels;
@@ -37,16 +37,16 @@ pub(in crate::gpu) use recorder::Recorder;
 pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
 pub(in crate::gpu) use sizes::LitSizes;
 
-/// What a lit picture is made of, on the device.
+/// The buffers of a scene that a lit picture uses.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct LitScene<'a> {
     pub(in crate::gpu) all: &'a SceneBuffers,
-    /// What casts shadows.
+    /// The spheres that cast shadows.
     pub(in crate::gpu) occluders: &'a SceneBuffers,
 }
 
 impl LitScene<'_> {
-    /// Which passes it needs.
+    /// The key of the passes that the picture needs.
     pub(in crate::gpu) fn key(&self, view: &View<'_>, lighting: &LightingData) -> LitKey {
         LitKey {
             camera: view.camera.kind(),
@@ -58,13 +58,13 @@ impl LitScene<'_> {
         }
     }
 
-    /// Where the scene may be seen; `None` for everywhere.
+    /// The region of the film in which the scene may be visible; `None` for the whole film.
     pub(in crate::gpu) fn visible_region(
         &self,
         view: &View<'_>,
         settings: &RenderSettings,
     ) -> Option<VisibleRegion> {
-        // Wherever there is ground there is something to be seen.
+        // The ground may be visible everywhere.
         settings.ground.is_none().then(|| {
             let around = settings.sampling.filter.radius();
             VisibleRegion::of(view, self.all.space()).widened(around)

@@ -1,4 +1,4 @@
-//! One kernel of lit pictures, and how it is recorded.
+//! A pass of lit pictures: the pipeline of a kernel, and recording its dispatches.
 
 use wgpu::{
     BindGroup, BindGroupLayout, Buffer, CommandEncoder, ComputePassDescriptor, ComputePipeline,
@@ -10,38 +10,38 @@ use crate::gpu::error::GpuError;
 use crate::gpu::shader::Kernel;
 use crate::gpu::shader::pipeline;
 
-/// A kernel, ready to be recorded into any encoder of its device.
+/// The pipeline of a kernel, which can be recorded into any encoder of its device.
 #[derive(Debug)]
 pub(in crate::gpu) struct Pass {
     pipeline: ComputePipeline,
 }
 
-/// What a pass is bound to.
+/// The bind groups of a dispatch.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Bound<'a> {
-    /// Group 0: the frame, the lists, the paths and what the dispatch does.
+    /// Bind group 0: the frame, the lists, the paths and the parameters of the dispatch.
     pub(super) frame: &'a BindGroup,
-    /// The offset of the dispatch's parameters.
+    /// Offset of the parameters of the dispatch in bytes.
     pub(super) dispatch: u32,
-    /// Group 1: a brick.
+    /// Bind group 1: a brick.
     pub(super) brick: Option<&'a BindGroup>,
-    /// Group 2: lights and materials.
+    /// Bind group 2: lights and materials.
     pub(super) lighting: &'a BindGroup,
-    /// Group 3: an image of the sky.
+    /// Bind group 3: the image of the sky.
     pub(super) sky: Option<&'a BindGroup>,
 }
 
-/// How many workgroups a dispatch has.
+/// The number of workgroups of a dispatch.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) enum Extent<'a> {
-    /// So many along each axis.
+    /// The numbers of workgroups along the three axes.
     Groups([u32; 3]),
-    /// As many as a buffer says, from a place in bytes on.
+    /// An indirect dispatch, which reads the numbers from a buffer at an offset in bytes.
     Indirect(&'a Buffer, u64),
 }
 
 impl Pass {
-    /// Builds the pipeline, with its groups in their order.
+    /// Builds the pipeline. `groups` are the layouts of its bind groups, in order.
     pub(super) fn new(
         device: &Device,
         kernel: Kernel,

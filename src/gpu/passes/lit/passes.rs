@@ -18,21 +18,22 @@ use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
 use crate::gpu::shader::records;
 use crate::gpu::shader::{BrickPass, Kernel};
 
-/// What sets of passes differ in.
+/// The properties in which sets of passes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::gpu) struct LitKey {
     pub(in crate::gpu) camera: CameraKind,
     pub(in crate::gpu) mode: Mode,
     pub(in crate::gpu) structure: Structure,
-    /// Of what casts shadows.
+    /// The structure of the spheres that cast shadows.
     pub(in crate::gpu) occluders: Structure,
-    /// How rays are kept from what they start on: in all of the scene, and in what casts shadows.
+    /// How rays exclude the sphere on which they start, among all spheres and among those that cast shadows.
     pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
 }
 
-/// Group 0 of most passes, of `advance`, and of those that work on sums; groups 2 and 3.
+/// Layouts of bind group 0 of most passes (`frame`), of `advance`, and of passes over sums (`film`), and of groups 2
+/// and 3.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitLayouts {
     pub(super) frame: BindGroupLayout,
@@ -42,19 +43,19 @@ pub(in crate::gpu) struct LitLayouts {
     pub(super) sky: BindGroupLayout,
 }
 
-/// A pass for the rays that start at the camera, and one for the lists of those that go on.
+/// A pass over the camera rays of all pixels, and one over lists of paths that continue.
 #[derive(Debug)]
 pub(super) struct BySchedule {
     pub(super) pixels: Pass,
     pub(super) queue: Pass,
 }
 
-/// Passes. Long-lived: one set per device, camera, kind of lighting and structure.
+/// The passes of lit pictures for a device, camera, kind of lighting and structure.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitPasses {
     pub(super) layouts: LitLayouts,
     pub(super) start: Pass,
-    /// For the first brick, and for those behind it.
+    /// Passes for the first brick, and for later bricks.
     pub(super) extend: (BySchedule, Option<BySchedule>),
     pub(super) shade: ShadePasses,
     pub(super) advance: Pass,
@@ -96,7 +97,7 @@ impl LitLayouts {
     }
 }
 
-/// A buffer that is read and written, of at least so many bytes.
+/// The type of a storage buffer that is read and written and has at least `bytes` bytes.
 fn storage_of(bytes: u64) -> BindingType {
     BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only: false },
@@ -176,18 +177,18 @@ impl LitPasses {
 }
 
 impl LitPasses {
-    /// Says how many workgroups dispatches need.
+    /// The pass that computes the numbers of workgroups of indirect dispatches.
     pub(in crate::gpu) fn advance(&self) -> &Pass {
         &self.advance
     }
 
-    /// Sums up how much samples vary.
+    /// The pass that sums variances and luminances of pixels.
     pub(in crate::gpu) fn noise(&self) -> &Pass {
         &self.noise
     }
 }
 
-/// The passes of a device, each set built when it is first wanted.
+/// The passes of a device. Each set is built when it is first needed.
 pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
 
 #[cfg(test)]
@@ -197,7 +198,7 @@ mod tests {
     use crate::accel::ListLayout;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
-    /// device offers, with no driver at all.
+    /// device supports, without any driver.
     #[test]
     fn every_pass_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());

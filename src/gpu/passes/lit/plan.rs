@@ -1,4 +1,4 @@
-//! What a lit picture will take of the device and of the host.
+//! Planning the memory that a lit picture needs on the device and on the host.
 
 use super::lighting::LightingData;
 use super::sizes::LitSizes;
@@ -20,7 +20,8 @@ impl RenderPlan {
         let PictureRequest { scene, view, settings, host_bytes_per_pixel, .. } = *request;
         let (film, limits) = (&view.film, &device.limits);
         let layers = settings.layers_for(request.layers);
-        // Depth, normals and ids are rendered first, by one ray a pixel; then that tile is gone.
+        // Depth, normals and ids are rendered first, with one ray for each pixel. The buffers of that render are then
+        // freed.
         let data = Self::of_primary(&PictureRequest { layers, ..*request }, accel, device);
         let data_bytes = total(&data.tile_buffers) + total(&data.tile_textures);
         let mut scene_buffers = data.scene_buffers;
@@ -35,7 +36,7 @@ impl RenderPlan {
         let mut tile_buffers = vec![
             PlannedBuffer::one("paths", sizes.path_bytes()),
             PlannedBuffer::one("lists", sizes.queue_bytes() + sizes.groups_bytes()),
-            // Those of all tiles stay.
+            // The sums of all tiles stay allocated.
             PlannedBuffer {
                 name: "sums",
                 bytes: film_bytes * tile_count,
@@ -57,17 +58,17 @@ impl RenderPlan {
 
         let in_host = |bytes| device.in_host(bytes);
         let occluder_bytes = occluders.as_ref().map_or(0, AccelPlan::device_bytes);
-        // What is built second is built beside the first, from a copy of its spheres.
+        // The second structure is built while the first exists, from a copy of its spheres.
         let building = occluders.as_ref().map_or(0, |plan| {
             let spheres = 16 * plan.statistics.count as u64;
             data.accel.device_bytes() + spheres + plan.host_bytes()
         });
         let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
         let uploading = data.accel.device_bytes() + occluder_bytes + queued;
-        // Coverage by lines, or what the caller makes of the picture.
+        // The coverage of the outline takes 4 bytes; the memory of the caller is needed later.
         let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
-        // An image is widened, and then waits for the device.
+        // The image of the sky is converted to four components, and its copy is queued for the device.
         let picture = film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky);
         let moments = [
             (HostPeak::Building, data.accel.host_bytes().max(building + in_host(scene_bytes))),
@@ -91,7 +92,7 @@ impl RenderPlan {
     }
 }
 
-/// Of the structure for shadows; nothing is shaded in it but a palette of one colour.
+/// The buffers of the structure of occluders. Its only appearance data are a palette of one colour.
 fn shadow_buffers(scene: &Scene, plan: &AccelPlan) -> Vec<PlannedBuffer> {
     scene_buffers(scene, plan).into_iter().filter(|buffer| buffer.name != "colors").collect()
 }
@@ -157,7 +158,7 @@ mod tests {
         let plan = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         assert_eq!((plan.tile_size, plan.tile_count), ([512, 256], 2));
         let pixels = 1 << 18;
-        // Four samples of every pixel of a tile in flight, of ten vectors each.
+        // Four samples of every pixel of a tile are in flight, with ten vectors each.
         assert_eq!(bytes(&plan, "paths"), 4 * 160 * pixels / 2);
         assert_eq!(bytes(&plan, "lists"), 4 * 12 * pixels / 2 + 16 + 24);
         assert_eq!(
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_keep_what_their_scene_needs() {
+    fn paths_have_only_the_slots_that_the_lighting_needs() {
         let at_most = |settings: &RenderSettings| {
             bytes(&planned(1.0, 512, settings, LayerSet::COLOR, GPU), "paths")
         };
@@ -186,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_larger_than_a_tile_is_cut() {
+    fn large_pictures_are_divided_into_tiles() {
         let plan = planned(1.0, 4096, &RenderSettings::studio(), LayerSet::COLOR, GPU);
         assert!(bytes(&plan, "paths") <= 160 << 19);
         assert!(plan.tile_count >= 32);
@@ -207,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_take_the_layers_that_they_are_found_by() {
+    fn an_outline_needs_the_layers_that_it_is_computed_from() {
         let mut settings = RenderSettings::studio();
         let before = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         let studio = Studio { outline: Some(Outline::default()), ..Studio::default() };

@@ -1,4 +1,4 @@
-//! Writes dispatches into an encoder, and remembers the records that they read.
+//! Recording dispatches into an encoder, and collecting their parameters.
 
 use wgpu::CommandEncoder;
 
@@ -8,17 +8,18 @@ use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
 use super::round::{Step, Work};
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 
-/// How many paths a workgroup works on.
+/// Number of paths that a workgroup processes.
 const WORKGROUP_SIZE: u64 = (WORKGROUP_SIDE * WORKGROUP_SIDE) as u64;
 
-/// Of one submission: what is recorded holds once [`Recorder::take_parameters`] has been queued.
+/// Records the dispatches of a submission. The parameters from [`Recorder::take_parameters`] must be queued before the
+/// encoder is submitted.
 #[derive(Debug)]
 pub(in crate::gpu) struct Recorder<'a> {
     frame: &'a LitFrame,
-    /// Which of the frame's tiles.
+    /// Index of the tile for which dispatches are recorded.
     pub(in crate::gpu) tile: usize,
     advance: &'a Pass,
-    /// Whether the device can be told by a buffer how many workgroups a dispatch has.
+    /// Whether indirect dispatches are used.
     is_indirect: bool,
     parameters: Vec<DispatchParameters>,
 }
@@ -28,17 +29,17 @@ impl<'a> Recorder<'a> {
         Self { frame, tile: 0, advance, is_indirect, parameters: Vec::new() }
     }
 
-    /// How many dispatches there are since the last [`Recorder::take_parameters`].
+    /// Number of dispatches since the last call of [`Recorder::take_parameters`].
     pub(in crate::gpu) fn dispatches(&self) -> usize {
         self.parameters.len()
     }
 
-    /// What the dispatches read, in their order.
+    /// Returns the parameters of the dispatches, in order, and starts a new submission.
     pub(in crate::gpu) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
         std::mem::take(&mut self.parameters)
     }
 
-    /// The most workgroups that a dispatch may have, in each of its [`Step::layers`].
+    /// The maximum number of workgroups of a dispatch, in each of its [`Step::layers`].
     pub(in crate::gpu) fn groups(&self, step: &Step<'_>) -> Groups {
         let tile = &self.frame.tiles[self.tile];
         match step.work {
@@ -46,9 +47,9 @@ impl<'a> Recorder<'a> {
                 Groups { first: [0, 0], size: tile.frames[area as usize].traced_size }
             }
             Work::List(_) => {
-                // What goes on has met something where there is something to be seen.
+                // Only paths in the visible region hit something and continue.
                 let [x, y] = tile.frames[Area::Visible as usize].traced_size;
-                Groups { first: [0, 0], size: [x * y * step.turns, 1] }
+                Groups { first: [0, 0], size: [x * y * step.in_flight, 1] }
             }
             Work::Advance => Groups { first: [0, 0], size: [1, 1] },
             Work::Sums => {
@@ -57,7 +58,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Records a dispatch, or only some of its workgroups.
+    /// Records a dispatch, or a slice of its workgroups.
     pub(in crate::gpu) fn record(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -96,8 +97,8 @@ impl<'a> Recorder<'a> {
         self.dispatch(encoder, step.pass, dispatch, group, step.brick, extent);
     }
 
-    /// Records the sums of how much the samples of a tile vary, of which every pixel has so many. Gives how many sums
-    /// there will be.
+    /// Records the pass that sums variances and luminances of a tile whose pixels have `samples` samples each. Returns
+    /// the number of sums.
     pub(in crate::gpu) fn record_noise(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -107,7 +108,7 @@ impl<'a> Recorder<'a> {
         let tile = &self.frame.tiles[self.tile];
         let groups = pixels(tile).div_ceil(WORKGROUP_SIZE * PIXELS_PER_VARIATION);
         let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
-        // Fewer than there are pixels, so it fits.
+        // There are fewer groups than pixels, so it fits into u32.
         let extent = Extent::Groups([groups as u32, 1, 1]);
         self.dispatch(encoder, noise, dispatch, &tile.sums, None, extent);
         (groups * WORKGROUP_SIZE) as usize
@@ -122,10 +123,10 @@ impl<'a> Recorder<'a> {
         brick: Option<&wgpu::BindGroup>,
         extent: Extent<'_>,
     ) {
-        let number = self.frame.parameter_offset(self.parameters.len());
+        let offset = self.frame.parameter_offset(self.parameters.len());
         self.parameters.push(dispatch);
         let LitFrame { lighting, sky, .. } = self.frame;
-        let bound = Bound { frame: group, dispatch: number, brick, lighting, sky: sky.as_ref() };
+        let bound = Bound { frame: group, dispatch: offset, brick, lighting, sky: sky.as_ref() };
         pass.record(encoder, bound, extent);
     }
 }

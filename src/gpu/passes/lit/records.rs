@@ -1,9 +1,9 @@
-//! Records of lit pictures that cross to WGSL. Twins: the structs of the same names in
+//! Records of lit pictures that kernels read. Twins: the structs of the same names in
 //! `shaders/scene/lighting_records.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
-/// What one dispatch does.
+/// The parameters of a dispatch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct DispatchParameters {
@@ -18,21 +18,25 @@ pub(in crate::gpu) struct DispatchParameters {
     pub(in crate::gpu) first: [u32; 2],
 }
 
-/// `LIST_OF_LIGHT` in `shaders/path/queue.wgsl`: the paths that look for light, or surfaces that are to be lit.
+/// Index of the list of paths whose sampled light must be tested, or of surfaces that studios illuminate:
+/// `LIST_OF_LIGHT` in `shaders/path/queue.wgsl`.
 pub(in crate::gpu) const LIST_OF_LIGHT: u32 = 2;
 
-/// How many lists of paths there are.
+/// Number of lists of paths.
 pub(super) const LISTS: u64 = 3;
 
-/// Bytes before the lists in `shaders/path/queue.wgsl`: whether an invocation gave up, and how long each list is.
+/// Number of bytes before the lists in `shaders/path/queue.wgsl`, which hold the status word and the lengths of the
+/// lists.
 pub(super) const QUEUE_HEAD: u64 = 4 * (1 + LISTS);
 
-/// Bytes of the numbers of workgroups that `shaders/path/advance.wgsl` writes: of a list, and of a slice of it.
+/// Size in bytes of the arguments that `shaders/path/advance.wgsl` writes for two indirect dispatches: of a whole list,
+/// and of a slice of it.
 pub(super) const GROUPS_NEEDED: u64 = 2 * GROUPS_OF_ONE;
 
-/// Bytes of one of these.
+/// Size in bytes of the arguments of one indirect dispatch.
 pub(super) const GROUPS_OF_ONE: u64 = 12;
 
+/// The parameters of a lighting.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct LightingParameters {
@@ -66,20 +70,21 @@ pub(in crate::gpu) struct LightingParameters {
     pub(in crate::gpu) filter_table: [[f32; 4]; 65],
 }
 
-/// `vec4f`s of a path's state that every path and every studio has: slots up to the hit in `shaders/path/state.wgsl`.
+/// Number of slots in the state of every path and every studio: those up to the hit in `shaders/path/state.wgsl`. A
+/// slot is a `vec4f`.
 pub(in crate::gpu) const COMMON_SLOTS: u64 = 7;
 
-/// With what a path that looks for light keeps.
+/// Number of slots including those of a path's sampled light.
 pub(in crate::gpu) const LIGHT_SLOTS: u64 = 9;
 
-/// With what absorbs light on the way.
+/// Number of slots including the absorption of a medium.
 pub(in crate::gpu) const MEDIUM_SLOTS: u64 = 10;
 
-/// With what a studio keeps.
+/// Number of slots of a studio.
 pub(in crate::gpu) const STUDIO_SLOTS: u64 = 10;
 
-/// `vec4f`s of a pixel's sums: `shaders/path/film_sums.wgsl`.
+/// Number of `vec4f` in the sums of a pixel, see `shaders/path/film_sums.wgsl`.
 pub(in crate::gpu) const FILM_SLOTS: u64 = 3;
 
-/// How many pixels one number of `shaders/path/noise.wgsl` sums up.
+/// Number of pixels that an invocation of `shaders/path/noise.wgsl` sums.
 pub(super) const PIXELS_PER_VARIATION: u64 = 64;

@@ -1,4 +1,4 @@
-//! The dispatches of some samples of every pixel of a tile, in their order.
+//! The sequence of dispatches for some samples of every pixel of a tile.
 
 use std::ops::Range;
 
@@ -12,61 +12,61 @@ use super::records::{DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
-/// How many lights are searched before they are added: each has a bit.
+/// Number of lights that are tested before their contributions are added. Each has a bit in a word.
 const BITS: usize = 32;
 
-/// One dispatch.
+/// A dispatch of a round.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Step<'a> {
     pub(super) pass: &'a Pass,
     pub(super) dispatch: DispatchParameters,
-    /// Group 1, if the pass works on a brick.
+    /// Bind group 1, if the pass uses a brick.
     pub(super) brick: Option<&'a BindGroup>,
     pub(super) work: Work,
-    /// How many samples are in flight.
-    pub(super) turns: u32,
-    /// How many rays each path sends.
+    /// Number of samples in flight.
+    pub(super) in_flight: u32,
+    /// Number of rays that each invocation traces.
     rays: u32,
-    /// Whether it searches, and so may take long.
+    /// Whether the dispatch traces rays, and so may take long.
     is_search: bool,
-    /// What has happened once it is done, and it is the last of its kind.
+    /// The stage of the sample that this dispatch completes, if it is the last one of the stage.
     pub(in crate::gpu) moment: Option<Moment>,
 }
 
 impl Step<'_> {
-    /// Whether it searches, and so may take long.
+    /// Whether the dispatch traces rays, and so may take long.
     pub(in crate::gpu) fn is_search(&self) -> bool {
         self.is_search
     }
 
-    /// How many rays each of its invocations sends.
+    /// Number of rays that each invocation traces.
     pub(in crate::gpu) fn rays(&self) -> u32 {
         self.rays
     }
 
-    /// How often it takes the workgroups that it has along the two sides of a tile.
+    /// Number of layers of workgroups, each of which covers the area of a tile.
     pub(in crate::gpu) fn layers(&self) -> u32 {
         match self.work {
-            Work::Pixels(_) => self.turns,
+            Work::Pixels(_) => self.in_flight,
             Work::List(_) | Work::Advance | Work::Sums => 1,
         }
     }
 }
 
-/// What a dispatch works on.
+/// The items that a dispatch processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Work {
-    /// One path for each pixel of an area and each sample.
+    /// One path for each pixel of an area and each sample in flight.
     Pixels(Area),
-    /// A list of paths; the area says by which box rays are moved.
+    /// A list of paths. The area determines the box to which the origins of rays are moved.
     List(Area),
-    /// One workgroup, which says how long a list is.
+    /// One workgroup, which computes the size of the next dispatches from the length of a list.
     Advance,
     /// The sums of all pixels.
     Sums,
 }
 
-/// After which passes of a sample.
+/// Stages of a sample after which its state can be recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) enum Moment {
     Started,
@@ -76,25 +76,26 @@ pub(in crate::gpu) enum Moment {
     Accumulated,
 }
 
-/// What a round is made of.
+/// The inputs of a round, which traces some samples of every pixel of a tile together.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct Round<'a> {
     pub(in crate::gpu) passes: &'a LitPasses,
     pub(in crate::gpu) lighting: &'a LightingData,
     pub(in crate::gpu) scene: &'a SceneBuffers,
     pub(in crate::gpu) occluders: &'a SceneBuffers,
-    /// How many paths the buffers have room for.
+    /// Number of paths that the buffers have room for.
     pub(in crate::gpu) room: u32,
-    /// How many directions of ambient light one invocation searches: [`AT_ONCE`], or one where that takes it more steps
-    /// than the device may loop for.
+    /// Number of directions of ambient light that an invocation searches: [`AT_ONCE`], or one if that exceeds the
+    /// iteration limit of the device.
     pub(in crate::gpu) at_once: u32,
 }
 
-/// Most of what a path is read for does not depend on the direction.
+/// Number of directions of ambient light that an invocation searches. Searching many saves time, because most of the
+/// state that it reads does not depend on the direction.
 pub(in crate::gpu) const AT_ONCE: u32 = 32;
 
 impl<'a> Round<'a> {
-    /// The dispatches of some samples, which are followed together.
+    /// The dispatches of some samples, which are traced together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
         let count = samples.end.saturating_sub(samples.start);
         let dispatch = DispatchParameters {
@@ -103,7 +104,7 @@ impl<'a> Round<'a> {
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
         };
-        let mut steps = Steps { round: *self, turns: count, steps: Vec::new() };
+        let mut steps = Steps { round: *self, in_flight: count, steps: Vec::new() };
         let first = &self.scene.bricks()[0].surface_group;
         steps.push(&self.passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
         steps.mark(Moment::Started);
@@ -130,7 +131,7 @@ struct StudioPasses<'a> {
 
 struct Steps<'a> {
     round: Round<'a>,
-    turns: u32,
+    in_flight: u32,
     steps: Vec<Step<'a>>,
 }
 
@@ -142,8 +143,17 @@ impl<'a> Steps<'a> {
         brick: Option<&'a BindGroup>,
         work: Work,
     ) {
-        let (turns, is_search, moment) = (self.turns, false, None);
-        self.steps.push(Step { pass, dispatch, brick, work, turns, rays: 1, is_search, moment });
+        let (in_flight, is_search, moment) = (self.in_flight, false, None);
+        self.steps.push(Step {
+            pass,
+            dispatch,
+            brick,
+            work,
+            in_flight,
+            rays: 1,
+            is_search,
+            moment,
+        });
     }
 
     fn push_search(
@@ -153,21 +163,21 @@ impl<'a> Steps<'a> {
         brick: &'a BindGroup,
         work: Work,
     ) {
-        let (turns, is_search, moment) = (self.turns, true, None);
+        let (in_flight, is_search, moment) = (self.in_flight, true, None);
         self.steps.push(Step {
             pass,
             dispatch,
             brick: Some(brick),
             work,
-            turns,
+            in_flight,
             rays: 1,
             is_search,
             moment,
         });
     }
 
-    /// The last dispatches, one for each brick of what casts shadows, send so many rays for each path.
-    fn weigh(&mut self, rays: u32) {
+    /// Sets the number of rays of the last dispatches, one for each brick of the occluders.
+    fn set_rays(&mut self, rays: u32) {
         let count = self.round.occluders.bricks().len();
         self.steps.iter_mut().rev().take(count).for_each(|step| step.rays = rays);
     }
@@ -178,11 +188,11 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// What the rays meet at a surface: the camera's by pixels, others by lists.
+    /// Adds the search for the hits of all rays: over pixels for camera rays, over lists for others.
     fn extend(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let (first, later) = &self.round.passes.extend;
-        for (turn, brick) in self.round.scene.bricks().iter().enumerate() {
-            let by = match (turn, later) {
+        for (index, brick) in self.round.scene.bricks().iter().enumerate() {
+            let by = match (index, later) {
                 (0, _) => first,
                 (_, Some(later)) => later,
                 (_, None) => return Err(GpuError::OtherRenderer),
@@ -193,16 +203,16 @@ impl<'a> Steps<'a> {
         Ok(())
     }
 
-    /// A dispatch for every brick: each shades what it holds.
+    /// Adds a dispatch for every brick, which shades the hits in the brick.
     fn shade(&mut self, by: &'a BySchedule, dispatch: DispatchParameters) {
         for brick in self.round.scene.bricks() {
-            // What the camera sees beside the scene is background.
+            // Pixels outside the visible region show the background.
             let (pass, work) = by_surface(by, dispatch, Area::Whole);
             self.push(pass, dispatch, Some(&brick.surface_group), work);
         }
     }
 
-    /// The parameters of the passes over a surface; from the second on, the list of paths that go on is counted first.
+    /// The parameters of the passes over a surface. From the second surface on, the list of paths is counted first.
     fn surface(
         &mut self,
         dispatch: DispatchParameters,
@@ -222,7 +232,7 @@ impl<'a> Steps<'a> {
         self.push(&self.round.passes.advance, dispatch, None, Work::Advance);
     }
 
-    /// Searches what casts shadows for all that look for light.
+    /// Adds the search for occluders for all paths in the list of light.
     fn search_occluders(&mut self, pass: &'a Pass, dispatch: DispatchParameters, area: Area) {
         for brick in self.round.occluders.bricks() {
             self.push_search(pass, dispatch, &brick.trace_group, Work::List(area));
@@ -236,13 +246,13 @@ impl<'a> Steps<'a> {
         occlude: &'a Pass,
     ) -> Result<(), GpuError> {
         let lighting = self.round.lighting;
-        for surface in 0..=lighting.most_surfaces {
-            let dispatch = self.surface(dispatch, surface, surface == lighting.most_surfaces);
+        for surface in 0..=lighting.max_surfaces {
+            let dispatch = self.surface(dispatch, surface, surface == lighting.max_surfaces);
             self.extend(dispatch)?;
             self.mark(Moment::Extended);
             self.shade(scatter, dispatch);
             self.mark(Moment::Scattered);
-            if lighting.parameters.source_count > 0 && surface < lighting.most_surfaces {
+            if lighting.parameters.source_count > 0 && surface < lighting.max_surfaces {
                 let dispatch = DispatchParameters { list: LIST_OF_LIGHT, ..dispatch };
                 self.advance(dispatch);
                 self.search_occluders(occlude, dispatch, Area::Visible);
@@ -262,8 +272,8 @@ impl<'a> Steps<'a> {
         let lights = lighting.casts_shadow.len() as u32;
         let directions = lighting.parameters.occlusion_samples;
         let at_once = self.round.occluders.rays_at_once(self.round.at_once);
-        for surface in 0..lighting.most_surfaces {
-            let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.most_surfaces);
+        for surface in 0..lighting.max_surfaces {
+            let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.max_surfaces);
             self.extend(dispatch)?;
             self.shade(passes.surface, dispatch);
             if lights == 0 && directions == 0 {
@@ -291,7 +301,7 @@ impl<'a> Steps<'a> {
                     let count = (light + count - first).min(at_once);
                     let dispatch = DispatchParameters { light: first, count, ..dispatch };
                     self.search_occluders(passes.ambient, dispatch, Area::Occluders);
-                    self.weigh(count);
+                    self.set_rays(count);
                 }
                 let dispatch = DispatchParameters { light, count, ..dispatch };
                 self.push(passes.gather, dispatch, Some(first), Work::List(Area::Whole));
@@ -301,7 +311,7 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// The camera's rays are taken by pixels, those that surfaces send by lists.
+/// The pass and its work for a surface: camera rays are processed by pixels, and all others by lists.
 fn by_surface(by: &BySchedule, dispatch: DispatchParameters, area: Area) -> (&Pass, Work) {
     if dispatch.surface == 0 {
         (&by.pixels, Work::Pixels(area))

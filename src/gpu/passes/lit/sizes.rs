@@ -1,4 +1,4 @@
-//! How large the buffers of a lit picture are: what the plan sums up, and what is allocated.
+//! The sizes of the buffers of a lit picture, which both the plan and the allocation use.
 
 use wgpu::Limits;
 
@@ -10,52 +10,52 @@ use super::records::{
 use crate::camera::film::Film;
 use crate::gpu::passes::tiles::WORKGROUP_SIDE;
 
-/// The most paths that are followed at a time. Their state then takes 56 to 80 MiB.
-const MOST_PATHS: u64 = 1 << 19;
+/// Maximum number of paths that are traced at a time. Their state then takes 56 to 80 MiB.
+const MAX_PATHS: u64 = 1 << 19;
 
-/// How many samples of a pixel are followed together, if there are so many: each of them then costs less, because their
-/// sum is read and written once. Tiles are smaller for it.
+/// Number of samples of a pixel that are traced together, if there are so many. Each of them then costs less, because
+/// the sums are read and written once for all of them. Tiles become smaller in return.
 const TOGETHER: u32 = 4;
 
-/// Sizes of what all tiles share, and of what each has.
+/// Sizes of the buffers that all tiles share, and of those of each tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) struct LitSizes {
-    /// Width and height of a tile in pixels, at most.
+    /// Maximum width and height of a tile in pixels.
     pub(in crate::gpu) tile: [u32; 2],
-    /// How many samples of every pixel of a tile are followed together.
+    /// Number of samples of every pixel of a tile that are traced together.
     pub(in crate::gpu) in_flight: u32,
-    /// `vec4f`s of a path's state.
+    /// Number of `vec4f` in the state of a path.
     slots: u64,
 }
 
 impl LitSizes {
-    /// For a film, with at most so many samples.
+    /// The sizes for a film with at most `samples` samples of every pixel.
     pub(in crate::gpu) fn new(limits: &Limits, film: &Film, mode: Mode, samples: u32) -> Self {
         let slots = slots(mode);
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_path = 16 * slots.max(FILM_SLOTS);
-        let most = (binding / of_path).clamp(64, MOST_PATHS);
-        let most_pixels = (most / u64::from(samples.clamp(1, TOGETHER))).max(64);
-        let width = u64::from(film.width()).min((most_pixels / 8).max(8));
-        let rows = (most_pixels / width).max(1);
+        let max_paths = (binding / of_path).clamp(64, MAX_PATHS);
+        let max_pixels = (max_paths / u64::from(samples.clamp(1, TOGETHER))).max(64);
+        let width = u64::from(film.width()).min((max_pixels / 8).max(8));
+        let rows = (max_pixels / width).max(1);
         let side = u64::from(WORKGROUP_SIDE);
         let rows = if rows > side { rows / side * side } else { rows };
-        // No more than the film, so they fit.
+        // The tile is not larger than the film, so its sides fit into u32.
         let tile = [width as u32, rows.min(film.height().into()) as u32];
         let pixels = u64::from(tile[0]) * u64::from(tile[1]);
-        let in_flight = (most / pixels).clamp(1, samples.max(1).into());
-        // No more than the samples, so it fits.
+        let in_flight = (max_paths / pixels).clamp(1, samples.max(1).into());
+        // There are not more than `samples`, so it fits into u32.
         Self { tile, in_flight: in_flight as u32, slots }
     }
 
-    /// The same for one rectangle, and one sample at a time.
+    /// The sizes for a single rectangle and one sample at a time.
     pub(in crate::gpu) fn of_one_sample(tile: [u32; 2], mode: Mode) -> Self {
         Self { tile, in_flight: 1, slots: slots(mode) }
     }
 
-    /// How many paths there is room for, as kernels count them.
+    /// Number of paths that the buffers have room for.
     pub(in crate::gpu) fn room(&self) -> u32 {
-        // At most MOST_PATHS, or a rectangle that is recorded; so it fits.
+        // There are at most MAX_PATHS, or the pixels of a recorded rectangle, so it fits into u32.
         self.paths() as u32
     }
 
@@ -67,27 +67,27 @@ impl LitSizes {
         u64::from(self.tile[0]) * u64::from(self.tile[1])
     }
 
-    /// Bytes of the state of all paths.
+    /// Size in bytes of the state of all paths.
     pub(in crate::gpu) fn path_bytes(&self) -> u64 {
         16 * self.slots * self.paths()
     }
 
-    /// Bytes of the lists of paths.
+    /// Size in bytes of the lists of paths.
     pub(in crate::gpu) fn queue_bytes(&self) -> u64 {
         QUEUE_HEAD + 4 * LISTS * self.paths()
     }
 
-    /// Bytes of what indirect dispatches read.
+    /// Size in bytes of the arguments of indirect dispatches.
     pub(in crate::gpu) fn groups_bytes(&self) -> u64 {
         GROUPS_NEEDED
     }
 
-    /// Bytes of the sums of a tile's pixels. They are read back tile by tile.
+    /// Size in bytes of the sums of a tile's pixels, which are read back tile by tile.
     pub(in crate::gpu) fn film_bytes(&self) -> u64 {
         16 * FILM_SLOTS * self.pixels()
     }
 
-    /// Bytes of how much the samples of a tile's pixels vary.
+    /// Size in bytes of the sums of variances and luminances of a tile.
     pub(in crate::gpu) fn variation_bytes(&self) -> u64 {
         8 * 64 * self.pixels().div_ceil(64 * PIXELS_PER_VARIATION)
     }

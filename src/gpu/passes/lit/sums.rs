@@ -1,21 +1,21 @@
-//! From the sums of a tile's pixels to a picture.
+//! Computing a picture from the sums of its pixels.
 
 use super::records::FILM_SLOTS;
 use crate::gpu::passes::tiles::Tile;
 use crate::image::color::luminance;
 use crate::image::{Averages, Image};
 
-/// Sums of one pixel: the three vectors of `shaders/path/film_sums.wgsl`.
+/// The sums of a pixel, which are the three vectors of `shaders/path/film_sums.wgsl`.
 type Sums = [[f32; 4]; FILM_SLOTS as usize];
 
 /// Sums over all pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::gpu) struct Totals {
-    /// Of all samples.
+    /// Sum of the opacities of all samples.
     pub(in crate::gpu) opacity: f64,
-    /// Of pixels' means.
+    /// Sum of the variances of pixels' means.
     pub(in crate::gpu) variance: f64,
-    /// Luminance of pixels.
+    /// Sum of the luminances of pixels.
     pub(in crate::gpu) light: f64,
     pub(in crate::gpu) pixels: u64,
 }
@@ -28,8 +28,8 @@ impl Totals {
         self.pixels += more.pixels;
     }
 
-    /// The noise that is left: the root of the mean variance of pixels, over the mean luminance. `None` while nothing
-    /// can be said.
+    /// The remaining noise: the square root of the mean variance of pixels, divided by the mean luminance. It is `None`
+    /// if it is not known.
     pub(in crate::gpu) fn noise(&self, samples: u32) -> Option<f64> {
         let count = self.pixels as f64;
         let is_known = samples > 1 && self.light > 0.0;
@@ -37,7 +37,7 @@ impl Totals {
     }
 }
 
-/// Writes a tile's means into the layers that an image has.
+/// Writes the means of a tile to the layers of an image.
 pub(in crate::gpu) fn write(
     image: &mut Image,
     tile: Tile,
@@ -59,7 +59,7 @@ pub(in crate::gpu) fn write(
     totals
 }
 
-/// A pixel's means, its luminance, and the variance of that.
+/// The means of a pixel, its luminance, and the variance of its mean luminance.
 fn means(pixel: &Sums, samples: u32) -> (Averages, f64, f64) {
     let [[r, g, b, alpha], rest, [red, green, blue, square]] = pixel.map(|v| v.map(f64::from));
     let count = f64::from(samples.max(1));
