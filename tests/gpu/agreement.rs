@@ -1,4 +1,4 @@
-//! The GPU's picture is the CPU reference's picture.
+//! Tests that pictures of the GPU agree with those of the CPU reference.
 
 use libtest_mimic::Trial;
 use pinhole::LayerSet;
@@ -7,7 +7,7 @@ use crate::headless;
 use crate::scenes;
 use crate::support::compare::{Picture, compare};
 
-/// The most pixels, in parts of all, whose id may be one of two right ones.
+/// Maximum fraction of pixels whose id may differ because two ids are correct.
 const MAX_AMBIGUOUS: f64 = 1e-3;
 
 pub(crate) fn trials() -> Vec<Trial> {

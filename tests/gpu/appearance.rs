@@ -1,4 +1,4 @@
-//! What spheres look like: every kind of colours shows what spheres one by one show, to the byte.
+//! Tests that pictures of every kind of colours are identical to those of spheres with individual colours.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::camera::{PinholeCamera, Pose};
@@ -24,7 +24,7 @@ pub(crate) fn camera() -> PinholeCamera {
     PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
 }
 
-/// By one ray a pixel, in a studio, and along paths.
+/// Pictures with one ray for each pixel, of a studio, and of paths.
 fn pictures(scene: &Scene) -> Result<[Image; 3], Failed> {
     let (headless, camera) = (headless()?, camera());
     let view = View::new(&camera, Film::new(64, 64)?);

@@ -1,17 +1,18 @@
-//! Shader parts by themselves: kernels of the tests' own around them, one answer for each question.
+//! Running shader parts alone, in kernels of the tests, which compute one answer for each question.
 
 use pinhole::gpu::{Headless, wgpu};
 use wgpu::util::DeviceExt;
 
-/// In front of the parts: where questions and answers are.
+/// The WGSL before the parts, which declares the buffers of questions and answers.
 const BINDINGS: &str = "
 @group(0) @binding(0) var<storage, read> questions: array<vec4u>;
 @group(0) @binding(1) var<storage, read_write> answers: array<vec4u>;
 ";
 
-/// What `fn answer(question: vec4u) -> vec4u`, which one of the parts has, says to each question.
+/// Returns the results of `fn answer(question: vec4u) -> vec4u`, which one of the parts must provide, for all
+/// questions.
 ///
-/// `tables` are storage buffers, of words, with group and binding.
+/// `tables` are storage buffers of words, with their groups and bindings.
 pub(crate) fn answers(
     headless: &Headless,
     parts: &[&str],
@@ -81,7 +82,7 @@ fn main(@builtin(global_invocation_id) invocation: vec3u,
         pass.set_bind_group(group, &bound, &[]);
     }
     let workgroups = questions.len() as u32 / 64;
-    // At most 65,535 along an axis.
+    // There may be at most 65,535 workgroups along an axis.
     pass.dispatch_workgroups(workgroups.min(4096), workgroups.div_ceil(4096), 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&buffers[1].2, 0, &read, 0, size);

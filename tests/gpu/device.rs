@@ -1,4 +1,4 @@
-//! Choosing a device, and what happens when it fails.
+//! Tests of choosing a device, and of failures of devices.
 
 use std::time::Duration;
 
@@ -52,10 +52,10 @@ fn destroyed(_: &'static Headless) {
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
 
-/// The device is lent out; what goes wrong there is not the next render's.
+/// An error that a caller causes on the device does not affect the next render.
 fn callers_fault(_: &'static Headless) {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
-    // No usage at all is invalid.
+    // A buffer without any usage is invalid.
     let _ = headless.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("the caller's"),
         size: 16,
@@ -66,7 +66,7 @@ fn callers_fault(_: &'static Headless) {
     headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
 }
 
-/// A picture of several submissions; `watch` is told after each but the last.
+/// Renders a picture in several submissions. `watch` is called after each of them except the last.
 fn render_watched(
     headless: &Headless,
     mut watch: impl FnMut(&Progress) -> Decision,
@@ -94,7 +94,7 @@ fn lost_midway(_: &'static Headless) {
     });
     assert!(told > 0, "the picture is too small for more than one submission");
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
-    // It stays lost.
+    // The device stays lost.
     let result = render_watched(&headless, |_: &_| Decision::GoOn);
     assert!(matches!(result, Err(GpuError::DeviceLost { .. })), "{result:?}");
 }
@@ -103,7 +103,7 @@ fn too_slow(_: &'static Headless) {
     let timeout = Duration::ZERO;
     let options = HeadlessOptions { timeout, ..HeadlessOptions::default() };
     let headless = Headless::open(&options).unwrap();
-    // An upload waits for next to nothing, which may be done at once; a picture is not.
+    // The work of an upload may finish at once, but that of a picture does not.
     let result = render_watched(&headless, |_: &_| Decision::GoOn);
     assert_eq!(result.err(), Some(GpuError::Timeout { waited: timeout }));
 }
@@ -120,7 +120,8 @@ fn stopped(headless: &'static Headless) {
     assert_eq!(whole, render_watched(headless, |_: &_| Decision::GoOn).unwrap());
 }
 
-/// Twelve bytes a pixel or more of the host: for the largest film, more than it can address.
+/// A picture takes at least twelve bytes of host memory for each pixel, which for the largest film is more than the
+/// host can address.
 fn no_memory(headless: &'static Headless) {
     let film = Film::new(Film::MAX_SIDE, Film::MAX_SIDE).unwrap();
     let view = View { film, ..View::three_spheres() };

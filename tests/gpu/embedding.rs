@@ -1,4 +1,4 @@
-//! Recording into a foreign device's textures inside a foreign encoder.
+//! Tests of recording into the encoder and the textures of another application's device.
 
 use std::sync::{Arc, Mutex};
 
@@ -30,7 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-/// A host program with a device of its own, with no more than WebGPU's default limits.
+/// An application with its own device, which has the default limits of WebGPU.
 pub(crate) struct Host {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
@@ -63,7 +63,7 @@ impl Host {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// The word in a buffer, after running the encoder.
+    /// Runs the encoder and returns the word in a buffer.
     fn submit_and_read_word(&self, mut encoder: wgpu::CommandEncoder, word: &wgpu::Buffer) -> u32 {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -79,7 +79,7 @@ impl Host {
         u32::from_ne_bytes(bytes[..].try_into().unwrap())
     }
 
-    /// The bytes of a texture, after running the encoder.
+    /// Runs the encoder and returns the bytes of a texture.
     pub(crate) fn submit_and_read(
         &self,
         mut encoder: wgpu::CommandEncoder,
@@ -125,7 +125,7 @@ pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
     [film.width(), film.height()]
 }
 
-/// The bytes that the CPU reference gives, from its ids, so that no rounding is involved.
+/// The expected bytes, computed from the ids of the CPU reference, so that no rounding is involved.
 fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
     let background = view.settings.background;
@@ -139,7 +139,7 @@ fn expected_bytes(view: &View) -> Vec<u8> {
     reference.id().unwrap().iter().flat_map(rgba).collect()
 }
 
-/// A render pass of the host's.
+/// A render pass of the application.
 fn clear(encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -167,7 +167,7 @@ fn foreign_frame(_: &'static Headless) {
     let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
     frame.set_view(&host.queue, &scene, &view.seen(), &view.settings).unwrap();
 
-    // The host's own work in the same encoder, on the same texture: a clear before, a copy after.
+    // The application records its own commands for the same texture in the same encoder: a clear before, a copy after.
     let mut encoder = host.encoder();
     clear(&mut encoder, &target_view);
     renderer.record(&mut encoder, &scene, &frame).unwrap();
@@ -177,7 +177,7 @@ fn foreign_frame(_: &'static Headless) {
     assert!(bytes == expected_bytes(&view), "the texture differs from the reference");
 }
 
-/// More pixels than hits fit into one buffer: the host's picture is rendered in two bands.
+/// If the hits of a picture do not fit into one buffer, the picture is rendered in two bands.
 fn several_bands(_: &'static Headless) {
     let host = Host::new();
     let mut view = View::three_spheres();
@@ -191,7 +191,7 @@ fn several_bands(_: &'static Headless) {
     let mut encoder = host.encoder();
     renderer.record(&mut encoder, &scene, &frame).unwrap();
     let bytes = host.submit_and_read(encoder, &target);
-    // In a picture this large, some pixels lie so close to a silhouette that either color is right.
+    // In a picture this large, some pixels are so close to a silhouette that both colours are correct.
     let expected = expected_bytes(&view);
     let pixels = bytes.chunks(4).zip(expected.chunks(4));
     let different = pixels.filter(|(a, b)| a != b).count();
@@ -202,7 +202,7 @@ fn several_views(_: &'static Headless) {
     let host = Host::new();
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
     let views = [three_spheres(), View::three_spheres_orthographic()];
-    // One scene, two frames, one submission.
+    // Two frames of the same scene are recorded in one submission.
     let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &views[0].scene).unwrap();
     let mut encoder = host.encoder();
     let textures: Vec<wgpu::Texture> = views
@@ -231,7 +231,7 @@ fn several_views(_: &'static Headless) {
     assert!(second == expected_bytes(&views[1]), "orthographic");
 }
 
-/// A kernel that ran out of steps says so in the frame's status, until the host clears it.
+/// A kernel that reaches the iteration limit sets the status of the frame, until the application clears it.
 fn given_up(_: &'static Headless) {
     let host = Host::new();
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
@@ -281,7 +281,7 @@ fn unfit_targets(_: &'static Headless) {
     let error = Frame::new(&with_data, &host.device, &targets).map(|_| ()).unwrap_err();
     assert!(matches!(error, GpuError::Target { layer: "data", .. }), "{error}");
 
-    // Nothing of this reached the host's device, or it would have panicked.
+    // No error reached the error handler of the application's device, which would have panicked.
 }
 
 fn data_layers(_: &'static Headless) {
@@ -319,7 +319,7 @@ fn data_layers(_: &'static Headless) {
             assert_eq!(found.to_bits(), 1e30_f32.to_bits());
         }
     }
-    // Half floats: the background's red, 0.4342 in linear light, to eleven bits.
+    // The red of the background is 0.4342 in linear light, rounded to the eleven bits of a half float.
     let colors = host.submit_and_read(host.encoder(), &color);
     let red = u16::from_le_bytes([colors[0], colors[1]]);
     assert_eq!((red >> 10, red & 0x3ff), (13, 754), "{red:#x}");
@@ -334,7 +334,7 @@ fn hosts_handler(_: &'static Headless) {
     }));
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
     let target = host.texture([8, 8], ColorTarget::Srgb8.texture_format());
-    // Only wgpu can see that this view has layers.
+    // Only wgpu can detect that this view has layers.
     let layered = target.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..wgpu::TextureViewDescriptor::default()
@@ -345,7 +345,7 @@ fn hosts_handler(_: &'static Headless) {
     assert_eq!(*reached.lock().unwrap(), Vec::<String>::new());
 }
 
-/// Frames have primary rays only; that is said, and nothing is recorded.
+/// Frames support primary rays only. Other settings are an error, and nothing is recorded.
 fn lit_frame(_: &'static Headless) {
     let host = Host::new();
     let view = three_spheres();
@@ -399,6 +399,6 @@ fn not_ready(_: &'static Headless) {
     let linear = RendererOptions { color: ColorTarget::Linear16, ..options };
     let linear = Renderer::new(&host.device, &linear).unwrap();
     assert_eq!(linear.record(&mut encoder, &scene, &frame), Err(GpuError::OtherRenderer));
-    // The encoder is as good as before.
+    // The encoder can still be used.
     host.queue.submit([encoder.finish()]);
 }

@@ -1,5 +1,5 @@
-//! Rays through points of the lens other than its centre: pictures of one ray a pixel have none, so that the kernel
-//! is told another point.
+//! Tests of rays through points of the lens other than its centre. Pictures with one ray for each pixel have no such
+//! rays, so the kernel is edited to use another point.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
@@ -10,11 +10,11 @@ use pinhole::verify::{LegalCameraRay, Recording};
 
 use crate::verify_views as views;
 
-/// In all of the cases of the map from square to disk, on a seam, and on the edge.
+/// Points in all cases of the map from the square to the disk, on a seam, and on the edge.
 const POINTS: [[f32; 2]; 7] =
     [[0.5, 0.5], [0.9, 0.6], [0.4, 0.1], [0.1, 0.45], [0.3, 0.95], [0.75, 0.75], [0.0, 0.5]];
 
-/// How far a direction may be from the reference's: twenty roundings of f32. Both are of unit length.
+/// Maximum distance between a unit direction and that of the reference: twenty roundings of f32.
 const NEAR: f64 = 20.0 / (1 << 24) as f64;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -58,7 +58,7 @@ fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
         if at.length() > NEAR * f64::from(ray.distance) {
             return Err(format!("({i}, {j}): the origin is off by {at:?}").into());
         }
-        // The location in f32 is the nearest; what it is off by turns a ray by less than the bounds.
+        // The location in f32 is the nearest one. Its rounding error rotates a ray by less than the bounds.
         let location = location.as_vec2().to_array();
         let legal = LegalCameraRay::new(camera.kind, uploaded, location, lens);
         let is_legal = |axis: usize| legal.direction[axis].contains(ray.direction[axis].into());
@@ -67,6 +67,6 @@ fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
         }
         traced += 1;
     }
-    // A camera with a lens sees the box through all of the film.
+    // For a camera with a lens, the box may be visible in the whole film.
     if traced == pixels.len() { Ok(()) } else { Err(format!("only {traced} are traced").into()) }
 }

@@ -1,7 +1,7 @@
-//! Tests that need an adapter; Mesa's lavapipe is enough.
+//! Tests that need an adapter. Mesa's lavapipe suffices.
 //!
-//! No adapter is a failure. If `PINHOLE_NO_GPU_TESTS=1`, this run is the half without a GPU, and
-//! every test here counts as ignored.
+//! The tests fail if there is no adapter. If `PINHOLE_NO_GPU_TESTS=1`, this run has no GPU, and every test here counts
+//! as ignored.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
 #[path = "../support/harness.rs"]

@@ -1,4 +1,4 @@
-//! Shader parts against their twins, by themselves.
+//! Tests that compare single shader parts with their twins.
 
 use std::f64::consts::TAU;
 
@@ -34,14 +34,14 @@ const TURNS: &str = include_str!("../../shaders/math/turns.wgsl");
 const INVERSE: &str = include_str!("../../shaders/math/trigonometry_inverse.wgsl");
 const ENVIRONMENT: &str = include_str!("../../shaders/scene/environment.wgsl");
 
-/// What `FENCE` asks for; the last word of each question is zero.
+/// The source of zero that `FENCE` needs: the last word of each question, which is zero.
 const RUNTIME_ZERO: &str = "fn runtime_zero() -> u32 { return questions[0].w; }";
 
-/// Words at which something may overflow, be cut off or be taken for signed.
+/// Words at which something may overflow, be truncated or be interpreted as signed.
 const EXTREMES: [u32; 8] =
     [0, 1, 0x00ff_ffff, 0x0100_0000, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, u32::MAX];
 
-/// Every combination of extremes, and what chance gives: small numbers, as pictures have them, and any.
+/// All combinations of extreme words, and random words: small ones, as they occur in pictures, and arbitrary ones.
 fn questions(count: usize) -> Vec<[u32; 4]> {
     let mut random = fastrand::Rng::with_seed(7);
     let at = |i: usize, digit: u32| EXTREMES[i / EXTREMES.len().pow(digit) % EXTREMES.len()];
@@ -87,8 +87,8 @@ fn unit_numbers(headless: &'static Headless) {
     });
 }
 
-/// A few ULP: with either neighbour of each result allowed, the difference, the product and the sum are off by
-/// 2⁻²³ of themselves at most.
+/// The allowed error is a few ULP: if each result may be either neighbour of the exact one, the relative errors of the
+/// difference, the product and the sum are at most 2⁻²³ each.
 fn filter_offsets(headless: &'static Headless) {
     let questions = questions(1 << 16);
     for &filter in PixelFilter::ALL {
@@ -114,7 +114,7 @@ fn answer(q: vec4u) -> vec4u { return vec4u(bitcast<vec2u>(filter_offset(q.xy)),
     }
 }
 
-/// Questions of so many numbers.
+/// Questions with the given numbers.
 fn packed<const N: usize>(numbers: impl Iterator<Item = [f32; N]>) -> Vec<[u32; 4]> {
     numbers
         .map(|numbers| {
@@ -148,11 +148,11 @@ fn sines(headless: &'static Headless) {
     let mut worst = 0.0_f64;
     for (question, answer) in questions.into_iter().zip(answers) {
         let turns = numbers(question)[0];
-        // In f64, whole turns can be left out without error.
+        // In f64, whole turns can be subtracted exactly.
         let (sine, cosine) = (TAU * (turns - turns.round())).sin_cos();
         let [found_sine, found_cosine, ..] = numbers(answer);
         worst = worst.max((found_sine - sine).abs()).max((found_cosine - cosine).abs());
-        // Small angles have small errors.
+        // The errors of small angles are small.
         assert!((found_sine - sine).abs() <= 2_f64.powi(-20) * sine.abs() + 1e-15, "{turns}");
     }
     assert!(worst < 2_f64.powi(-22), "{worst:e}");
@@ -184,7 +184,7 @@ fn angles(headless: &'static Headless) {
     assert!(worst < 2_f64.powi(-23), "{worst:e}");
 }
 
-/// Asks of a map, turned, for radiance and density of directions, or for samples.
+/// Evaluates radiance and density of directions in a rotated environment map, or takes samples of it.
 fn ask_environment(
     headless: &Headless,
     map: &Environment,
@@ -219,14 +219,14 @@ fn rotations() -> [[f32; 2]; 3] {
     [AS_IT_IS, Environment::rotation(0.7), Environment::rotation(-2.9)]
 }
 
-/// How near to the edge of a texel a device may take a direction for one on the other side, in turns: what its
-/// angles and the rounding of their arguments are off by.
+/// Distance from the edge of a texel, in turns, within which a device may assign a direction to the neighbouring texel.
+/// It is the error of the angles and of the rounding of their arguments.
 const EDGE: f64 = 1.0 / (1 << 21) as f64;
 
 fn environment_lookup(headless: &'static Headless) {
     let mut random = fastrand::Rng::with_seed(6);
     let directions = || {
-        // Uniform, and as many near the poles.
+        // Half of the directions are uniformly distributed, and half are near the poles.
         let down: f64 = random.f64();
         let down = if random.bool() { down } else { down.powi(3) };
         let d = direction(random.f64(), if random.bool() { down } else { 1.0 - down });
@@ -267,10 +267,10 @@ fn environment_lookup(headless: &'static Headless) {
     }
 }
 
-/// How far a device's sample may be off: a longitude rounded to 2⁻²⁴ turns, its sine to 2⁻²², and some roundings.
+/// Maximum error of a sampled direction: a longitude rounded to 2⁻²⁴ turns, its sine to 2⁻²², and some roundings.
 const DIRECTION: f64 = 1.0 / (1 << 20) as f64;
 
-/// How far a device's density may be off, relative to itself: two sines of 2⁻²⁰ and six roundings.
+/// Maximum relative error of a density: two sines with errors of 2⁻²⁰ and six roundings.
 const DENSITY: f64 = 1.0 / (1 << 18) as f64;
 
 fn environment_samples(headless: &'static Headless) {
@@ -288,7 +288,8 @@ fn environment_samples(headless: &'static Headless) {
                     "{size:?}, {u:x}, {v:x}: {found}, {density}"
                 );
                 let found = DVec3::new(x, y, z);
-                // From its pole on, the other one is as coarse as f32 near one: of a single row, the height counts.
+                // Heights are computed from one pole. Near the other pole they have the resolution of f32 near 1, which
+                // matters for a map with a single row.
                 let error = if size[1] == 1 {
                     (y - direction.y).abs()
                 } else {

@@ -1,4 +1,4 @@
-//! Pictures whose every byte is known.
+//! Tests of pictures in which every byte is known.
 
 use glam::DVec3;
 use libtest_mimic::Trial;
@@ -85,9 +85,9 @@ fn every_layer_alone(headless: &'static Headless) {
     assert!(all.variance().unwrap().iter().all(|variance| *variance == 0.0));
 }
 
-/// With the eye on the wall, up to rounding, and looking along it, nearly everything cancels. Whether such
-/// a ray hits is open; but it leaves the middle plane by at most 10⁻⁵ of its length, so what it cuts off
-/// the sphere is shorter than 10⁻³, also after some roundings of f32: √(8 · 2⁻²⁴) is 7 · 10⁻⁴.
+/// If the eye is on the sphere up to rounding and looks along the surface, nearly all terms cancel. Such a ray may hit
+/// or miss. It deviates from the middle plane by at most 10⁻⁵ of its length, so its chord in the sphere is shorter than
+/// 10⁻³, also after some roundings of f32: √(8 · 2⁻²⁴) is 7 · 10⁻⁴.
 fn on_the_wall(headless: &'static Headless) {
     let scene = Scene::new(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE)]).unwrap();
     let film = Film::new(64, 64).unwrap();
@@ -110,7 +110,7 @@ fn on_the_wall(headless: &'static Headless) {
     assert!(hits > 1000, "{hits}");
 }
 
-/// Half a million rows; at a cost that grows with the square of the height, this would not end.
+/// The picture has half a million rows. If the cost grew with the square of the height, this test would not end.
 fn very_tall(headless: &'static Headless) {
     let mut view = View::three_spheres_orthographic();
     view.film = Film::new(2, 500_000).unwrap().with_y_axis(view.film.y_axis());

@@ -1,4 +1,4 @@
-//! A plan of a picture, and what is then allocated.
+//! Tests that the plan of a picture matches the memory that is then allocated.
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
@@ -26,7 +26,7 @@ fn bounds(headless: &'static Headless) {
             let plan = headless.plan(&scene, &view, &settings, LayerSet::DATA, choice, 0);
             let structures = plan.build(&scene);
             let buffers = headless.upload(&scene, &structures).unwrap();
-            // Not counted: a record per brick, and the one word that stands for colours.
+            // The plan does not count the record of a brick, and the single appearance word.
             let small = 200 * structures.accel.bricks().len() as u64;
             let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
             assert!(buffers.bytes() <= planned + small, "{kind:?}, {choice}");

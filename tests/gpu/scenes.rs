@@ -1,4 +1,4 @@
-//! Scenes on which every back end must agree.
+//! Scenes for which all back ends must render the same picture.
 
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{
@@ -8,7 +8,7 @@ use pinhole::{Film, LinearRgb, RenderSettings, Scene, Shading, Sphere, glam};
 
 use crate::support::{View, shaded};
 
-/// Name and view of every scene.
+/// The names and views of all scenes.
 pub(crate) fn all() -> Vec<(&'static str, View)> {
     vec![
         ("three_spheres", View::three_spheres()),
@@ -91,7 +91,7 @@ fn view(
 }
 
 fn sphere(center: [f64; 3], radius: f64) -> Sphere {
-    // A color that is different for every sphere near another.
+    // Spheres that are close to each other have different colours.
     let mix = |k: f64| (center[0] * k + center[1] * 1.7 + center[2] * 2.3 + radius).sin().abs();
     let color = [mix(1.0) as f32, mix(3.1) as f32, mix(7.7) as f32];
     Sphere::new(center, radius, LinearRgb::new(color).unwrap())
@@ -108,19 +108,19 @@ fn inside_a_sphere() -> View {
     view(&spheres, pinhole([0.0, 1.0, 2.0], [0.0, 0.0, -5.0], 90.0, 1.0), (64, 64), headlight())
 }
 
-/// Off the middle, and away from it: every ray leaves the centre behind.
+/// The eye is off the centre and looks away from it, so the centre is behind the origin of every ray.
 fn inside_looking_out() -> View {
     let spheres = [sphere([0.0; 3], 10.0), sphere([1.0, 0.0, 0.0], 14.0)];
     view(&spheres, pinhole([6.0, 2.0, -1.0], [12.0, 4.0, -2.0], 90.0, 1.0), (64, 64), headlight())
 }
 
-/// The eye lies exactly on the wall, also in f32: the near side is behind, or not at all.
+/// The eye lies exactly on the sphere, also in f32, so no ray hits the near side.
 fn on_the_wall(look_at: [f64; 3]) -> View {
     let camera = pinhole([2.0, 0.0, 0.0], look_at, 90.0, 1.0);
     view(&[sphere([0.0; 3], 2.0)], camera, (64, 64), headlight())
 }
 
-/// So far away that f32 hardly knows where on the sphere a ray arrives.
+/// The camera is so far away that f32 hardly resolves the hit point on the sphere.
 fn far_and_tiny() -> View {
     let spheres = [sphere([0.0; 3], 1.0), sphere([1.5, 0.5, 0.3], 0.8)];
     let pose = Pose::looking_at([1e5, 2e4, 3e4], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
@@ -128,7 +128,7 @@ fn far_and_tiny() -> View {
     view(&spheres, camera, (64, 64), headlight())
 }
 
-/// Every number is exact in f32, and the third and the last but two of the rays are exact tangents.
+/// All numbers are exact in f32. The third ray and the third-last ray are exact tangents.
 fn tangent_rays() -> View {
     let pose = Pose::looking_along([0.0, 0.0, 8.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     let camera = OrthographicCamera::new(pose, [4.0, 1.0]).unwrap();
@@ -139,7 +139,7 @@ fn coincident_spheres() -> View {
     let mut spheres: Vec<Sphere> = (0..40)
         .map(|i| sphere([f64::from(i % 8) - 3.5, f64::from(i / 8) - 2.0, 0.0], 0.7))
         .collect();
-    // Each again, in reverse order and another color: the smaller id must win.
+    // Each sphere is repeated in reverse order and with another colour. The smaller id must win.
     let again: Vec<Sphere> =
         spheres.iter().rev().map(|s| Sphere::new(s.center, s.radius, LinearRgb::WHITE)).collect();
     spheres.extend(again);
@@ -149,7 +149,7 @@ fn coincident_spheres() -> View {
 fn nested_spheres() -> View {
     let spheres: Vec<Sphere> =
         (1..=12).map(|i| sphere([0.0, 0.0, f64::from(i) * 0.1], f64::from(i) * 0.25)).collect();
-    // Inside the larger half of them.
+    // The eye is inside the larger half of the spheres.
     view(&spheres, pinhole([0.3, 0.1, 1.6], [0.0; 3], 100.0, 1.0), (64, 64), headlight())
 }
 
@@ -168,7 +168,7 @@ fn tiny_radii() -> View {
     view(&spheres, pinhole(eye, center, 30.0, 1.0), (96, 96), headlight())
 }
 
-/// A ground that is a sphere of radius 10⁶, and pebbles on it.
+/// Pebbles on a ground that is a sphere of radius 10⁶.
 fn huge_radius() -> View {
     let mut spheres = vec![sphere([0.0, -1e6, 0.0], 1e6)];
     spheres.extend((0..25).map(|i| sphere([f64::from(i % 5) - 2.0, 0.3, -f64::from(i / 5)], 0.3)));
@@ -224,7 +224,7 @@ fn three_wide(width: u32, height: u32) -> View {
     view(&spheres, pinhole([0.0, 1.0, 9.0], [0.0; 3], 50.0, 1.5), (width, height), flat())
 }
 
-/// More spheres than one dispatch tries, the nearest among the last.
+/// There are more spheres than one dispatch tests, and the nearest are among the last.
 fn more_than_one_slice() -> View {
     let mut spheres = random_spheres(8, 120_000, 0.01);
     spheres.sort_by(|a, b| a.center[2].total_cmp(&b.center[2]));
@@ -262,7 +262,7 @@ fn random_1000(y_axis: YAxis, lens: Lens) -> View {
     }
 }
 
-/// As far apart as no eyes are, so that rays are shifted by much.
+/// The distance between the eyes is unrealistically large, so that rays are shifted far.
 fn eyes(pose: Pose) -> [PinholeCamera; 2] {
     PinholeCamera::new(pose, 1.5, [0.8, 0.6]).unwrap().stereo_pair(1.0, 4.0).unwrap()
 }
@@ -275,7 +275,7 @@ fn fisheye(pose: Pose, degrees: f64, aspect: f64) -> FisheyeCamera {
     FisheyeCamera::new(pose, degrees.to_radians(), aspect).unwrap()
 }
 
-/// Spheres on all sides, and a few around all of them.
+/// Spheres on all sides of the eye, and a few large ones that enclose all of them.
 fn all_around<C: Camera + 'static>(camera: impl Fn(Pose, f64) -> C) -> View {
     let mut spheres = random_spheres(10, 300, 0.2);
     spheres.retain(|sphere| glam::DVec3::from(sphere.center).length() > 0.8);

@@ -1,4 +1,4 @@
-//! The adapter keeps what bounds of errors count on.
+//! Tests that the adapter has the properties that the error bounds assume.
 
 use libtest_mimic::Trial;
 use pinhole::gpu::{Headless, SelfTestExtent};

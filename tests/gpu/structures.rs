@@ -1,9 +1,9 @@
-//! Every structure gives the picture that trying every sphere gives: the same spheres at the same distances, to
+//! Tests that every structure gives the same picture as testing all spheres: the same spheres at the same distances, to
 //! the bit, in one brick or in several.
 //!
-//! How a picture is cut into slices follows the clock, and no option says otherwise. But slices begin small
-//! and grow by what they took, so that two renders of a large film are rarely cut alike; `slices` compares
-//! some.
+//! The division of a picture into slices depends on the clock, and no option fixes it. But slices are small at first
+//! and adapt to the measured times, so two renders of a large film are rarely divided in the same way; `slices`
+//! compares some.
 
 use std::sync::LazyLock;
 
@@ -26,13 +26,13 @@ use crate::support::compare::{Picture, compare};
 use crate::support::spheres::{self, Spheres};
 use crate::trial;
 
-/// Bytes of a binding, for one brick and for several.
+/// Maximum sizes of a binding in bytes, for one brick and for several.
 const ROOMY: u64 = 1 << 27;
 const TINY: u64 = 16 * 600;
 const TINY_FOR_COPIES: u64 = (1 << 20) + 68 * 600;
 const TINY_FOR_REFERENCES: u64 = 4 * 68 * 600;
 
-/// A device with WebGPU's limits.
+/// Opens a device with the limits of WebGPU.
 static WEBGPU: LazyLock<Headless> = LazyLock::new(|| {
     let options = HeadlessOptions { limits: LimitChoice::WebGpu, ..HeadlessOptions::default() };
     Headless::open(&options).unwrap()
@@ -55,7 +55,7 @@ fn all_scenes() -> Vec<Named> {
         ("clusters", || spheres::clusters(10, 200)),
         ("crowd", || spheres::crowd(1_500)),
         ("far", || {
-            // Spheres too small to be seen, and some that are not.
+            // Some spheres are too small to be visible, and some are not.
             let mut spheres = spheres::far(800);
             spheres.extend(spheres::scaled(&spheres::random(200, 24, |_| 0.03), 1e7));
             spheres
@@ -65,7 +65,7 @@ fn all_scenes() -> Vec<Named> {
         ("outlier", || spheres::outlier(1_500)),
         ("times_2_to_the_50", || spheres::scaled(&spheres::four_decades(500), 2_f32.powi(50))),
         ("times_2_to_the_minus_50", || {
-            // A scene's radii are not below 2⁻⁵⁶.
+            // The radii of a scene must not be less than 2⁻⁵⁶.
             spheres::scaled(&spheres::random(500, 25, |_| 0.03), 2_f32.powi(-50))
         }),
     ]
@@ -89,11 +89,11 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Every structure, in one brick and in several.
+/// All structures, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
     let kinds = [
         (AccelChoice::Grid, u64::MAX, TINY_FOR_COPIES),
-        // For so few rays, no copies are made.
+        // The plan makes no copies of spheres for so few rays.
         (AccelChoice::Grid, 1, TINY_FOR_REFERENCES),
         (AccelChoice::Tree, u64::MAX, TINY),
         (AccelChoice::BinaryTree, u64::MAX, TINY),
@@ -105,7 +105,7 @@ fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
     kinds.into_iter().flat_map(build).collect()
 }
 
-/// From the front, from within, and in parallel along an axis, with odd films.
+/// Views from the front, from inside, and of parallel rays along an axis, with films of odd sizes.
 fn views(scene: &Scene) -> Vec<(Box<dyn Camera>, Film)> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
@@ -143,7 +143,7 @@ fn render_view(
     Ok(picture.image)
 }
 
-/// Distances and ids are the same, to the bit.
+/// Asserts that distances and ids are the same, to the bit.
 fn assert_same(name: &str, found: &[Image], expected: &[Image]) {
     for (view, (found, expected)) in found.iter().zip(expected).enumerate() {
         let pixels = |image: &Image| -> Vec<(u32, u32)> {
@@ -175,7 +175,7 @@ fn check(headless: &Headless, spheres: Spheres) {
     }
 }
 
-/// The grid keeps of a million the one that counts, which is the first.
+/// The grid keeps only the first of a million equal spheres, because only that one can be hit.
 fn coincident(headless: &'static Headless) {
     let million = vec![[0.5, 0.25, 0.0, 1.0]; 1_000_000];
     let few = Scene::from_f32(million[..100].to_vec(), LinearRgb::WHITE).unwrap();
@@ -198,7 +198,7 @@ fn slices(headless: &'static Headless) {
         let settings = RenderSettings::default();
         let mut told = Vec::new();
         let watch = &mut |progress: &pinhole::gpu::Progress| {
-            // Between slices, so that it changes nothing.
+            // This runs between slices, so it must not change the picture.
             std::thread::sleep(std::time::Duration::from_micros(rng.u64(0..300)));
             told.push(progress.part);
             Decision::GoOn
@@ -214,15 +214,15 @@ fn slices(headless: &'static Headless) {
             .unwrap()
             .image;
         assert!(told.is_sorted(), "{told:?}");
-        // Two tiles, and all of what is traced.
+        // There are two tiles, and all of both is traced.
         assert!(told.len() >= 2 && told.last() == Some(&1.0), "{told:?}");
         let expected = first.get_or_insert_with(|| image.clone());
         assert_same(&choice.to_string(), &[image], std::slice::from_ref(expected));
     }
 }
 
-/// The second kind of query, of every structure, in one brick and in several: a ray hits something exactly where
-/// the list's picture has a sphere, and that picture is the reference's.
+/// For every structure, in one brick and in several, the query `Any` reports a hit exactly where the picture of the
+/// list has a sphere, and that picture agrees with the reference.
 fn any(headless: &'static Headless) {
     let host = Host::new();
     let mut met = Vec::new();
@@ -252,7 +252,7 @@ fn any(headless: &'static Headless) {
     assert!(Structure::ALL.iter().all(|structure| met.contains(structure)), "{met:?}");
 }
 
-/// For each pixel, whether its ray hits anything: where the depth layer of such a renderer has no miss.
+/// For each pixel, whether its ray hits anything, which is the case where the depth layer has no miss.
 fn any_hits(host: &Host, view: &View, accel: &Accel) -> Vec<bool> {
     let View { scene, camera, film, settings } = view;
     let options = RendererOptions {
@@ -299,7 +299,7 @@ fn assert_is_reference(view: &View, image: &Image) {
     panic!("{} violations, the first is {first:?}", comparison.violations.len());
 }
 
-/// More spheres than one dispatch of the list tries, and nearest ones in each of its slices.
+/// The list has more spheres than one dispatch tests, with nearest spheres in each of its bricks.
 fn long_list(headless: &'static Headless) {
     let spheres = spheres::random(120_000, 26, |_| 0.005);
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
@@ -321,8 +321,8 @@ fn long_list(headless: &'static Headless) {
     assert_is_reference(&view, &found);
 }
 
-/// A ray must try 30,000 spheres that lie in one cell, and in all nodes. A software device may not loop so long;
-/// any other shows what the list does.
+/// A ray must test 30,000 spheres that are in one cell, and in all nodes. This exceeds the iteration limit of a
+/// software device; all other devices must render the same picture as the list.
 fn too_many_steps(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres::nearly_coincident(30_000), LinearRgb::WHITE).unwrap();
     let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
@@ -339,7 +339,7 @@ fn too_many_steps(headless: &'static Headless) {
             assert_same(name, &[result.unwrap()], std::slice::from_ref(&expected));
         }
     }
-    // Who leaves the choice to the renderer gets the picture anyway.
+    // With an automatic choice of the structure, the picture is rendered on every device.
     let image = headless.render(
         &scene,
         &pinhole::View::new(&camera, film),

@@ -1,5 +1,5 @@
-//! On a lavapipe that rounds to the nearest and fuses nothing, kernels do what plain f32 does, to the bit: a
-//! stricter wall than legality, where it stands.
+//! Tests that kernels compute the same as plain f32, to the bit, on versions of lavapipe that round to nearest and fuse
+//! no operations. On these drivers this is stricter than legality.
 
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice};
@@ -17,7 +17,7 @@ use crate::harness::trial_unless;
 use crate::scenes;
 use crate::support::View;
 
-/// The versions of lavapipe that are known to; Mesa 26.2 is known not to.
+/// The versions of lavapipe that are known to round to nearest and fuse nothing. Mesa 26.2 is known to differ.
 const PLAIN: [&str; 2] = ["Mesa 22.3", "Mesa 25.0"];
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -30,7 +30,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         .collect()
 }
 
-/// Other drivers are legal and yet different: docs/drivers.md.
+/// Whether the driver computes exactly like plain f32. Other drivers are legal although they differ, see
+/// docs/drivers.md.
 fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
     let info = headless.adapter_info();
     let is_plain = PLAIN.iter().any(|version| info.driver_info.starts_with(version));
@@ -38,7 +39,7 @@ fn lacking_plain_f32(headless: &'static Headless) -> Option<String> {
         .then(|| format!("{} {} need not compute as plain f32 does", info.driver, info.driver_info))
 }
 
-/// `relative_location` of shaders/camera/film.wgsl.
+/// Twin of `relative_location` in shaders/camera/film.wgsl.
 fn location(film: &Film, pixel: UVec2) -> Vec2 {
     let size = UVec2::new(film.width(), film.height()).as_ivec2();
     let location = (pixel.as_ivec2() * 2 + 1 - size).as_vec2() / size.as_vec2();
@@ -46,7 +47,7 @@ fn location(film: &Film, pixel: UVec2) -> Vec2 {
     Vec2::new(location.x, sign * location.y)
 }
 
-/// `camera_ray` and `enter_scene`; `None` where the ray does not meet the box.
+/// Twin of `camera_ray` and `enter_scene`. It is `None` if the ray misses the box.
 fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (TracedRay, bool) {
     let [origin, right, up, forward, min, max] =
         [view.origin, view.right, view.up, view.forward, view.scene_min, view.scene_max]
@@ -75,7 +76,7 @@ fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (Tra
             let aside = side.x * right + side.y * up;
             (origin, Some(angle.x * aside + angle.y * forward), 0.0)
         }
-        // The lens's centre is the pinhole.
+        // The centre of the lens acts as the pinhole.
         _ => (origin + view.advance * aside, Some(aside + forward), view.advance),
     };
     let (direction, distance) = match toward {
@@ -98,7 +99,7 @@ fn ray(kind: CameraKind, view: &UploadedView, film: &Film, pixel: UVec2) -> (Tra
     (ray, is_seen && near <= far)
 }
 
-/// `sin_cos_half_turns` and `sin_cos_eighth` of shaders/math/trigonometry.wgsl.
+/// Twin of `sin_cos_half_turns` and `sin_cos_eighth` in shaders/math/trigonometry.wgsl.
 fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
     let quarters = (2.0 * half_turns).round_ties_even();
     let rest = half_turns - 0.5 * quarters;
@@ -118,7 +119,7 @@ fn sin_cos_half_turns(half_turns: f32) -> Vec2 {
     }
 }
 
-/// `surface_color` of shaders/primary/shading.wgsl.
+/// Twin of `surface_color` in shaders/primary/shading.wgsl.
 fn color(primary: &PrimarySettings, of: LinearRgb, normal: [f32; 3], ray: &TracedRay) -> [f32; 3] {
     if primary.shading == Shading::Flat {
         return of.to_array();

@@ -1,4 +1,4 @@
-//! Scenes that change on a device: pictures are those of a scene that was made so, to the byte.
+//! Tests that pictures of an updated scene are identical to those of a scene that was created with the new values.
 
 use fastrand::Rng;
 use libtest_mimic::{Failed, Trial};
@@ -25,7 +25,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     of_kinds.chain(others).collect()
 }
 
-/// New numbers of every kind, for any spheres.
+/// An update of all kinds of values, for any spheres.
 struct Numbers {
     centers: Vec<[f32; 3]>,
     radii: Vec<f32>,
@@ -96,7 +96,7 @@ fn updated(mut scene: Scene) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Several bricks have copies of a sphere, or none.
+/// A brick may contain copies of a sphere that is also in other bricks, or not contain it.
 fn in_bricks(headless: &'static Headless) {
     let [_, _, rgba8] = [0, 4, 8].map(|kind| kinds().swap_remove(kind));
     let mut scene = rgba8.scene;
@@ -126,7 +126,7 @@ fn in_bricks(headless: &'static Headless) {
     }
 }
 
-/// What a host of its own does: record new colours, and go on with the frame that it has.
+/// An application records new colours into its own encoder, and continues with its existing frame.
 fn survives(headless: &'static Headless) {
     let (device, queue) = (headless.device(), headless.queue());
     let mut scene = kinds().swap_remove(8).scene;

@@ -1,4 +1,4 @@
-//! What the checker says of this device, and of faults that are planted in it.
+//! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::support::View;
 use crate::verify_views as views;
 use crate::{headless, scenes};
 
-/// What docs/verify.md shows for the tests of others.
+/// The example of docs/verify.md for tests of other renderers.
 #[path = "../../examples/legal.rs"]
 #[allow(dead_code, reason = "an example has a main function")]
 mod example;
@@ -74,7 +74,7 @@ fn certify(view: &View, recording: &Recording) -> Certificate {
     Checker::new(&view.scene).unwrap().certify(recording)
 }
 
-/// What the faults are planted in is legal before.
+/// The views in which faults are inserted are legal without them.
 fn none_without_one() -> Result<(), Failed> {
     let mut seen: Vec<(fn() -> View, How)> = Vec::new();
     for Fault { view, how, name, .. } in faults::all() {
@@ -116,10 +116,10 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A name, where it shows, and what is done.
+/// A fault: its name, a view in which it is visible, and the replacement of a statement.
 type RenderFault = (&'static str, fn() -> View, &'static str);
 
-/// What the kernels that keep no rays do instead of `return make_entry(pixel_in_tile);`.
+/// Faults that replace the statement `return make_entry(pixel_in_tile);` in kernels that keep no rays.
 const RENDER_FAULTS: &[RenderFault] = &[
     ("shifted_by_a_pixel", views::balls, "return make_entry(pixel_in_tile + vec2u(1u, 0u));"),
     (
@@ -140,7 +140,7 @@ const RENDER_FAULTS: &[RenderFault] = &[
     ),
 ];
 
-/// A fault that only a picture without a recording has.
+/// A fault that only affects pictures without a recording.
 fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Failed> {
     let edit = ShaderEdit {
         file: "primary/entry.wgsl#made".into(),
@@ -164,10 +164,11 @@ fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Fai
     }
 }
 
-/// Spoils what a device is given, or what is said that it was given; a sphere that is seen may be spoilt.
+/// Changes the input of the device, or the recorded input. The index of a visible sphere is given to change that
+/// sphere.
 type Spoil = fn(&mut View, &mut dyn FnMut(&View) -> Recording, usize) -> Recording;
 
-/// The view is what was asked for; the recording is of something else.
+/// The recording is of a different view than the requested one.
 const INPUT_FAULTS: &[(&str, Spoil)] = &[
     ("radius_off_by_a_thousandth", |view, record, seen| {
         with_spheres(view, record, |spheres| spheres[seen].radius *= 1.0 + 2_f64.powi(-10))
@@ -235,7 +236,7 @@ fn spheres_of(scene: &Scene) -> Vec<Sphere> {
         .collect()
 }
 
-/// Records other spheres than those of the view.
+/// Records a picture of different spheres than those of the view.
 fn with_spheres(
     view: &mut View,
     record: &mut dyn FnMut(&View) -> Recording,

@@ -1,4 +1,4 @@
-//! Small views for the checker, each with something that a fault of its kind would show in.
+//! Small views for the checker. Each contains something that makes one kind of fault visible.
 
 use pinhole::camera::{
     Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
@@ -42,12 +42,12 @@ fn random(count: usize, seed: u64) -> Vec<Sphere> {
         .collect()
 }
 
-/// From outside, in several colours, and sky around them.
+/// Spheres in several colours, seen from outside, with background around them.
 pub(crate) fn balls() -> View {
     view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
 }
 
-/// Every sphere has a color of its own.
+/// Spheres with individual colours.
 pub(crate) fn own_colors() -> View {
     let view = balls();
     let colors = (0..view.scene.len()).map(|i| [i as u8, (i / 2) as u8, (i / 3) as u8, 255]);
@@ -56,7 +56,7 @@ pub(crate) fn own_colors() -> View {
     View { scene: Scene::from_parts(spheres, appearance).unwrap(), ..view }
 }
 
-/// With pixels so small that slivers show.
+/// A view with pixels so small that narrow overlaps are visible.
 pub(crate) fn along_an_axis() -> View {
     let pose = Pose::looking_along([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
     view(&random(400, 31), OrthographicCamera::new(pose, [2.4, 2.0]).unwrap(), [768, 640])
@@ -68,20 +68,20 @@ pub(crate) fn parallel() -> View {
     view(&random(400, 31), camera, [96, 80])
 }
 
-/// Through a lens; of a recording, through its centre.
+/// A view through a lens. Recordings use rays through the centre of the lens.
 pub(crate) fn lens() -> View {
     let pinhole = pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0);
     view(&random(400, 31), ThinLensCamera::new(pinhole, 0.3, 5.0).unwrap(), [96, 80])
 }
 
-/// From the middle, for the right eye.
+/// A stereo view from the middle, for the right eye.
 pub(crate) fn around() -> View {
     let pose = pose([0.1, 0.2, 0.3], [3.0, 2.0, 6.0]);
     let [_, right] = PanoramaCamera::new(pose).stereo_pair(0.1, 1.0).unwrap();
     view(&random(400, 31), right, [96, 48])
 }
 
-/// From the middle, in most directions; none sees the sky.
+/// A view from the middle in most directions, in which no ray misses.
 pub(crate) fn disk() -> View {
     let mut spheres = random(400, 31);
     spheres.push(colored([0.0; 3], 5.0, 3));
@@ -90,19 +90,19 @@ pub(crate) fn disk() -> View {
     view(&spheres, camera, [96, 80])
 }
 
-/// In a large sphere, with others in and around it.
+/// A view from inside a large sphere, with others inside and around it.
 pub(crate) fn inside() -> View {
     let mut spheres = random(60, 32);
     spheres.push(colored([0.0; 3], 5.0, 3));
     view(&spheres, pinhole([0.5, 1.0, 3.9], [0.0; 3], 90.0), [96, 80])
 }
 
-/// All around the eye, most of them behind it.
+/// Spheres all around the eye, most of them behind it.
 pub(crate) fn behind() -> View {
     view(&random(100, 33), pinhole([0.0, 0.0, 1.6], [0.0, 0.0, 4.0], 60.0), [96, 80])
 }
 
-/// Every cell of a grid is as full as the next, of spheres that reach into others.
+/// Spheres that fill all cells of a grid equally and extend into neighbouring cells.
 pub(crate) fn lattice() -> View {
     let spheres: Vec<Sphere> = spheres::lattice(12)
         .iter()
@@ -131,19 +131,19 @@ fn in_clusters() -> Vec<Sphere> {
         .collect()
 }
 
-/// Dense in a few places.
+/// Spheres that form a few dense clusters.
 pub(crate) fn clusters() -> View {
     view(&in_clusters(), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0), [96, 80])
 }
 
-/// The same, small in a large box.
+/// The same spheres, but small in a large box.
 pub(crate) fn far_clusters() -> View {
     let mut spheres = in_clusters();
     spheres.push(colored([40.0, 60.0, 120.0], 0.5, 5));
     view(&spheres, pinhole([63.0, 42.0, 126.0], [0.0; 3], 1.8), [96, 80])
 }
 
-/// Eight of each, in the order of a shuffle.
+/// Eight copies of each sphere, in shuffled order.
 pub(crate) fn copies() -> View {
     let mut random = fastrand::Rng::with_seed(35);
     let mut places: Vec<usize> = (0..40 * 8).map(|i| i % 40).collect();
@@ -159,7 +159,7 @@ pub(crate) fn copies() -> View {
     view(&spheres, pinhole([1.0, 2.0, 9.0], [0.0; 3], 40.0), [96, 80])
 }
 
-/// Larger than one tile.
+/// A picture that is larger than one tile.
 pub(crate) fn two_tiles() -> View {
     let spheres = [colored([-1.0, 0.0, 0.0], 0.9, 1), colored([1.0, 0.0, 0.0], 0.9, 2)];
     view(&spheres, pinhole([0.0, 0.5, 5.0], [0.0; 3], 16.0), [1100, 1000])

@@ -1,4 +1,4 @@
-//! Faults of the sphere test, and of what is made of a hit.
+//! Faults of the intersection with spheres, and of the shading of hits.
 
 use super::{LIST, Row};
 use crate::verify_views as views;

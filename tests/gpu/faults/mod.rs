@@ -1,4 +1,4 @@
-//! Faults of shaders that the checker must find: each changes a picture, and none by much more than it must.
+//! Faults of shaders that the checker must find. Each changes a picture, but by little more than necessary.
 
 mod hits;
 mod rays;
@@ -8,7 +8,7 @@ use pinhole::accel::AccelChoice;
 
 use crate::support::View;
 
-/// A shader with a fault, and where it shows.
+/// A shader edit that is a fault, with a view in which it is visible.
 pub(crate) struct Fault {
     pub(crate) name: &'static str,
     pub(crate) view: fn() -> View,
@@ -18,7 +18,7 @@ pub(crate) struct Fault {
     pub(crate) replace: &'static str,
 }
 
-/// In which structure.
+/// The structure in which a fault is tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct How {
     pub(crate) choice: AccelChoice,
@@ -34,9 +34,9 @@ pub(crate) const LIST: How = how(AccelChoice::List);
 const GRID: How = how(AccelChoice::Grid);
 const TREE: How = how(AccelChoice::Tree);
 const BINARY: How = how(AccelChoice::BinaryTree);
-/// So few rays that cells refer to spheres.
+/// A number of rays so small that cells store indices of spheres.
 const REFERENCES: How = How { rays: 1, ..GRID };
-/// Bindings so small that there are several bricks.
+/// A size of bindings so small that there are several bricks.
 pub(crate) const BRICKS: How = How { binding_bytes: 16 * 100, ..LIST };
 
 type Row = (&'static str, fn() -> View, How, &'static str, &'static str, &'static str);

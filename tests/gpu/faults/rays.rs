@@ -1,4 +1,4 @@
-//! Faults of rays: of the film, of cameras, of the entry into the scene's box.
+//! Faults of rays: of the film, of cameras, and of the entry into the scene's box.
 
 use super::{LIST, Row};
 use crate::verify_views as views;
@@ -103,7 +103,7 @@ pub(super) const CAMERA: &[Row] = &[
     ),
 ];
 
-/// Of cameras with a lens, and of those that go by angles.
+/// Faults of cameras with a lens, and of cameras that compute with angles.
 pub(super) const OTHER_CAMERAS: &[Row] = &[
     (
         "lens_in_the_middle_of_nothing",

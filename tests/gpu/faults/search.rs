@@ -1,4 +1,4 @@
-//! Faults of what finds the nearest sphere, and of what is traced where.
+//! Faults of the search for the nearest sphere, and of the assignment of invocations to pixels.
 
 use super::{BINARY, BRICKS, GRID, LIST, REFERENCES, Row, TREE};
 use crate::verify_views as views;

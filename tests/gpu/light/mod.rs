@@ -1,4 +1,4 @@
-//! Lit pictures of the GPU are those of the CPU reference, of the same random numbers.
+//! Tests that lit pictures of the GPU agree with those of the CPU reference for the same random numbers.
 
 mod passes;
 pub(crate) mod scenes;
@@ -14,14 +14,14 @@ use crate::headless;
 use crate::trial;
 use scenes::LitView;
 
-/// In decibels, of a peak of 1.
+/// Minimum peak signal-to-noise ratio in decibels, for a peak of 1.
 const LEAST_PSNR: f64 = 60.0;
 
-/// What a component of a pixel may be off by where every sample took the same way.
+/// Maximum error of a component of a pixel if all samples took the same path.
 const SAME_WAY: f64 = 2e-3;
 
-/// The most pixels, in parts of all, of which a sample may have gone another way: at a silhouette, between spheres
-/// that are as near, or at a choice by chance.
+/// Maximum fraction of pixels of which a sample may have taken another path: at a silhouette, between equally near
+/// spheres, or at a random choice.
 const MAX_OTHER: f64 = 0.02;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -76,7 +76,7 @@ fn agree(view: &LitView) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A grid, a tree and a list, and bricks, on a device of WebGPU's limits.
+/// A grid, a tree, a list, and bricks, on a device with the limits of WebGPU.
 fn structures(_: &'static Headless) {
     let device = headless().unwrap();
     for (name, view) in [scenes::studios().swap_remove(2), scenes::paths().swap_remove(2)] {
@@ -95,7 +95,7 @@ fn structures(_: &'static Headless) {
     }
 }
 
-/// A picture that is finished early is the one that was asked for with so many samples.
+/// A picture that is finished early is identical to one that was requested with that number of samples.
 fn batches(device: &'static Headless) {
     let (_, mut view) = scenes::paths().swap_remove(1);
     view.settings.sampling.samples = 1000;
@@ -136,7 +136,7 @@ fn denoising(device: &'static Headless) {
     assert!(error(&quiet) < 0.5 * error(&noisy), "{} of {}", error(&quiet), error(&noisy));
 }
 
-/// Spheres of which every other lets light pass, enough for any structure to be worth it.
+/// Spheres of which every second is not opaque. There are so many that every structure pays off.
 fn translucent() -> Scene {
     let spheres: Vec<Sphere> = (0..400)
         .map(|i| {
@@ -168,7 +168,7 @@ fn occluders(device: &'static Headless) {
         assert_eq!(structures.occluders.as_ref().unwrap().structure(), structure);
         let buffers = device.upload(&scene, &structures).unwrap();
         let planned: u64 = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
-        // Records of bricks, and the words that stand for colours.
+        // The plan does not count the records of bricks and the single appearance words.
         assert!(buffers.bytes() <= planned + 400, "{} of {planned}", buffers.bytes());
         let go_on = &mut |_: &_| Decision::GoOn;
         images.push(device.render_uploaded(&buffers, &view, &studio, LayerSet::COLOR, go_on));
@@ -179,7 +179,7 @@ fn occluders(device: &'static Headless) {
         let plan = device.plan(&scene, &view, &settings, LayerSet::COLOR, choice, 0);
         assert!(plan.occluders.is_none(), "{}", settings.integrator.name());
     }
-    // Where all are opaque, one structure is enough.
+    // If all spheres are opaque, one structure suffices.
     let opaque =
         Scene::from_f32(scene.spheres().to_vec(), LinearRgb::from_srgb8([128; 3])).unwrap();
     let plan = device.plan(&opaque, &view, &studio, LayerSet::COLOR, AccelChoice::Tree, 0);
@@ -201,7 +201,7 @@ fn no_occluders(device: &'static Headless) {
     let error = render(RenderSettings::studio()).unwrap_err();
     assert_eq!(error, GpuError::NoOccluders);
     assert!(error.to_string().contains("RenderPlan::build"), "{error}");
-    // Others have no use for them.
+    // Other integrators do not need the occluders.
     assert_eq!(render(RenderSettings::path()).unwrap().samples, 1);
     let primary = render(RenderSettings::default()).unwrap();
     assert_eq!((primary.samples, primary.noise, primary.hits), (1, None, None));

@@ -1,4 +1,4 @@
-//! The passes of lit pictures: recorded by a host, without indirect dispatch, and what becomes of their sums.
+//! Tests of the passes of lit pictures: recorded by an application, without indirect dispatches, and of their sums.
 
 use libtest_mimic::Trial;
 use pinhole::accel::{AccelChoice, AccelPlan};
@@ -45,7 +45,7 @@ fn scene_of(host: &Host, view: &LitView) -> SceneBuffers {
     SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &view.scene, &accel).unwrap()
 }
 
-/// The three vectors of every pixel's sums.
+/// The sums of every pixel, which are three vectors.
 fn read_sums(
     host: &Host,
     encoder: wgpu::CommandEncoder,
@@ -76,7 +76,7 @@ fn read_sums(
     all
 }
 
-/// The mean colours of sums: in f64, rounded once.
+/// The mean colours, computed from sums in f64 and rounded once.
 fn means(sums: &[[f32; 12]], samples: u32) -> Vec<[f32; 3]> {
     let mean = |sum: &[f32; 12], c: usize| {
         ((f64::from(sum[c]) + f64::from(sum[4 + c])) / f64::from(samples)) as f32
@@ -84,7 +84,8 @@ fn means(sums: &[[f32; 12]], samples: u32) -> Vec<[f32; 3]> {
     sums.iter().map(|sum| [0, 1, 2].map(|c| mean(sum, c))).collect()
 }
 
-/// What a host records into its own encoder, in two submissions, is what a headless device makes by itself.
+/// A picture that an application records into its own encoder, in two submissions, is identical to that of a headless
+/// device.
 fn hosted(headless: &'static Headless) {
     let host = Host::new();
     for name in ["studio_ambient_occlusion", "path_emissive_both"] {
@@ -109,7 +110,7 @@ fn hosted(headless: &'static Headless) {
 fn too_much(_: &'static Headless) {
     let host = Host::new();
     let mut view = named("studio_ambient_occlusion");
-    // So many tiles that one submission cannot hold all of their dispatches.
+    // There are so many tiles that one submission cannot contain all of their dispatches.
     view.film = Film::new(4096, 4096).unwrap();
     let scene = scene_of(&host, &view);
     let LitView { settings, .. } = &view;
@@ -133,8 +134,8 @@ fn direct(headless: &'static Headless) {
     }
 }
 
-/// Samples that are recorded one by one, added up in f64, are the picture: however many are in flight, and in
-/// whatever batches.
+/// Samples that are recorded one by one and summed in f64 give the same picture, regardless of the number of samples in
+/// flight and the sizes of batches.
 fn sums(headless: &'static Headless) {
     const SAMPLES: u32 = 11;
     for (name, mut view) in scenes::paths() {
@@ -160,7 +161,7 @@ fn sums(headless: &'static Headless) {
     }
 }
 
-/// Sixteen directions of 9,000 spheres each are more than some devices loop for.
+/// Sixteen directions with 9,000 spheres each exceed the iteration limit of some devices.
 fn long_list(headless: &'static Headless) {
     let mut view = named("studio_ambient_occlusion");
     let spheres: Vec<[f32; 4]> = (0..9000_u32)
@@ -185,7 +186,7 @@ fn long_list(headless: &'static Headless) {
     assert_eq!(pictures[0], pictures[1]);
 }
 
-/// While a picture is made, the device sums it up; at the end, the host does.
+/// The device computes the noise during a render, and the host at its end; both must agree.
 fn noise(headless: &'static Headless) {
     let mut view = named("path_emissive_both");
     view.settings.sampling.samples = 16;
@@ -215,7 +216,8 @@ fn noise(headless: &'static Headless) {
     assert!(early.unwrap() > last, "{told:?}");
 }
 
-/// Tiles that had more samples by then keep them; each pixel is that of a picture of so many samples.
+/// If a render finishes within a batch, some tiles have more samples than others. Each pixel is identical to that of a
+/// picture with its number of samples.
 fn unfinished(headless: &'static Headless) {
     let mut view = named("path_emissive_both");
     view.film = Film::new(900, 500).unwrap();
@@ -224,7 +226,7 @@ fn unfinished(headless: &'static Headless) {
     let LitView { scene, settings, .. } = &view;
     let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
     let buffers = headless.upload(scene, &accel.into()).unwrap();
-    // The first time that the device is somewhere in the middle of a batch, which has as many samples as all before it.
+    // The render finishes at the first call within a batch, which has as many samples as all batches before it.
     let mut finished_at = None;
     let watch = &mut |progress: &Progress| {
         let Progress { samples, total, part, .. } = *progress;

@@ -10,7 +10,7 @@ use pinhole::{
     Environment, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere, View,
 };
 
-/// A scene, how it is seen and how it is lit.
+/// A scene with its view and its render settings.
 pub(crate) struct LitView {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
@@ -19,7 +19,7 @@ pub(crate) struct LitView {
 }
 
 impl LitView {
-    /// Its camera and film.
+    /// The camera and the film.
     pub(crate) fn seen(&self) -> View<'_> {
         View::new(self.camera.as_ref(), self.film)
     }
@@ -27,7 +27,7 @@ impl LitView {
 
 pub(crate) const SAMPLES: u32 = 64;
 
-/// All of them, by name.
+/// All scenes, with their names.
 pub(crate) fn all() -> Vec<(&'static str, LitView)> {
     let mut views = studios();
     views.extend(paths());
@@ -80,7 +80,7 @@ fn gray(value: f32) -> LinearRgb {
     rgb(value, value, value)
 }
 
-/// Spheres that touch, overlap and stand alone, on the plane y = −1.
+/// Spheres that touch, overlap or are separate, on the plane y = −1.
 fn matt() -> Vec<Sphere> {
     vec![
         Sphere::new([0.0, 0.0, 0.0], 1.0, rgb(0.8, 0.3, 0.2)),
@@ -114,7 +114,7 @@ fn glass() -> Vec<Sphere> {
     ])
 }
 
-/// Glass that lets light pass on its way in and out.
+/// Glass that is not opaque, so that some paths pass through its surface unchanged on the way in and out.
 fn clear_glass() -> Vec<Sphere> {
     let tint = |ior| Material::Dielectric { ior, roughness: 0.0, attenuation_distance: Some(0.5) };
     let spheres = with(&[tint(1.5), Material::default(), tint(1.2)]);
@@ -136,7 +136,7 @@ fn clear() -> Vec<Sphere> {
     spheres
 }
 
-/// Each sphere again, opaque where the first is not, which is the one that is seen, and the other way round.
+/// Every sphere twice: if the first copy, which is the visible one, is opaque, the second is not, and vice versa.
 fn equals() -> Vec<Sphere> {
     let opposite = |sphere: &Sphere| {
         let opacity = if sphere.surface.opacity < 1.0 { 1.0 } else { 0.3 };
@@ -256,7 +256,7 @@ fn path(light_sampling: LightSampling) -> RenderSettings {
     lit(Integrator::Path(tracing), Vec::new())
 }
 
-/// Nothing shines but spheres.
+/// A scene in which only spheres emit light.
 fn night(light_sampling: LightSampling) -> RenderSettings {
     let mut lighting = path(light_sampling);
     lighting.sky = Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: true };
@@ -285,7 +285,7 @@ fn sunny() -> RenderSettings {
 
 fn under_image() -> RenderSettings {
     let mut lighting = path(LightSampling::Multiple);
-    // Bright towards one side, and dim elsewhere.
+    // The sky is bright on one side and dim elsewhere.
     let texel = |index: usize| {
         let (i, j) = (index % 16, index / 16);
         if (9..11).contains(&i) && j == 2 {

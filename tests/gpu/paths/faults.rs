@@ -1,4 +1,4 @@
-//! Faults of the kernels of paths that the checker must find, and the stage in which it must.
+//! Faults of the kernels of paths that the checker must find, with the stage in which it must find them.
 
 use pinhole::verify::PathStage;
 use pinhole::verify::PathStage::{
@@ -7,7 +7,7 @@ use pinhole::verify::PathStage::{
 
 use super::scenes::{self, LitView};
 
-/// A shader with a fault, and where it shows.
+/// A shader edit that is a fault, with a view in which it is visible.
 pub(crate) struct Fault {
     pub(crate) name: &'static str,
     pub(crate) stage: PathStage,
@@ -23,7 +23,7 @@ pub(crate) fn all() -> impl Iterator<Item = Fault> {
     [RAYS, SURFACES, COLORS, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(fault)
 }
 
-/// Those of kernels that know spheres by their ids, because equal ones are in several bricks.
+/// Faults of kernels that exclude spheres by their ids, because equal spheres are in several bricks.
 pub(crate) fn of_ids() -> impl Iterator<Item = Fault> {
     IDS.iter().map(fault)
 }
@@ -59,7 +59,7 @@ const IDS: &[Row] = &[
     ),
 ];
 
-/// What spheres look like.
+/// Faults of the appearance of spheres.
 const COLORS: &[Row] = &[
     (
         "alpha_left_out",
@@ -95,7 +95,7 @@ const COLORS: &[Row] = &[
     ),
 ];
 
-/// Where rays start, and what they meet.
+/// Faults of the origins of rays and of their hits.
 const RAYS: &[Row] = &[
     (
         "film_point_of_another_pair",
@@ -163,7 +163,7 @@ const RAYS: &[Row] = &[
     ),
 ];
 
-/// Where surfaces are, and their frames.
+/// Faults of surface points and of their tangent frames.
 const SURFACES: &[Row] = &[
     (
         "point_beside_the_surface",
@@ -263,7 +263,7 @@ const SURFACES: &[Row] = &[
     ),
 ];
 
-/// Glass and what is in it.
+/// Faults of glass and of absorption.
 const GLASS: &[Row] = &[
     (
         "fresnel_of_one_polarisation",
@@ -323,7 +323,7 @@ const GLASS: &[Row] = &[
     ),
 ];
 
-/// Lobes and metals.
+/// Faults of specular lobes and metals.
 const LOBES: &[Row] = &[
     (
         "masking_of_each_side_alone",
@@ -383,7 +383,7 @@ const LOBES: &[Row] = &[
     ),
 ];
 
-/// Light that is looked for.
+/// Faults of light sampling.
 const LIGHTS: &[Row] = &[
     (
         "cosine_left_out",
@@ -523,7 +523,7 @@ const LIGHTS: &[Row] = &[
     ),
 ];
 
-/// Light that is met by chance.
+/// Faults of light that scattered rays hit.
 const CHANCE: &[Row] = &[
     (
         "met_light_without_a_weight",
@@ -575,7 +575,7 @@ const CHANCE: &[Row] = &[
     ),
 ];
 
-/// How paths end, and what they leave.
+/// Faults of the ends of paths, and of departures.
 const ENDS: &[Row] = &[
     (
         "roulette_without_division",

@@ -1,4 +1,4 @@
-//! What a device is given, spoilt; or what is said that it was given.
+//! Faults of the inputs of a device, or of the recorded inputs.
 
 use pinhole::glam::DVec3;
 use pinhole::light::LightKind;
@@ -8,16 +8,16 @@ use pinhole::{LinearRgb, Scene, Sphere};
 
 use super::scenes::{self, LitView};
 
-/// What is spoilt.
+/// The time at which an input is changed.
 #[derive(Clone, Copy)]
 pub(crate) enum Spoil {
-    /// Before the device renders it.
+    /// Before the device renders the scene.
     Given(fn(&mut LitView)),
-    /// Afterwards.
+    /// After the recording.
     Said(fn(&mut PathRecording)),
 }
 
-/// With all kinds of things to be spoilt.
+/// A scene with all kinds of inputs that can be changed.
 pub(crate) fn view() -> LitView {
     scenes::everything()
 }

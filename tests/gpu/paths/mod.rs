@@ -1,4 +1,4 @@
-//! What the checker says of the paths of this device, and of faults that are planted in it.
+//! Tests that the checker accepts the paths of this device, and finds faults that are inserted.
 
 mod faults;
 mod inputs;
@@ -19,7 +19,7 @@ use crate::{headless, trial};
 use faults::Fault;
 use scenes::LitView;
 
-/// How few bytes a binding has, for a scene of 300 spheres to have four bricks.
+/// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -80,7 +80,7 @@ fn certify(view: &LitView, recording: &PathRecording) -> PathCertificate {
     Checker::new(&view.scene).unwrap().certify_paths(recording)
 }
 
-/// Legal, and that says something: most stages have one legal answer.
+/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
 fn is_legal(view: &LitView, recording: &PathRecording) -> Result<(), Failed> {
     let certificate = certify(view, recording);
     let stages = certificate.stages();
@@ -98,7 +98,7 @@ fn legal(view: &LitView) -> Result<(), Failed> {
     is_legal(view, &record(headless()?, view)?)
 }
 
-/// Whatever finds the spheres.
+/// Paths are legal with every structure.
 fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
@@ -106,7 +106,7 @@ fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     is_legal(&view, &record_in(headless()?, &view, accel)?)
 }
 
-/// In bricks among which equal spheres are divided.
+/// Paths are legal in several bricks between which equal spheres are divided.
 fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
     let spheres = view.scene.spheres();
     let accel = AccelPlan::for_rays(spheres, choice, SMALL_BINDING, u64::MAX).build(spheres);
@@ -118,7 +118,7 @@ fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
     accel
 }
 
-/// By the stage that it is a fault of.
+/// Every fault is found in the stage in which it was inserted.
 fn is_found(
     fault: &Fault,
     record: impl Fn(&Headless, &LitView) -> Result<PathRecording, Failed>,
@@ -141,7 +141,7 @@ fn is_found(
     }
 }
 
-/// What was asked for is not what the device was given.
+/// The device was given other inputs than the requested ones.
 fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
     let view = inputs::view();
     let mut given = inputs::view();
@@ -162,7 +162,7 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Of a large film the middle is recorded; at another place its paths are not legal.
+/// For a large film the rectangle in the middle is recorded. Its paths are not legal for another rectangle.
 fn part_of_a_large_film() -> Result<(), Failed> {
     let pose = pinhole::camera::Pose::looking_at([0.5, 1.5, 7.0], [0.0; 3], [0.1, 1.0, 0.0])?;
     let camera = OrthographicCamera::new(pose, [5.0, 4.5])?;
@@ -179,7 +179,7 @@ fn part_of_a_large_film() -> Result<(), Failed> {
 
 fn refuses_a_studio(headless: &'static Headless) {
     let view = scenes::matt();
-    // Sky and ground are the studio\'s own.
+    // The studio has its own sky and ground.
     let settings = RenderSettings::studio();
     let accel = headless.plan_accel(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
     let buffers = headless.upload(&view.scene, &accel.into()).unwrap();

@@ -1,4 +1,4 @@
-//! Paths between whatever spheres, under whatever light: this device is never accused. Of more scenes,
+//! Tests that the checker accepts the paths of random scenes with random light. For more scenes, run
 //! `cargo bench --bench verify -- lit-campaign 500`.
 
 use libtest_mimic::{Failed, Trial};
@@ -8,7 +8,7 @@ use super::{certify, record};
 use crate::headless;
 use crate::support::random_light;
 
-/// Scenes whose seeds are these are followed, one a trial.
+/// The seeds of the scenes, with one test for each scene.
 const SEEDS: std::ops::Range<u64> = 0..36;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -22,7 +22,7 @@ fn legal(seed: u64) -> Result<(), Failed> {
     let certificate = certify(&view, &record(headless()?, &view)?);
     let stages = certificate.stages();
     println!("seed {seed}: {name}: {certificate}");
-    // Some say little, as those between mirrors; but not most.
+    // The checks of some scenes, such as those with mirrors, say little, but not those of most scenes.
     if certificate.is_legal() && stages.decided + stages.open > stages.checked / 2 {
         Ok(())
     } else {

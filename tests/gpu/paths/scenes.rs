@@ -1,4 +1,4 @@
-//! Small lit scenes, each with something that a fault of its kind would show in.
+//! Small lit scenes. Each contains something that makes one kind of fault visible.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sa
 use pinhole::scene::material::Material;
 use pinhole::{Appearance, Film, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties, View};
 
-/// A scene, and how it is lit and seen.
+/// A scene with its render settings and its view.
 pub(crate) struct LitView {
     pub(crate) scene: Scene,
     pub(crate) camera: Box<dyn Camera>,
@@ -19,7 +19,7 @@ pub(crate) struct LitView {
 }
 
 impl LitView {
-    /// Its camera and film.
+    /// The camera and the film.
     pub(crate) fn seen(&self) -> View<'_> {
         View::new(self.camera.as_ref(), self.film)
     }
@@ -138,7 +138,7 @@ fn view(spheres: &[Sphere], settings: RenderSettings) -> LitView {
     }
 }
 
-/// Nine spheres in a square, and what each is made of.
+/// Nine spheres in a square, with the material of each.
 fn grid(material: impl Fn(usize) -> Material) -> Vec<Sphere> {
     (0..9)
         .map(|i| {
@@ -192,7 +192,7 @@ pub(crate) fn glass() -> LitView {
         _ => glass_of(2.2, 0.02, None),
     };
     let mut spheres = grid(material);
-    // Inside of one, and behind all.
+    // One more sphere is inside another, and one is behind all others.
     spheres.push(ball([-1.5, -1.5, 0.0], 0.3, rgb(0.9, 0.3, 0.2)));
     spheres.push(ball([0.0, 0.0, -4.0], 2.5, rgb(0.7, 0.7, 0.2)));
     view(&spheres, lit)
@@ -267,7 +267,7 @@ pub(crate) fn opacity() -> LitView {
     view(&spheres, RenderSettings { is_transparent: true, ground: Some(ground(-2.4)), ..lit })
 }
 
-/// Tinted glass that lets some paths pass as if there were nothing, and what is in it.
+/// Tinted glass that some paths pass through as if it were not there, with spheres inside.
 pub(crate) fn translucent_glass() -> LitView {
     let view = glass();
     let spheres: Vec<_> = grid(|i| glass_of(1.5, 0.2 * (i % 2) as f32, Some(0.7)))
@@ -278,16 +278,17 @@ pub(crate) fn translucent_glass() -> LitView {
     LitView { scene: Scene::new(&spheres).unwrap(), ..view }
 }
 
-/// Emitters in the place of other spheres: of those that come before them they are never met, and never looked for.
+/// Emitters at the same position as other spheres. If the other sphere comes first, the emitter is never hit and never
+/// sampled.
 pub(crate) fn coincident_emitters() -> LitView {
     let mut spheres = lamps();
     let emissive = |strength| Material::Emissive { strength };
     let twin = |i: usize| ball(spheres[i].center, spheres[i].radius, rgb(0.3, 0.9, 0.5));
     let copies = [
-        // Of a matt sphere, and of an emitter.
+        // Copies of a matt sphere and of an emitter.
         twin(3).with_material(emissive(4.0)),
         twin(4).with_material(emissive(7.0)),
-        // A matt one in the place of an emitter.
+        // A matt sphere at the position of an emitter.
         twin(0),
     ];
     spheres.splice(0..0, [twin(7).with_material(emissive(2.0)), twin(2).with_opacity(0.0)]);
@@ -295,7 +296,7 @@ pub(crate) fn coincident_emitters() -> LitView {
     LitView { scene: Scene::new(&spheres).unwrap(), ..emitters() }
 }
 
-/// Every sphere has a color and an alpha of its own, and a surface of some.
+/// Spheres with individual colours and alphas, and one of several surfaces each.
 pub(crate) fn own_colors() -> LitView {
     let spheres = mixed();
     let colors: Vec<[u8; 4]> = (0..spheres.len() as u8)
@@ -314,7 +315,7 @@ pub(crate) fn own_colors() -> LitView {
 }
 
 pub(crate) fn from_inside() -> LitView {
-    // Of which nothing gets inside.
+    // The light of the sun does not reach the inside.
     let sun = vec![light(directional(0.0))];
     let lit = lighting(sun, no_sky(), LightSampling::Multiple);
     let mut spheres = lamps();
@@ -323,7 +324,7 @@ pub(crate) fn from_inside() -> LitView {
     LitView { camera: Box::new(PanoramaCamera::new(pose)), ..view(&spheres, lit) }
 }
 
-/// So many that there is a structure.
+/// So many spheres that a structure is built.
 pub(crate) fn many() -> LitView {
     let mut random = fastrand::Rng::with_seed(5);
     let spheres: Vec<_> = (0..300)
@@ -344,7 +345,7 @@ pub(crate) fn many() -> LitView {
     view(&spheres, RenderSettings { ground: Some(ground(-2.4)), ..lit })
 }
 
-/// Each of many spheres three times, the first of them last; what they look like differs.
+/// Many spheres with three copies of each, which have different appearances.
 pub(crate) fn thrice() -> LitView {
     let LitView { scene, .. } = many();
     let count = scene.len() as u32;
@@ -358,8 +359,8 @@ pub(crate) fn thrice() -> LitView {
             .with_opacity(surface.opacity)
     };
     let spheres: Vec<Sphere> = (0..3)
-        .flat_map(|turn| (0..count).map(move |id| (id, turn)))
-        .map(|(id, turn)| of(id, turn))
+        .flat_map(|copy| (0..count).map(move |id| (id, copy)))
+        .map(|(id, copy)| of(id, copy))
         .collect();
     LitView { scene: Scene::new(&spheres).unwrap(), ..many() }
 }
@@ -412,7 +413,7 @@ fn small_and_far() -> LitView {
     LitView { camera: Box::new(far), ..view(&spheres, lit) }
 }
 
-/// A sphere so large that its own numbers are coarser than what is on it.
+/// A sphere so large that its rounding errors exceed the size of the spheres on it.
 fn planet() -> LitView {
     let mut spheres = mixed();
     spheres.push(ball([0.0, -1e4 - 2.3, 0.0], 1e4, rgb(0.5, 0.6, 0.4)));
