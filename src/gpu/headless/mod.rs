@@ -153,7 +153,7 @@ impl Headless {
     }
 
     /// Copies a scene to the device, brick by brick, with the structures that were built for it. They come from
-    /// [`RenderPlan::build`](super::RenderPlan::build), or from a single [`Accel`].
+    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from a single [`Accel`].
     ///
     /// # Errors
     /// If the scene does not fit into the device's memory or limits, or if the device fails.

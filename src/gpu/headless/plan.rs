@@ -15,8 +15,8 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::{Checker, TracedPixel, Verdict};
 
-/// The resources that a render by [`Headless`](super::Headless) needs. Sizes are upper bounds for buffers and textures;
-/// a few hundred bytes of records for each brick are not included.
+/// The resources that a render by [`Headless`](crate::gpu::Headless) needs. Sizes are upper bounds for buffers and
+/// textures; a few hundred bytes of records for each brick are not included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
     /// The structure of all spheres, and the reason for its choice.

@@ -19,7 +19,7 @@ use crate::verify::RequestedCamera;
 /// usage `STORAGE_BINDING`.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
-    /// Texture for the colour, in the format of the renderer's [`ColorTarget`](super::ColorTarget).
+    /// Texture for the colour, in the format of the renderer's [`ColorTarget`](crate::gpu::ColorTarget).
     pub color: &'a TextureView,
     /// Textures for the data layers. They must be given if and only if the renderer was built with `data_layers`.
     pub data: Option<DataTargets<'a>>,

@@ -1,7 +1,7 @@
 //! Recording lit pictures into the encoder of another application.
 //!
-//! The passes are the same as those that [`Headless`](super::Headless) submits and reads back, but here the application
-//! submits them, for example a few samples with each frame of its own.
+//! The passes are the same as those that [`Headless`](crate::gpu::Headless) submits and reads back, but here the
+//! application submits them, for example a few samples with each frame of its own.
 
 use std::ops::Range;
 

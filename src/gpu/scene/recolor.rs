@@ -73,7 +73,7 @@ impl Recolor {
         if !buffers.takes_in_place(scene, update) {
             return Err(GpuError::NotInPlace);
         }
-        // The words of so many spheres, of four bytes each, fit into a binding.
+        // The words of this number of spheres, with four bytes each, fit into a binding.
         let max_count = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
         let range = update.range();
         for first in range.clone().step_by(max_count as usize) {

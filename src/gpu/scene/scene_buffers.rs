@@ -142,7 +142,7 @@ impl SceneBuffers {
 
     /// Replaces the buffers by a copy of the same scene with moved spheres, which [`SceneBuffers::new`] or
     /// [`SceneBuffers::with_accel`] created after [`Scene::apply`]. The views of frames that show the scene must be set
-    /// again with [`Frame::set_view`](super::Frame::set_view).
+    /// again with [`Frame::set_view`](crate::gpu::Frame::set_view).
     pub fn replace(&mut self, copy: Self) {
         let SceneId { scene, shape } = self.id;
         let is_same_structure = copy.structure == self.structure;

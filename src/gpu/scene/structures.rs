@@ -57,7 +57,7 @@ pub struct Retry {
 /// too many steps in the planned structures ([`GpuError::Steps`]), this is repeated with another choice, after a call
 /// of `retrying`.
 ///
-/// `plan` makes a plan for a choice, as [`Headless::plan`](super::Headless::plan) does; `work` builds, uploads and
+/// `plan` makes a plan for a choice, as [`Headless::plan`](crate::gpu::Headless::plan) does; `work` builds, uploads and
 /// renders.
 ///
 /// # Errors

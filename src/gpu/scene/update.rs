@@ -12,8 +12,8 @@ impl Headless {
     ///
     /// If only colours change, they are written to the existing buffers. If spheres move or change their radius, a new
     /// structure of the same kind is built on the host and copied to the device; the views of frames that show the
-    /// scene must then be set again with [`Frame::set_view`](super::Frame::set_view). `docs/performance.md` lists the
-    /// cost of both.
+    /// scene must then be set again with [`Frame::set_view`](crate::gpu::Frame::set_view). `docs/performance.md` lists
+    /// the cost of both.
     ///
     /// # Errors
     /// If the scene does not fit on the device, or if the device fails. The scene must then be uploaded again.

@@ -13,7 +13,7 @@ use crate::gpu::passes::tiles::WORKGROUP_SIDE;
 /// Maximum number of paths that are traced at a time. Their state then takes 56 to 80 MiB.
 const MAX_PATHS: u64 = 1 << 19;
 
-/// Number of samples of a pixel that are traced together, if there are so many. Each of them then costs less, because
+/// Number of samples of a pixel that are traced together, if not fewer are left. Each of them then costs less, because
 /// the sums are read and written once for all of them. Tiles become smaller in return.
 const TOGETHER: u32 = 4;
 
