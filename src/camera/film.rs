@@ -24,7 +24,7 @@ impl YAxis {
     }
 }
 
-/// Width and height in pixels, and the direction of y. Row 0 is the top row.
+/// The size of a picture: width and height in pixels, and the direction of y. Row 0 is the top row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Film {
     width: u32,

@@ -64,7 +64,8 @@ impl Lobe {
     }
 }
 
-/// The energy tables of all materials of a scene; materials with equal lobes share tables.
+/// The energy tables of all materials of a scene: how much light each rough lobe keeps when it scatters once, by which
+/// renderers make up for the rest. Materials with equal lobes share tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyTables {
     entries: Vec<f32>,

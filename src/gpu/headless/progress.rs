@@ -19,7 +19,7 @@ pub struct Progress {
     pub noise: Option<f64>,
 }
 
-/// How a render continues.
+/// How a render continues: the answer of the callback that is told about its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Decision {

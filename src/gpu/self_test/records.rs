@@ -1,5 +1,5 @@
 //! Records of the self-test that kernels read and write. Twins: the structs of the same names in
-//! `shaders/self_test/*.wgsl`. The test of `gpu/shader/records.rs` compares them.
+//! the files in `shaders/self_test`. The test of `gpu/shader/records.rs` compares them.
 
 use bytemuck::{Pod, Zeroable};
 
