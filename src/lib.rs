@@ -113,6 +113,11 @@
 //! writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
+//! # Stability
+//! A version that breaks nothing may add fields to settings and options, such as [`RenderSettings`]: write
+//! `..RenderSettings::default()` after those that you set. Enums and results to which it may add are `#[non_exhaustive]`.
+//! What is hidden from this documentation may change in any version.
+//!
 //! # Units
 //! World space is right-handed, lengths are in scene units, and angles are in radians. Colours are linear light. Depth
 //! is measured along the ray. `CONTRIBUTING.md` lists all conventions.

@@ -38,7 +38,8 @@ impl Structure {
         Self::BinaryTree,
     ];
 
-    /// The structures that may be chosen automatically.
+    /// The structures that [`AccelChoice::Auto`](super::AccelChoice::Auto) chooses among. The binary
+    /// tree is built only if it is asked for.
     pub const AUTOMATIC: &'static [Self] = &[
         Self::List,
         Self::Grid(ListLayout::Copied),

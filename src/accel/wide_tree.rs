@@ -47,7 +47,8 @@ impl WideTree {
         &self.ids
     }
 
-    /// The number of nodes on the longest path from the root, both ends included; at most [`WIDE_LEVELS`].
+    /// The number of nodes on the longest path from the root to the parent of a leaf, both included; at most
+    /// [`WIDE_LEVELS`].
     #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
