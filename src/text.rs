@@ -23,3 +23,9 @@ pub(crate) fn shortened(text: &str) -> String {
     }
     text.chars().take(MOST).chain(['…']).collect()
 }
+
+/// The text without the byte order mark that some editors put before UTF-8.
+#[cfg(any(feature = "pdb", feature = "xyz"))]
+pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
+}

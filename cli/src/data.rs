@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{self, FORMATS, Format, LoadError, Loaded, Options};
+use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, Trajectory};
 
 use super::failure::Failure;
 use super::{input, memory};
@@ -64,15 +64,8 @@ impl DataOptions {
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
 pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
-    let file_name = || path.display().to_string();
     let mut loaded = if format.has_frames() && path.is_file() {
-        let read = load::open(path, &options.to_read().with_format(format));
-        read.map_err(|error| match error {
-            LoadError::File { error, .. } => {
-                Error::new(error).context(format!("{}: cannot be read", path.display()))
-            }
-            other => Error::new(other).context(file_name()),
-        })?
+        read_frame(path, format, options)?
     } else {
         read_whole(path, format, options)?
     };
@@ -80,6 +73,23 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
         *note = format!("{}: {note}", path.display());
     }
     Ok(loaded)
+}
+
+/// Reads the frame that is asked for, if there is memory for it.
+fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
+    let named = |error| match error {
+        LoadError::File { error, .. } => {
+            Error::new(error).context(format!("{}: cannot be read", path.display()))
+        }
+        other => Error::new(other).context(path.display().to_string()),
+    };
+    let frame = options.frame.unwrap_or_default();
+    let options = options.to_read().with_format(format);
+    let found = Trajectory::open_up_to(path, &options).map_err(named)?;
+    let bytes = found.frame_bytes(frame).unwrap_or_default();
+    let what = format!("{}: reading {bytes} bytes needs", path.display());
+    memory::check_reading(&what, bytes).map_err(Error::msg)?;
+    found.into_frame(frame).map_err(named)
 }
 
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {

@@ -60,12 +60,7 @@ impl Format {
     /// Returns the format for the extension of a path.
     fn of(path: &Path) -> Result<Self> {
         let extension = extension(path);
-        let format = extension.as_deref().and_then(load::Format::of_extension);
-        let is_scene = extension.as_deref() == Some("toml");
-        match (
-            format.or_else(|| format_of_content(path).filter(|_| !is_scene)),
-            extension.as_deref(),
-        ) {
+        match (data_format(path), extension.as_deref()) {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
             (None, Some("bin")) => bail!(
@@ -267,10 +262,7 @@ impl Source {
         let path = self.resolve(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let extension = extension(&path);
-        let format = extension.as_deref().and_then(load::Format::of_extension);
-        let is_scene = extension.as_deref() == Some("toml");
-        let sniffed = || format_of_content(&path).filter(|_| !is_scene);
-        let Some(format) = format.or_else(sniffed) else {
+        let Some(format) = data_format(&path) else {
             let problem = if extension.as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else {
@@ -328,13 +320,10 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
     )
 }
 
-/// Returns the format that the first bytes of a file show, if it is a regular file.
-fn format_of_content(path: &Path) -> Option<&'static load::Format> {
-    const FIRST_BYTES: u64 = 1 << 12;
-    let mut first = Vec::new();
-    let file = std::fs::File::open(path).ok().filter(|_| path.is_file())?;
-    file.take(FIRST_BYTES).read_to_end(&mut first).ok()?;
-    load::Format::of_content(&first)
+/// Returns the format of a data file. What cannot be read is an error later, when it is.
+fn data_format(path: &Path) -> Option<&'static load::Format> {
+    let is_scene = extension(path).as_deref() == Some("toml");
+    load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
 }
 
 /// Bytes that are read first from a file whose size is not known, such as a pipe.

@@ -1,5 +1,7 @@
 //! The table of file formats, and reading a file with one of them.
 
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use super::error::{LoadError, OptionError};
@@ -148,6 +150,23 @@ impl Format {
     #[must_use]
     pub const fn has_frames(&self) -> bool {
         self.frames.is_some()
+    }
+
+    /// Returns the format of a file by its extension or else, of a regular file, by its first bytes. Nothing else is
+    /// opened: a pipe can be read only once.
+    ///
+    /// # Errors
+    /// If the first bytes are needed and cannot be read.
+    pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
+        const FIRST_BYTES: u64 = 1 << 12;
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let format = extension.and_then(Self::of_extension);
+        if format.is_some() || !path.is_file() {
+            return Ok(format);
+        }
+        let mut first = Vec::new();
+        File::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
+        Ok(Self::of_content(&first))
     }
 
     /// Returns the format of a file by its extension or else by its first bytes.

@@ -1,7 +1,5 @@
 //! Opens files of spheres, and chooses their format.
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 
 use super::error::LoadError;
@@ -17,41 +15,17 @@ use super::trajectory::Trajectory;
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
     let failed = |error| LoadError::File { path: path.to_path_buf(), error };
-    let first = || -> std::io::Result<Vec<u8>> {
-        let mut first = Vec::new();
-        File::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
-        Ok(first)
+    let format = match options.format {
+        Some(format) => Some(format),
+        None => Format::of_path(path).map_err(failed)?,
     };
-    // A pipe can be read once only, and not from the middle.
-    if path.is_file() {
-        let format = match options.format {
-            Some(format) => format,
-            None => Format::of_file(path, &first().map_err(failed)?)?,
-        };
-        if format.has_frames() {
-            format.check(options)?;
-            return open_frame(path, format, options.frame.unwrap_or_default());
-        }
+    // Frames are found by seeking, which a pipe cannot do.
+    if let Some(format) = format.filter(|format| format.has_frames() && path.is_file()) {
+        format.check(options)?;
+        let frames = Trajectory::open_up_to(path, &options.with_format(format))?;
+        return frames.into_frame(options.frame.unwrap_or_default());
     }
     from_bytes(&std::fs::read(path).map_err(failed)?, path, options)
-}
-
-/// How much of a file shows its format.
-const FIRST_BYTES: u64 = 1 << 12;
-
-/// Reads one frame of a file. What comes after the frame must be another frame or the end of the file.
-fn open_frame(path: &Path, format: &'static Format, frame: usize) -> Result<Loaded, LoadError> {
-    let mut trajectory = Trajectory::open_up_to(path, Some(format), Some(frame))?;
-    let frames = trajectory.len();
-    if frame >= frames {
-        let none = LoadError::NoSuchFrame { wanted: frame, frames };
-        return Err(trajectory.into_problem().unwrap_or(none));
-    }
-    let loaded = trajectory.frame(frame)?;
-    match trajectory.into_problem() {
-        Some(problem) => Err(problem),
-        None => Ok(loaded),
-    }
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to

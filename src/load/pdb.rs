@@ -30,11 +30,7 @@ use record::{Kind, Lines, Record};
 use super::Loaded;
 use super::error::LoadError;
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
-
-/// The text without the byte order mark that some editors put before UTF-8.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
-}
+use crate::text::without_byte_order_mark;
 
 /// Reads one frame of a PDB file. A frame is a model, counted from 0 in the order of the file.
 ///
@@ -44,7 +40,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 /// # Errors
 /// If the text is not a valid PDB file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
-    let bytes = without_mark(bytes);
+    let bytes = without_byte_order_mark(bytes);
     let mut reader = Reader { frame, ..Reader::default() };
     for (line, text) in Lines::new(bytes) {
         reader.take(line, text)?;
@@ -64,7 +60,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
     loop {
         let (offset, lines_before) = (lines.offset, lines.line);
         let Some(text) = lines.next()? else { break };
-        let text = if lines_before == 0 { without_mark(text) } else { text };
+        let text = if lines_before == 0 { without_byte_order_mark(text) } else { text };
         let models = reader.models;
         if let Err(problem) = reader.take(lines_before + 1, text) {
             found.problem = Some(problem.into());
@@ -92,8 +88,8 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
 }
 
 fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
-    let head = without_mark(frame.head);
-    let text = without_mark(frame.text);
+    let head = without_byte_order_mark(frame.head);
+    let text = without_byte_order_mark(frame.text);
     let mut reader = Reader::default();
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
     for (line, text) in Lines::new(head).chain(text) {

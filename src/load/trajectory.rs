@@ -73,10 +73,24 @@ impl Trajectory {
     /// # Errors
     /// If the file cannot be read, its format is not known or has no frames, or not even the first frame is complete.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
-        Self::open_up_to(path.as_ref(), options.format, None)
+        Self::find(path.as_ref(), options.format, None)
     }
 
-    pub(super) fn open_up_to(
+    /// Opens a file like [`Trajectory::open`], and finds its frames up to the one in the options or else the first.
+    ///
+    /// # Errors
+    /// If there is no such frame, or for the reasons of [`Trajectory::open`].
+    pub fn open_up_to(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
+        let wanted = options.frame.unwrap_or_default();
+        let found = Self::find(path.as_ref(), options.format, Some(wanted))?;
+        let frames = found.len();
+        if wanted < frames {
+            return Ok(found);
+        }
+        Err(found.index.problem.unwrap_or(LoadError::NoSuchFrame { wanted, frames }))
+    }
+
+    fn find(
         path: &Path,
         format: Option<&'static Format>,
         last: Option<usize>,
@@ -151,9 +165,14 @@ impl Trajectory {
         .map_err(|error| LoadError::File { path: self.path.clone(), error })
     }
 
-    /// Takes the error after the last complete frame.
-    pub(super) fn into_problem(self) -> Option<LoadError> {
-        self.index.problem
+    /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
+    /// of the file: so a wrong number of atoms is noticed.
+    ///
+    /// # Errors
+    /// As [`Trajectory::frame`], and then [`Trajectory::problem`].
+    pub fn into_frame(mut self, index: usize) -> Result<Loaded, LoadError> {
+        let loaded = self.frame(index)?;
+        self.index.problem.map_or(Ok(loaded), Err)
     }
 }
 

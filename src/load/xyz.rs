@@ -23,7 +23,7 @@ use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::text::shortened;
+use crate::text::{shortened, without_byte_order_mark};
 
 /// The atoms of one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,9 +42,6 @@ pub struct Atoms {
     pub cell: Option<[[f64; 3]; 3]>,
 }
 
-/// Some editors put it before UTF-8.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-
 /// Reads one frame, counted from 0.
 ///
 /// The lines before the frame are counted but not checked. After the frame, the file must end or another frame must
@@ -53,7 +50,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// # Errors
 /// If the text is not a valid XYZ file, or has no such frame.
 pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
-    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    let bytes = without_byte_order_mark(bytes);
     let mut lines = Lines { rest: bytes, line: 0 };
     let mut previous = None;
     let mut index = 0;
@@ -75,7 +72,7 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Atoms, XyzError> {
 
 /// Whether the first line that is not blank is a number, as in an XYZ file.
 pub(super) fn starts(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    let bytes = without_byte_order_mark(bytes);
     let first = bytes.trim_ascii_start().split(|byte| *byte == b'\n').next().unwrap_or_default();
     let first = first.trim_ascii_end();
     !first.is_empty() && first.iter().all(u8::is_ascii_digit)
@@ -99,7 +96,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
             found.is_whole = true;
             break (index == 0).then_some(XyzError::Empty);
         };
-        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let text = without_byte_order_mark(text);
         let line = lines_before + 1;
         let Ok(text) = std::str::from_utf8(text).map(str::trim) else {
             break Some(XyzError::NotText { line });
@@ -127,7 +124,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
 }
 
 fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
-    let text = frame.text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(frame.text);
+    let text = without_byte_order_mark(frame.text);
     let mut lines = Lines { rest: text, line: frame.lines_before };
     let head = next_head(&mut lines, frame.index, None)?.ok_or(XyzError::Empty)?;
     Ok(loaded(read_atoms(&mut lines, head)?))
