@@ -21,7 +21,7 @@ use pinhole::light::environment::Environment;
 use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::{DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -63,6 +63,9 @@ impl Format {
         match (data_format(path), extension.as_deref()) {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
+            _ if is_standard_input(path) => {
+                bail!("-: name the format of the data on standard input with --format")
+            }
             (None, Some("bin")) => bail!(
                 "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
                  little-endian f32, add --format raw-f32x4",
@@ -120,7 +123,9 @@ impl Source {
         };
         let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
         let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
-        let options = DataOptions { frame: args.frame, radius: args.radius, color };
+        let (topology, columns) = (args.topology.clone(), args.columns.clone());
+        let options =
+            DataOptions { frame: args.frame, radius: args.radius, color, topology, columns };
         check_flags(format, &options)?;
         Ok(Self {
             path: path.to_path_buf(),
@@ -244,12 +249,14 @@ impl Source {
 
     /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, and notes.
     fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
-        let flags = self.options;
+        let flags = self.options.clone();
         let Some(data) = file.data() else {
             let given = [
                 ("--frame", flags.frame.is_some()),
                 ("--radius", flags.radius.is_some()),
                 ("--color", flags.color.is_some()),
+                ("--topology", flags.topology.is_some()),
+                ("--columns", !flags.columns.is_empty()),
             ];
             return match given.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => Err(Failure::usage(format!(
@@ -274,12 +281,19 @@ impl Source {
             };
             return Err(problem.context(in_scene()).into());
         };
-        let keys = DataOptions { frame: data.frame, radius: data.radius, color: data.color };
+        let keys = DataOptions {
+            frame: data.frame,
+            radius: data.radius,
+            color: data.color,
+            topology: data.topology.as_ref().map(|file| self.resolve(file)),
+            columns: data.columns.clone(),
+        };
         flags.check(format, "--").map_err(Failure::usage)?;
         keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
         let options = flags.or(keys);
         let loaded =
             data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        let data = Data { color: options.color, ..data.clone() };
         let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
         Ok((spheres, options.color.unwrap_or_else(default_color), notes))
     }
@@ -326,6 +340,11 @@ fn data_format(path: &Path) -> Option<&'static load::Format> {
     load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
 }
 
+/// Whether a path means standard input.
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
 /// Bytes that are read first from a file whose size is not known, such as a pipe.
 const FIRST_PIECE: u64 = 1 << 20;
 
@@ -335,8 +354,13 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
         bail!("{}: this is a folder; name a file", path.display());
     }
     let cannot_read = || format!("{}: cannot be read", path.display());
-    let mut file = std::fs::File::open(path).with_context(cannot_read)?;
-    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
+        (Box::new(std::io::stdin().lock()), 0)
+    } else {
+        let file = std::fs::File::open(path).with_context(cannot_read)?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        (Box::new(file), size)
+    };
     let what = format!("{}: reading {size} bytes needs", path.display());
     memory::check_reading(&what, size).map_err(Error::msg)?;
     let mut bytes = Vec::new();

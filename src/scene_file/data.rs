@@ -19,6 +19,10 @@ pub struct Data {
     pub file: String,
     /// Frame of a trajectory, counted from 0.
     pub frame: Option<usize>,
+    /// Path of the file that says what the spheres of a trajectory are, relative to the scene file.
+    pub topology: Option<String>,
+    /// Names of the columns of a table without a header.
+    pub columns: Vec<String>,
     /// Radius of all spheres, for data without radii.
     pub radius: Option<f64>,
     /// Factor for every radius.
@@ -63,6 +67,8 @@ pub(super) struct ElementTable {
 pub(super) struct DataKeys {
     pub(super) file: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
+    pub(super) topology: Option<Spanned<String>>,
+    pub(super) columns: Option<Spanned<Vec<String>>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
     pub(super) color: Option<Spanned<ColorValue>>,
@@ -82,6 +88,8 @@ impl DataKeys {
         let Some(file) = self.file else {
             let orphans = [
                 ("frame", range_of(&self.frame)),
+                ("topology", range_of(&self.topology)),
+                ("columns", range_of(&self.columns)),
                 ("radius", range_of(&self.radius)),
                 ("radius_scale", range_of(&self.radius_scale)),
                 ("color", range_of(&self.color)),
@@ -115,6 +123,8 @@ impl DataKeys {
             value: Data {
                 file: file.into_inner(),
                 frame: self.frame.map(Spanned::into_inner),
+                topology: self.topology.map(Spanned::into_inner),
+                columns: self.columns.map(Spanned::into_inner).unwrap_or_default(),
                 radius: positive("radius", self.radius, lines)?,
                 radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
                 color: self.color.map(|color| color.into_inner().0),

@@ -1,8 +1,9 @@
 //! Applies the keys of a scene file to the spheres of its data.
 
 use super::data::{Data, Element};
+use super::value::DEFAULT_COLOR;
 use crate::image::color::LinearRgb;
-use crate::load::{ColumnValues, Format, Labels, Loaded};
+use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 
@@ -20,12 +21,14 @@ pub enum DataSpheres {
 #[non_exhaustive]
 pub enum DataError {
     /// The data has no text columns.
-    #[error("`{key}` applies only to atoms ({files}); remove it")]
-    NoAtoms {
+    #[error(
+        "`{key}` applies only to data with text, such as the names of atoms, and {file} has none; remove it"
+    )]
+    NoText {
         /// The key of the scene file.
         key: &'static str,
-        /// Extensions of the formats that have such columns.
-        files: String,
+        /// Path of the data file.
+        file: String,
     },
     /// The data has no text column of this name.
     #[error("`{key}`: {file} has no text column `{column}`; its text columns are {columns}")]
@@ -50,13 +53,18 @@ impl Data {
     /// If the scene file names a column that the data does not have.
     pub fn apply(&self, mut loaded: Loaded) -> Result<(DataSpheres, Vec<String>), DataError> {
         let mut notes = std::mem::take(&mut loaded.notes);
-        if loaded.colors.is_none() {
-            self.check_plain()?;
+        if loaded.colors.is_none() && loaded.opacities.is_none() && !self.asks_for_text() {
             loaded.spheres.scale_radii(self.radius_scale);
             return Ok((DataSpheres::Array(loaded.spheres), notes));
         }
         let species = ["species".to_owned()];
-        let by = if self.elements_by.is_empty() { &species[..] } else { &self.elements_by };
+        let by = if self.elements_by.is_empty() && self.elements.is_empty() {
+            &[]
+        } else if self.elements_by.is_empty() {
+            &species[..]
+        } else {
+            &self.elements_by
+        };
         let columns: Vec<&Labels> = by
             .iter()
             .map(|column| self.labels(&loaded, "elements_by", column))
@@ -70,14 +78,17 @@ impl Data {
                 elements.get(value).copied().flatten()
             })
         };
+        let color = self.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
         let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mut spheres = Vec::new();
-        for (index, mut sphere) in loaded.colored_spheres(LinearRgb::WHITE).enumerate() {
+        for (index, mut sphere) in loaded.colored_spheres(color).enumerate() {
             if is_left_out.get(index).copied().unwrap_or(false) {
                 continue;
             }
             let element = element_at(index);
+            let opacity = sphere.surface.opacity;
             sphere.surface = element.map_or(self.surface, |element| element.surface);
+            sphere.surface.opacity *= opacity;
             if let Some(Element { radius, color, .. }) = element {
                 sphere.radius = radius.unwrap_or(sphere.radius);
                 sphere.color = color.unwrap_or(sphere.color);
@@ -103,20 +114,9 @@ impl Data {
         Ok((DataSpheres::Spheres(spheres), notes))
     }
 
-    /// Refuses keys that do not apply to data without text columns.
-    fn check_plain(&self) -> Result<(), DataError> {
-        let keys = [
-            ("elements", !self.elements.is_empty()),
-            ("elements_by", !self.elements_by.is_empty()),
-            ("leave_out", !self.leave_out.is_empty()),
-        ];
-        match keys.into_iter().find(|(_, is_given)| *is_given) {
-            Some((key, _)) => {
-                let files = Format::extensions_of(|format| format.has_colors);
-                Err(DataError::NoAtoms { key, files })
-            }
-            None => Ok(()),
-        }
+    /// Whether keys ask for columns of text.
+    fn asks_for_text(&self) -> bool {
+        !(self.elements.is_empty() && self.elements_by.is_empty() && self.leave_out.is_empty())
     }
 
     /// Returns the text column that a key of the scene file names.
@@ -127,10 +127,14 @@ impl Data {
         column: &str,
     ) -> Result<&'a Labels, DataError> {
         loaded.labels(column).ok_or_else(|| {
-            let texts = loaded
+            let mut texts = loaded
                 .columns
                 .iter()
-                .filter(|column| matches!(column.values, ColumnValues::Labels(_)));
+                .filter(|column| matches!(column.values, ColumnValues::Labels(_)))
+                .peekable();
+            if texts.peek().is_none() {
+                return DataError::NoText { key, file: self.file.clone() };
+            }
             let columns = texts.map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
             let (column, file) = (column.to_owned(), self.file.clone());
             DataError::NoColumn { key, column, file, columns }

@@ -47,6 +47,8 @@ pub(super) struct Document {
     pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
     pub(super) data: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
+    pub(super) topology: Option<Spanned<String>>,
+    pub(super) columns: Option<Spanned<Vec<String>>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
     pub(super) color: Option<Spanned<ColorValue>>,

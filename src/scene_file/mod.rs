@@ -68,6 +68,8 @@ impl SceneFile {
         let data = DataKeys {
             file: document.data,
             frame: document.frame,
+            topology: document.topology,
+            columns: document.columns,
             radius: document.radius,
             radius_scale: document.radius_scale,
             color: document.color,

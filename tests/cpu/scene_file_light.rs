@@ -197,7 +197,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
         plain.data().unwrap().apply(Loaded::new(SphereArray::F32(Vec::new()))).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "`leave_out` applies only to atoms (.xyz, .extxyz, .pdb, .ent); remove it"
+        "`leave_out` applies only to data with text, such as the names of atoms, and a.npy has none; remove it"
     );
 }
 
