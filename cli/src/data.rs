@@ -76,6 +76,11 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     } else {
         read_whole(path, format, options)?
     };
+    if options.color.is_some() && loaded.colors.is_some() {
+        loaded.notes.push(
+            "the color for all spheres is not used, because the file gives colors".to_owned(),
+        );
+    }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }

@@ -44,6 +44,10 @@ pub enum LoadError {
         /// Number of frames in the file.
         frames: usize,
     },
+    /// A line of values cannot be read.
+    #[cfg(feature = "table")]
+    #[error(transparent)]
+    Line(#[from] super::rows::LineError),
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),

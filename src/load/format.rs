@@ -63,7 +63,7 @@ pub static FORMATS: &[Format] = &[
         frames: Some(super::xyz::FRAMES),
         needs_topology: false,
         may_lack_names: false,
-        may_lack_radii: false,
+        may_lack_radii: true,
         has_colors: true,
         starts: super::xyz::starts,
         reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
@@ -77,7 +77,7 @@ pub static FORMATS: &[Format] = &[
         frames: Some(super::xyz::FRAMES),
         needs_topology: false,
         may_lack_names: false,
-        may_lack_radii: false,
+        may_lack_radii: true,
         has_colors: true,
         starts: never,
         reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
@@ -224,7 +224,7 @@ impl Format {
         }
         if options.radius.is_some() && !self.may_lack_radii {
             let files = Self::extensions_of(|format| format.may_lack_radii);
-            let what = format!("arrays of shape (n, 3) ({files})");
+            let what = format!("data that can lack radii ({files})");
             return Err(OptionError { option: "radius", what });
         }
         if options.topology.is_some() && !self.needs_topology {

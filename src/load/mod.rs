@@ -23,6 +23,9 @@ mod error;
 mod format;
 #[cfg(feature = "gzip")]
 mod gzip;
+#[cfg(feature = "table")]
+#[allow(dead_code, reason = "not every format has texts")]
+mod labels;
 mod loaded;
 #[cfg(feature = "npy")]
 pub mod npy;
@@ -33,6 +36,9 @@ mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
 pub mod raw;
+#[cfg(feature = "table")]
+#[allow(dead_code, reason = "not every format has lines of values")]
+mod rows;
 mod source;
 mod spacing;
 #[cfg(feature = "table")]
@@ -46,6 +52,8 @@ pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
+#[cfg(feature = "table")]
+pub use rows::LineError;
 #[cfg(feature = "table")]
 pub use table::TableError;
 pub use trajectory::Trajectory;

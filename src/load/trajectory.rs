@@ -271,17 +271,32 @@ impl<'a> LineReader<'a> {
         Ok(Some(&self.text))
     }
 
-    /// Skips lines, and returns how many there were.
-    #[cfg(feature = "xyz")]
+    /// Skips lines, and returns how many there were. The last may lack a line end.
+    #[cfg(feature = "table")]
     pub(super) fn skip(&mut self, lines: usize) -> io::Result<usize> {
-        for found in 0..lines {
-            let read = self.source.skip_until(b'\n')?;
-            if read == 0 {
-                return Ok(found);
+        let (mut found, mut is_within) = (0, false);
+        while found < lines {
+            let buffer = self.source.fill_buf()?;
+            if buffer.is_empty() {
+                found += usize::from(is_within);
+                break;
             }
-            self.offset += read as u64;
-            self.line += 1;
+            let wanted = lines - found;
+            // Counting is faster than looking at every line.
+            let count = memchr::memchr_iter(b'\n', buffer).count();
+            let end = if count < wanted {
+                buffer.len()
+            } else {
+                memchr::memchr_iter(b'\n', buffer)
+                    .nth(wanted - 1)
+                    .map_or(buffer.len(), |end| end + 1)
+            };
+            is_within = buffer[end - 1] != b'\n';
+            found += count.min(wanted);
+            self.offset += end as u64;
+            self.source.consume(end);
         }
-        Ok(lines)
+        self.line += found;
+        Ok(found)
     }
 }

@@ -111,7 +111,7 @@ fn errors_count_lines_from_the_start_of_the_file() {
     let folder = TempDir::new().unwrap();
     let path = written(&folder, "a.xyz", "1\n\nH 0 0 0\n1\n\nH 0 x 0\n");
     let error = Trajectory::open(&path, &Options::default()).unwrap().frame(1).unwrap_err();
-    assert_eq!(error.to_string(), "line 6: the y coordinate is `x`, which is not a finite number");
+    assert_eq!(error.to_string(), "line 6, column 3: y is `x`, which is not a number");
     let mut text = pdb(3, &mut Rng::with_seed(1));
     let at = text.rfind("ATOM").unwrap();
     text.replace_range(at + 30..at + 38, "   x.123");

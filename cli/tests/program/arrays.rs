@@ -184,9 +184,9 @@ fn flags_that_do_not_apply_to_the_data() {
             "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
         ),
         (
-            "water.xyz --radius 1",
+            "a.bin --format raw-f32x4 --radius 1",
             2,
-            "--radius applies only to arrays of shape (n, 3) (.npy, .npz); remove it",
+            "--radius applies only to data that can lack radii (.xyz, .extxyz, .npy, .npz); remove it",
         ),
         (
             "water.xyz --color red",

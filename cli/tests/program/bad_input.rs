@@ -87,10 +87,10 @@ fn xyz_files_with_errors() {
     data("", &["bad.xyz", "empty", "number of its atoms"]);
     data("4\n\nO 0 0 0\n", &["bad.xyz", "line 1", "declares 4 atoms", "ends after 1"]);
     data("1\n\nO 0 0 0\nO 1 1 1\n", &["bad.xyz", "line 4", "declares 1 atom "]);
-    data("1\n\nO 0 x 0\n", &["bad.xyz", "line 3", "y coordinate", "`x`"]);
+    data("1\n\nO 0 x 0\n", &["bad.xyz", "line 3, column 3: y is `x`"]);
     data(
         "1\nProperties=species:S:1:pos:R:3:radius:R:1\nO 0 0 0 -2\n",
-        &["bad.xyz", "line 3", "atom 0", "radius is -2"],
+        &["bad.xyz", "line 3", "radius is -2"],
     );
     refused(&[], "render water.xyz -o out.png --frame 1", 1, &["water.xyz", "no frame 1"]);
 }

@@ -1,97 +1,107 @@
-//! What an extended XYZ frame declares beside what makes spheres: other columns, and the periodic cell.
+//! What the comment line of a frame declares: the columns, and the periodic cell.
 
-use std::collections::HashMap;
-
-use super::{Atom, XyzError, parse_number, value_of};
-use crate::load::loaded::{Column, ColumnValues, Labels};
+use crate::load::rows::{Field, Kind, number};
 use crate::text::shortened;
 
-/// A column of a file that becomes a column of the loaded spheres.
-pub(super) struct OtherColumn {
-    name: String,
-    is_text: bool,
-    /// Index of the column in an atom's line.
-    column: usize,
+/// The columns of the lines of atoms.
+pub(super) struct Declared {
+    pub(super) fields: Vec<Field>,
+    /// Whether the comment names no columns, so that a line begins with `species x y z`.
+    pub(super) is_plain: bool,
 }
 
-impl OtherColumn {
-    /// The columns of one field of `Properties`, which begin at `first`.
-    pub(super) fn of_field(
-        name: &str,
-        kind: &str,
-        first: usize,
-        count: usize,
-    ) -> Result<impl Iterator<Item = Self>, String> {
-        /// More than any program writes, and few enough to be listed.
-        const MAX_COLUMNS: usize = 1024;
-        let is_text = match kind {
-            "S" | "L" => true,
-            "R" | "I" => false,
-            _ => {
-                return Err(format!(
-                    "Properties: {name} has the type `{}`, which is none of R, I, S and L",
-                    shortened(kind)
-                ));
-            }
+impl Declared {
+    pub(super) fn of_comment(comment: &str) -> Result<Self, String> {
+        let Some(properties) = value_of("Properties", comment) else {
+            let numbers = ["x", "y", "z"].map(|name| Field::new(name, Kind::Number));
+            let species = Field::new("species", Kind::Text);
+            return Ok(Self {
+                fields: [species].into_iter().chain(numbers).collect(),
+                is_plain: true,
+            });
         };
-        if count > MAX_COLUMNS {
+        let mut fields = Vec::new();
+        let mut atomic_numbers = None;
+        for property in properties.split(':').collect::<Vec<_>>().chunks(3) {
+            let &[name, kind, count] = property else {
+                return Err(format!(
+                    "Properties={} is not a list of name:type:columns triples",
+                    shortened(properties)
+                ));
+            };
+            let count: usize = count.parse().map_err(|_| {
+                format!("Properties: `{count}` is not a valid number of columns for {name}")
+            })?;
+            if let ("z" | "numbers", "I", 1) = (name.to_ascii_lowercase().as_str(), kind, count) {
+                atomic_numbers.get_or_insert(fields.len());
+            }
+            add_fields(name, kind, count, &mut fields)?;
+        }
+        let has_symbols =
+            fields.iter().any(|field| field.name.to_ascii_lowercase().trim() == "species");
+        if let (false, Some(field)) = (has_symbols, atomic_numbers.and_then(|i| fields.get_mut(i)))
+        {
+            *field = Field::new("species", Kind::Text);
+        }
+        Ok(Self { fields, is_plain: false })
+    }
+}
+
+/// Appends the columns of one property.
+fn add_fields(name: &str, kind: &str, count: usize, fields: &mut Vec<Field>) -> Result<(), String> {
+    /// More than any program writes, and few enough to be listed.
+    const MAX_COLUMNS: usize = 1024;
+    let kind = match kind {
+        "S" | "L" => Kind::Text,
+        "R" | "I" => Kind::Number,
+        _ => {
             return Err(format!(
-                "Properties: {name} has {count} columns; {MAX_COLUMNS} are the most"
+                "Properties: {name} has the type `{}`, which is none of R, I, S and L",
+                shortened(kind)
             ));
         }
-        let name = shortened(name);
-        Ok((0..count).map(move |i| {
-            let name = match (count, i) {
-                (1, _) => name.clone(),
-                (2 | 3, i) => format!("{name}.{}", ["x", "y", "z"][i]),
-                (_, i) => format!("{name}.{i}"),
-            };
-            Self { name, is_text, column: first + i }
-        }))
+    };
+    if count > MAX_COLUMNS - fields.len().min(MAX_COLUMNS) {
+        return Err(format!(
+            "Properties: with the {count} of {name} there are more columns than {MAX_COLUMNS}, which are the most"
+        ));
     }
+    let name = shortened(name);
+    fields.extend((0..count).map(|i| {
+        let name = match (count, i) {
+            (1, _) => name.clone(),
+            (2 | 3, i) => format!("{name}.{}", ["x", "y", "z"][i]),
+            (_, i) => format!("{name}.{i}"),
+        };
+        Field::new(name, kind)
+    }));
+    Ok(())
 }
 
-/// The values of a column so far.
-pub(super) struct OtherValues<'a> {
-    column: &'a OtherColumn,
-    numbers: Vec<f64>,
-    labels: Labels,
-    known: HashMap<String, u32>,
-}
-
-impl<'a> OtherValues<'a> {
-    pub(super) fn new(column: &'a OtherColumn) -> Self {
-        Self { column, numbers: Vec::new(), labels: Labels::default(), known: HashMap::new() }
-    }
-
-    pub(super) fn push(&mut self, atom: &Atom<'_>) -> Result<(), XyzError> {
-        let OtherColumn { name, is_text, column } = self.column;
-        if !is_text {
-            self.numbers.push(atom.number(*column, name)?);
-            return Ok(());
+/// Finds the value of `key=value` or `key="value"` in an extended XYZ comment.
+fn value_of<'a>(key: &str, comment: &'a str) -> Option<&'a str> {
+    let mut rest = comment;
+    loop {
+        rest = rest.trim_start();
+        if rest.is_empty() {
+            return None;
         }
-        let text = atom.text(*column, name)?;
-        let index = match self.known.get(text) {
-            Some(index) => *index,
-            None => {
-                // There are no more names than spheres, which are fewer than 2³².
-                let index = self.labels.names.len() as u32;
-                self.labels.names.push(shortened(text));
-                self.known.insert(text.to_owned(), index);
-                index
-            }
+        let name_end = rest.find(|c: char| c == '=' || c.is_whitespace()).unwrap_or(rest.len());
+        let name = &rest[..name_end];
+        rest = &rest[name_end..];
+        let Some(after) = rest.strip_prefix('=') else {
+            continue;
         };
-        self.labels.indices.push(index);
-        Ok(())
-    }
-
-    pub(super) fn into_column(self) -> Column {
-        let values = if self.column.is_text {
-            ColumnValues::Labels(self.labels)
-        } else {
-            ColumnValues::Numbers(self.numbers)
+        let quote = after.chars().next().filter(|c| matches!(c, '"' | '\''));
+        let value = match quote {
+            Some(quote) => after[1..].split(quote).next().unwrap_or_default(),
+            None => after.split(char::is_whitespace).next().unwrap_or_default(),
         };
-        Column { name: self.column.name.clone(), values }
+        if name.eq_ignore_ascii_case(key) {
+            return Some(value);
+        }
+        let quotes = if quote.is_some() { 2 } else { 0 };
+        rest = after.get(value.len() + quotes..).unwrap_or_default();
     }
 }
 
@@ -100,7 +110,10 @@ pub(super) fn cell_of(comment: &str) -> Result<Option<[[f64; 3]; 3]>, String> {
     let Some(text) = value_of("Lattice", comment) else {
         return Ok(None);
     };
-    let numbers: Option<Vec<f64>> = text.split_whitespace().map(parse_number).collect();
+    let numbers: Option<Vec<f64>> = text
+        .split_whitespace()
+        .map(|text| number(text.as_bytes()).filter(|number| number.is_finite()))
+        .collect();
     match numbers.as_deref() {
         Some(&[ax, ay, az, bx, by, bz, cx, cy, cz]) => {
             Ok(Some([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]))

@@ -1,7 +1,5 @@
 //! Errors of reading XYZ files.
 
-use crate::scene::sphere::SphereError;
-
 /// An error of reading an XYZ file. Lines are counted from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -33,41 +31,6 @@ pub enum XyzError {
         /// Number of atoms that the file has in this frame.
         found: usize,
     },
-    /// An atom's line has too few columns.
-    #[error(
-        "line {line}: the {what} is missing; the line has {columns} {} (frame {} declares {} on line {})",
-        if *columns == 1 { "column" } else { "columns" }, frame.index, atoms(frame.atoms), frame.line
-    )]
-    MissingColumn {
-        /// The frame that is affected.
-        frame: DeclaredFrame,
-        /// Number of the line.
-        line: usize,
-        /// Name of the value.
-        what: String,
-        /// Number of columns of the line.
-        columns: usize,
-    },
-    /// A value is not a finite number.
-    #[error("line {line}: the {what} is `{found}`, which is not a finite number")]
-    Number {
-        /// Number of the line.
-        line: usize,
-        /// Name of the value.
-        what: String,
-        /// The text that was found.
-        found: String,
-    },
-    /// An atom is out of range.
-    #[error("line {line}: atom {atom}: {error}")]
-    Sphere {
-        /// Number of the line.
-        line: usize,
-        /// Index of the atom in its frame, from 0.
-        atom: usize,
-        /// What is wrong with the atom.
-        error: SphereError,
-    },
     /// The list of properties of an extended XYZ frame cannot be used.
     #[error("line {line}: {message}")]
     Properties {
@@ -76,22 +39,11 @@ pub enum XyzError {
         /// What is wrong with the list.
         message: String,
     },
-    /// A line is not UTF-8 text.
+    /// The line that must have the number of atoms is not UTF-8 text.
     #[error("line {line}: this line is not UTF-8 text; an XYZ file is plain text")]
     NotText {
         /// Number of the line.
         line: usize,
-    },
-    /// The file has fewer frames.
-    #[error(
-        "there is no frame {wanted}; the file has {frames} {}, counted from 0",
-        if *frames == 1 { "frame" } else { "frames" }
-    )]
-    NoSuchFrame {
-        /// The frame that was asked for.
-        wanted: usize,
-        /// Number of frames in the file.
-        frames: usize,
     },
 }
 

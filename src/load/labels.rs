@@ -1,0 +1,150 @@
+//! Collects texts of which few different ones occur, such as the names of atoms. All readers of text share it.
+
+use std::collections::HashMap;
+
+use super::loaded::{ColumnValues, Labels};
+
+/// A map from keys to indices. A small table in front of the hash map holds the last key found in each of its slots.
+#[derive(Debug)]
+pub(super) struct Memo {
+    recent: [Option<(u64, u32)>; Self::RECENT],
+    all: HashMap<u64, u32>,
+}
+
+impl Memo {
+    const RECENT: usize = 64;
+
+    pub(super) fn get(&mut self, key: u64) -> Option<u32> {
+        let recent = self.recent.get_mut(Self::slot(key));
+        match recent {
+            Some(Some((found, value))) if *found == key => Some(*value),
+            _ => {
+                let value = self.all.get(&key).copied()?;
+                if let Some(recent) = recent {
+                    *recent = Some((key, value));
+                }
+                Some(value)
+            }
+        }
+    }
+
+    pub(super) fn insert(&mut self, key: u64, value: u32) {
+        self.all.insert(key, value);
+    }
+
+    /// Returns the slot of a key by multiplicative hashing: the upper bits of its product with 2⁶⁴ divided by the
+    /// golden ratio.
+    fn slot(key: u64) -> usize {
+        (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize
+    }
+}
+
+impl Default for Memo {
+    fn default() -> Self {
+        Self { recent: [None; Self::RECENT], all: HashMap::new() }
+    }
+}
+
+/// One text for each atom.
+#[derive(Debug, Default)]
+pub(super) struct LabelsBuilder {
+    pub(super) names: Vec<String>,
+    pub(super) indices: Vec<u32>,
+    /// Texts of few bytes, which most are, packed into a number.
+    short: Memo,
+    long: HashMap<Box<[u8]>, u32>,
+}
+
+impl LabelsBuilder {
+    /// Appends the text of an atom and returns its index in `names`.
+    pub(super) fn push(&mut self, text: &[u8]) -> u32 {
+        let index = self.index(text);
+        self.indices.push(index);
+        index
+    }
+
+    /// Returns the index of a text in `names`; a new text is added.
+    pub(super) fn index(&mut self, text: &[u8]) -> u32 {
+        let key = packed(text);
+        let known = match key {
+            Some(key) => self.short.get(key),
+            None => self.long.get(text).copied(),
+        };
+        known.unwrap_or_else(|| {
+            // There are no more names than atoms, which are fewer than 2³².
+            let index = self.names.len() as u32;
+            self.names.push(String::from_utf8_lossy(text).into_owned());
+            match key {
+                Some(key) => self.short.insert(key, index),
+                None => drop(self.long.insert(text.into(), index)),
+            }
+            index
+        })
+    }
+
+    /// Keeps some atoms and the names that they use. Returns the former index of each of these names.
+    pub(super) fn retain(&mut self, keep: &[bool]) -> Vec<u32> {
+        retain(&mut self.indices, keep);
+        let mut names = Vec::new();
+        let mut former = Vec::new();
+        let mut renumbered = vec![None; self.names.len()];
+        for index in &mut self.indices {
+            let old = *index as usize;
+            let (Some(new), Some(name)) = (renumbered.get_mut(old), self.names.get_mut(old)) else {
+                continue;
+            };
+            let next = names.len() as u32;
+            if new.is_none() {
+                names.push(std::mem::take(name));
+                former.push(*index);
+            }
+            *index = *new.get_or_insert(next);
+        }
+        self.names = names;
+        former
+    }
+
+    pub(super) fn into_labels(self) -> Labels {
+        Labels { names: self.names, indices: self.indices }
+    }
+
+    pub(super) fn into_values(self) -> ColumnValues {
+        ColumnValues::Labels(self.into_labels())
+    }
+}
+
+/// Packs up to seven bytes and their number into a key.
+fn packed(text: &[u8]) -> Option<u64> {
+    if text.len() > 7 {
+        return None;
+    }
+    let mut bytes = [0; 8];
+    bytes.iter_mut().zip(text).for_each(|(to, from)| *to = *from);
+    bytes[7] = text.len() as u8;
+    Some(u64::from_le_bytes(bytes))
+}
+
+/// Keeps the values for which `keep` is true.
+pub(super) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    values.retain(|_| keep.next().copied().unwrap_or(true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_text_has_one_index() {
+        let mut labels = LabelsBuilder::default();
+        let texts = ["", "a", "a\0", "seven77", "eight888", "a", "eight888", "ninety-nine bottles"];
+        let indices: Vec<_> = texts.iter().map(|text| labels.push(text.as_bytes())).collect();
+        assert_eq!(indices, [0, 1, 2, 3, 4, 1, 4, 5]);
+        let former = labels.retain(&[false, true, false, false, true, true, true, false]);
+        assert_eq!(former, [1, 4]);
+        assert_eq!(
+            (labels.names, labels.indices),
+            (vec!["a".into(), "eight888".into()], vec![0, 1, 0, 1])
+        );
+    }
+}

@@ -1,0 +1,292 @@
+//! Reads lines of values into columns, on all cores: a row is a line, and white space separates its values.
+//!
+//! The text is cut into pieces at the ends of lines. The lines of every piece are counted, so that columns are allocated
+//! once and every piece writes into its own part of them; the result is the same on any number of cores.
+
+mod error;
+mod number;
+#[cfg(test)]
+mod tests;
+
+use memchr::{memchr, memchr_iter};
+
+pub use error::LineError;
+pub(super) use number::number;
+
+use super::error::LoadError;
+use super::format::Options;
+use super::labels::LabelsBuilder;
+use super::loaded::{Labels, Loaded};
+use super::table::{Table, TableColumn, TableError};
+use crate::parallel;
+use crate::scene::sphere::check;
+use crate::scene::sphere_array::SphereArray;
+use crate::text::shortened;
+
+/// How much text is read by one core at a time.
+const PIECE: usize = 1 << 20;
+
+/// A column of a text.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Text,
+    /// The values are not needed.
+    Skipped,
+}
+
+impl Field {
+    pub(super) fn new(name: impl Into<String>, kind: Kind) -> Self {
+        Self { name: name.into(), kind }
+    }
+}
+
+/// Lines of values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rows<'a> {
+    /// Every line is a row; the last may lack a line end.
+    pub(super) text: &'a [u8],
+    /// Number of lines before the text.
+    pub(super) lines_before: usize,
+    /// Whether a line may have values after those of the fields.
+    pub(super) may_be_longer: bool,
+}
+
+impl Rows<'_> {
+    /// Reads a column for each field that is not skipped.
+    pub(super) fn read(self, fields: &[Field]) -> Result<Vec<TableColumn>, LineError> {
+        self.read_in_pieces(fields, PIECE)
+    }
+
+    fn read_in_pieces(self, fields: &[Field], size: usize) -> Result<Vec<TableColumn>, LineError> {
+        let texts = pieces(self.text, size);
+        let counts = parallel::map_parts(texts.clone(), count_lines);
+        let ends: Vec<usize> = counts
+            .iter()
+            .scan(0, |sum, count| {
+                *sum += count;
+                Some(*sum)
+            })
+            .collect();
+        let rows = ends.last().copied().unwrap_or_default();
+        let of_kind = |kind| fields.iter().filter(move |field| field.kind == kind).count();
+        let mut numbers = vec![vec![0.0; rows]; of_kind(Kind::Number)];
+        let mut indices = vec![vec![0_u32; rows]; of_kind(Kind::Text)];
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let mut parts: Vec<Piece<'_>> = texts
+            .into_iter()
+            .zip(starts)
+            .map(|(text, start)| Piece {
+                text,
+                lines_before: self.lines_before + start,
+                may_be_longer: self.may_be_longer,
+                numbers: Vec::new(),
+                indices: Vec::new(),
+            })
+            .collect();
+        for column in &mut numbers {
+            let slices = parallel::split_mut(column, ends.iter().copied());
+            parts.iter_mut().zip(slices).for_each(|(part, slice)| part.numbers.push(slice));
+        }
+        for column in &mut indices {
+            let slices = parallel::split_mut(column, ends.iter().copied());
+            parts.iter_mut().zip(slices).for_each(|(part, slice)| part.indices.push(slice));
+        }
+        // Of several bad lines the first is named.
+        let names = parallel::map_parts(parts, |part| part.read(fields))
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut numbers = numbers.into_iter();
+        let mut labels = indices
+            .into_iter()
+            .enumerate()
+            .map(|(text, indices)| merged(&names, text, indices, &ends));
+        let columns = fields.iter().filter_map(|field| match field.kind {
+            Kind::Number => Some(TableColumn::numbers(&field.name, numbers.next()?)),
+            Kind::Text => Some(TableColumn::labels(&field.name, labels.next()?)),
+            Kind::Skipped => None,
+        });
+        Ok(columns.collect())
+    }
+}
+
+/// Cuts a text into pieces of whole lines.
+fn pieces(text: &[u8], size: usize) -> Vec<&[u8]> {
+    let mut pieces = Vec::new();
+    let mut rest = text;
+    while !rest.is_empty() {
+        let least = size.min(rest.len());
+        let end = memchr(b'\n', &rest[least..]).map_or(rest.len(), |end| least + end + 1);
+        let (piece, after) = rest.split_at(end);
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces
+}
+
+/// Number of lines, of which the last may lack a line end.
+fn count_lines(text: &[u8]) -> usize {
+    let is_cut = text.last().is_some_and(|byte| *byte != b'\n');
+    memchr_iter(b'\n', text).count() + usize::from(is_cut)
+}
+
+/// Part of the lines, and where their values go.
+struct Piece<'a> {
+    text: &'a [u8],
+    lines_before: usize,
+    may_be_longer: bool,
+    numbers: Vec<&'a mut [f64]>,
+    indices: Vec<&'a mut [u32]>,
+}
+
+impl Piece<'_> {
+    /// Reads all lines, and returns the different texts of each column of text, whose indices count from 0 in every piece.
+    fn read(mut self, fields: &[Field]) -> Result<Vec<Vec<String>>, LineError> {
+        let mut labels: Vec<LabelsBuilder> =
+            self.indices.iter().map(|_| LabelsBuilder::default()).collect();
+        for (row, line) in Lines::new(self.text).enumerate() {
+            let number = self.lines_before + row + 1;
+            let mut values = Values { rest: line };
+            let (mut next_number, mut next_text) = (0, 0);
+            for (column, field) in fields.iter().enumerate() {
+                let Some(value) = values.next() else {
+                    return Err(missing(line, number, column, &field.name));
+                };
+                match field.kind {
+                    Kind::Number => {
+                        let parsed = self::number(value);
+                        let parsed = parsed
+                            .ok_or_else(|| not_a_number(value, number, column, &field.name))?;
+                        self.numbers[next_number][row] = parsed;
+                        next_number += 1;
+                    }
+                    Kind::Text => {
+                        if !value.is_ascii() && std::str::from_utf8(value).is_err() {
+                            return Err(LineError::NotText { line: number });
+                        }
+                        self.indices[next_text][row] = labels[next_text].index(value);
+                        next_text += 1;
+                    }
+                    Kind::Skipped => {}
+                }
+            }
+            if !self.may_be_longer && values.next().is_some() {
+                let columns = Values { rest: line }.count();
+                return Err(LineError::TooMany { line: number, columns, declared: fields.len() });
+            }
+        }
+        Ok(labels.into_iter().map(|labels| labels.names).collect())
+    }
+}
+
+fn missing(text: &[u8], line: usize, column: usize, name: &str) -> LineError {
+    let columns = Values { rest: text }.count();
+    LineError::Missing { line, column: column + 1, what: name.to_owned(), columns }
+}
+
+fn not_a_number(value: &[u8], line: usize, column: usize, name: &str) -> LineError {
+    match std::str::from_utf8(value) {
+        Ok(found) => {
+            let found = shortened(found);
+            LineError::Number { line, column: column + 1, what: name.to_owned(), found }
+        }
+        Err(_) => LineError::NotText { line },
+    }
+}
+
+/// Joins the texts of all pieces, and renumbers the indices.
+fn merged(
+    names: &[Vec<Vec<String>>],
+    text: usize,
+    mut indices: Vec<u32>,
+    ends: &[usize],
+) -> Labels {
+    let mut all = LabelsBuilder::default();
+    let renumbered: Vec<Vec<u32>> = names
+        .iter()
+        .map(|piece| piece[text].iter().map(|name| all.index(name.as_bytes())).collect())
+        .collect();
+    let slices = parallel::split_mut(&mut indices, ends.iter().copied());
+    parallel::for_each(slices.into_iter().zip(renumbered).collect(), |(slice, renumbered)| {
+        for index in slice {
+            *index = renumbered[*index as usize];
+        }
+    });
+    Labels { names: all.names, indices }
+}
+
+/// The lines of a text without their line ends.
+#[derive(Clone, Debug)]
+pub(super) struct Lines<'a> {
+    pub(super) rest: &'a [u8],
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { rest: text }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let end = memchr(b'\n', self.rest).unwrap_or(self.rest.len());
+        let (line, rest) = self.rest.split_at(end);
+        self.rest = rest.get(1..).unwrap_or_default();
+        Some(line.strip_suffix(b"\r").unwrap_or(line))
+    }
+}
+
+/// The values of a line, between white space.
+#[derive(Clone, Debug)]
+pub(super) struct Values<'a> {
+    pub(super) rest: &'a [u8],
+}
+
+impl<'a> Iterator for Values<'a> {
+    type Item = &'a [u8];
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        let is_blank = |byte: &u8| *byte <= b' ';
+        let start = self.rest.iter().position(|byte| !is_blank(byte))?;
+        let rest = &self.rest[start..];
+        let end = rest.iter().position(is_blank).unwrap_or(rest.len());
+        let (value, rest) = rest.split_at(end);
+        self.rest = rest;
+        Some(value)
+    }
+}
+
+/// Makes spheres of a table, and names the line of what is wrong in a row.
+pub(super) fn into_loaded(
+    table: Table,
+    options: &Options,
+    line_of: impl Fn(usize) -> usize,
+) -> Result<Loaded, LoadError> {
+    let loaded = table.into_loaded(options).map_err(|error| match error {
+        TableError::Position { row, column, found } => {
+            LoadError::Line(LineError::Position { line: line_of(row), what: column, found })
+        }
+        TableError::Radius { row, column, found } => {
+            LoadError::Line(LineError::Radius { line: line_of(row), what: column, found })
+        }
+        other => LoadError::Table(other),
+    })?;
+    let SphereArray::F64(spheres) = &loaded.spheres else { return Ok(loaded) };
+    match spheres.iter().enumerate().find_map(|(row, sphere)| Some((row, check(*sphere).err()?))) {
+        Some((row, error)) => Err(LineError::Sphere { line: line_of(row), error }.into()),
+        None => Ok(loaded),
+    }
+}
