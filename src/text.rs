@@ -25,7 +25,7 @@ pub(crate) fn shortened(text: &str) -> String {
 }
 
 /// The text without the byte order mark that some editors put before UTF-8.
-#[cfg(any(feature = "pdb", feature = "xyz"))]
+#[cfg(feature = "table")]
 pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }

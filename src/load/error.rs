@@ -51,6 +51,10 @@ pub enum LoadError {
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// A file of LAMMPS cannot be read.
+    #[cfg(feature = "lammps")]
+    #[error(transparent)]
+    Lammps(#[from] super::lammps::LammpsError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]

@@ -97,6 +97,20 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "lammps")]
+    Format {
+        name: "lammps-dump",
+        extensions: &["lammpstrj", "dump"],
+        about: "A dump of atoms of LAMMPS; a frame is a step",
+        frames: Some(super::lammps::dump::FRAMES),
+        needs_topology: false,
+        may_lack_names: true,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::lammps::dump::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::lammps::dump::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
     #[cfg(feature = "npy")]
     Format {
         name: "npy",
@@ -332,7 +346,7 @@ mod tests {
         assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
-    #[cfg(all(feature = "npy", feature = "pdb", feature = "xyz"))]
+    #[cfg(all(feature = "lammps", feature = "npy", feature = "pdb", feature = "xyz"))]
     #[test]
     fn content_shows_the_format() {
         for (bytes, name) in [
@@ -340,6 +354,7 @@ mod tests {
             (b"PK\x03\x04", "npz"),
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
+            (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
         ] {
             assert_eq!(Format::of_content(bytes).map(|format| format.name), Some(name));
         }

@@ -26,6 +26,8 @@ mod gzip;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has texts")]
 mod labels;
+#[cfg(feature = "lammps")]
+pub mod lammps;
 mod loaded;
 #[cfg(feature = "npy")]
 pub mod npy;

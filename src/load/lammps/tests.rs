@@ -1,0 +1,209 @@
+//! Dumps and data files that are made here.
+
+use crate::load::{self, ColumnValues, Loaded, Options};
+use crate::scene::sphere_array::SphereArray;
+
+fn dump(text: &str) -> Loaded {
+    load::from_bytes(text.as_bytes(), "dump.0", &Options::default()).unwrap()
+}
+
+fn refused(text: &str) -> String {
+    load::from_bytes(text.as_bytes(), "a.dump", &Options::default()).unwrap_err().to_string()
+}
+
+fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
+    match &loaded.spheres {
+        SphereArray::F64(spheres) => spheres,
+        SphereArray::F32(_) => panic!("f32"),
+    }
+}
+
+fn centers(loaded: &Loaded) -> Vec<[f64; 3]> {
+    spheres(loaded).iter().map(|[x, y, z, _]| [*x, *y, *z]).collect()
+}
+
+fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
+    match loaded.column(column) {
+        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
+        other => panic!("{column}: {other:?}"),
+    }
+}
+
+fn labels(loaded: &Loaded, column: &str) -> Vec<String> {
+    let labels = loaded.labels(column).unwrap();
+    labels.indices.iter().map(|index| labels.names[*index as usize].clone()).collect()
+}
+
+const HEAD: &str = "ITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\n";
+const BOX: &str = "ITEM: BOX BOUNDS pp pp pp\n-1 3\n0 10\n5 25\n";
+
+#[test]
+fn columns_in_any_order_and_atoms_in_the_order_of_their_ids() {
+    let text = format!(
+        "ITEM: UNITS\nmetal\nITEM: TIME\n0.5\n{HEAD}{BOX}ITEM: ATOMS z id type vx vy vz x y radius c_1[2] element \n\
+         6 9 2 .1 .2 .3 1 2 0.5 -7 O \n7 3 1 1 2 3 4 5 1.5 1e3 H\n"
+    );
+    let loaded = dump(&text);
+    assert_eq!(spheres(&loaded), [[4.0, 5.0, 7.0, 1.5], [1.0, 2.0, 6.0, 0.5]]);
+    assert_eq!(loaded.cell, Some([[4.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 20.0]]));
+    assert_eq!(labels(&loaded, "species"), ["H", "O"]);
+    assert_eq!(labels(&loaded, "type"), ["1", "2"]);
+    assert_eq!(numbers(&loaded, "vx"), [1.0, 0.1]);
+    assert_eq!(numbers(&loaded, "c_1[2]"), [1000.0, -7.0]);
+    assert_eq!((loaded.frames, loaded.colors.is_some()), (Some(1), true));
+    // Errors name the line in the file, not the place after sorting.
+    assert_eq!(
+        refused(&text.replace("1.5 1e3", "0 1e3")),
+        "line 15: radius is 0; a radius must be finite and greater than 0"
+    );
+}
+
+#[test]
+fn positions_are_fractions_or_unwrapped() {
+    let atoms = |names: &str, values: &str| {
+        centers(&dump(&format!("{HEAD}{BOX}ITEM: ATOMS {names}\n{values}\n{values}\n")))[0]
+    };
+    assert_eq!(atoms("xu yu zu", "1 2 3"), [1.0, 2.0, 3.0]);
+    assert_eq!(atoms("xs ys zs", "0.5 0.25 1"), [1.0, 2.5, 25.0]);
+    assert_eq!(atoms("xsu ysu zsu", "1.5 -0.5 0"), [5.0, -5.0, 5.0]);
+    assert_eq!(atoms("xs ys zs x y z", "0.5 0.25 1 7 8 9"), [7.0, 8.0, 9.0]);
+}
+
+#[test]
+fn boxes_that_are_not_orthogonal() {
+    let scaled =
+        |bounds: &str| dump(&format!("{HEAD}{bounds}ITEM: ATOMS id xs ys zs\n1 0 0 0\n2 1 1 1\n"));
+    // xlo = 0, xhi = 4, xy = -1, xz = 2, ylo = 0, yhi = 3, yz = 1, zlo = -1, zhi = 1.
+    let tilted = scaled("ITEM: BOX BOUNDS xy xz yz pp pp ff\n-1 6 -1\n0 4 2\n-1 1 1\n");
+    assert_eq!(tilted.cell, Some([[4.0, 0.0, 0.0], [-1.0, 3.0, 0.0], [2.0, 1.0, 2.0]]));
+    assert_eq!(centers(&tilted), [[0.0, 0.0, -1.0], [5.0, 4.0, 1.0]]);
+    let general = scaled("ITEM: BOX BOUNDS abc origin pp pp pp\n1 2 3 10\n0 1 0 20\n0 0 2 30\n");
+    assert_eq!(general.cell, Some([[1.0, 2.0, 3.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]]));
+    assert_eq!(centers(&general), [[10.0, 20.0, 30.0], [11.0, 23.0, 35.0]]);
+}
+
+#[test]
+fn types_that_are_symbols_are_elements() {
+    let typed = |a: &str, b: &str| {
+        dump(&format!("{HEAD}{BOX}ITEM: ATOMS id type x y z\n1 {a} 0 0 0\n2 {b} 1 1 1\n"))
+    };
+    let symbols = typed("O", "H");
+    assert_eq!(labels(&symbols, "species"), ["O", "H"]);
+    assert!(symbols.notes[0].contains("are taken as such"), "{:?}", symbols.notes);
+    for (a, b) in [("1", "2"), ("O", "bead")] {
+        let types = typed(a, b);
+        assert_eq!(
+            (labels(&types, "type"), types.labels("species")),
+            (vec![a.to_owned(), b.to_owned()], None)
+        );
+        assert!(types.notes[0].contains("--radius sets it"), "{:?}", types.notes);
+    }
+}
+
+#[test]
+fn ids_that_are_not_consecutive() {
+    for (ids, wanted) in
+        [([7, 3, 5], [1.0, 2.0, 0.0]), ([2, 2, 1], [2.0, 0.0, 1.0]), ([3, 1, 2], [1.0, 2.0, 0.0])]
+    {
+        let lines: String =
+            ids.iter().enumerate().map(|(x, id)| format!("{id} {x} 0 0\n")).collect();
+        let head = HEAD.replace("\n2\n", "\n3\n");
+        let loaded = dump(&format!("{head}{BOX}ITEM: ATOMS id x y z\n{lines}"));
+        let found: Vec<f64> = centers(&loaded).iter().map(|center| center[0]).collect();
+        assert_eq!(found, wanted);
+    }
+}
+
+#[test]
+fn frames() {
+    let frame = |x: &str| format!("{HEAD}{BOX}ITEM: ATOMS id x y z\n1 {x} 0 0\n2 0 0 1\n");
+    let text = frame("1") + &frame("2") + &frame("3");
+    for wanted in 0..3 {
+        let options = Options::default().with_frame(wanted);
+        let loaded = load::from_bytes(text.as_bytes(), "", &options).unwrap();
+        assert_eq!((centers(&loaded)[0][0], loaded.frames), (wanted as f64 + 1.0, Some(3)));
+    }
+    let bad = text.replace("1 2 0 0", "1 2 0");
+    let second = Options::default().with_frame(1);
+    let error = load::from_bytes(bad.as_bytes(), "", &second).unwrap_err().to_string();
+    assert_eq!(error, "line 21: z, which is column 4, is missing; the line has 3 columns");
+    // A program is still writing the last frame.
+    let cut = &text[..text.len() - 8];
+    assert_eq!(refused(cut), "line 26: 2 atoms are declared, but the file ends after 1");
+}
+
+#[test]
+fn bad_dumps() {
+    let atoms = "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n";
+    let whole = format!("{HEAD}{BOX}{atoms}");
+    assert_eq!(dump(&whole).spheres.len(), 2);
+    for (text, wanted) in [
+        (String::new(), "the file is empty; a dump of LAMMPS starts with ITEM: TIMESTEP"),
+        (
+            HEAD.to_owned(),
+            "line 1: the file ends within the frame that begins here, before its atoms",
+        ),
+        (HEAD.replace("\n2\n", "\ntwo\n"), "line 4: `two` is not a valid number of atoms"),
+        (format!("{BOX}{atoms}"), "line 5: ITEM: NUMBER OF ATOMS is missing before ITEM: ATOMS"),
+        (format!("{HEAD}{atoms}"), "line 5: ITEM: BOX BOUNDS is missing before ITEM: ATOMS"),
+        (
+            whole.replace("0 10", "0"),
+            "line 7: `0` is not a line of the box; two numbers belong here: low end and high end",
+        ),
+        (
+            whole.replace("id x y z", "id x y q"),
+            "line 9: there are no positions among the columns id, x, y, q; they are x y z, xu yu zu, xs ys zs or xsu ysu zsu",
+        ),
+        (
+            whole.replace(" id x y z", ""),
+            "line 9: the columns have no names; name them in the order of the file, such as with --columns id,type,xs,ys,zs",
+        ),
+        (
+            whole.replace("2 0 0 1", "2 0 0 1 5"),
+            "line 11: this line has 5 columns, but only 4 have names",
+        ),
+        (whole.replace("2 0 0 1", "2 0 x 1"), "line 11, column 3: y is `x`, which is not a number"),
+        (whole.replace("2 0 0 1", "2 0 nan 1"), "line 11: y is NaN; a position must be finite"),
+        (
+            whole.clone() + "3 0 0 1\n",
+            "line 12: `3 0 0 1` stands where ITEM: must begin an item; the frame before it declares 2 atoms on line 4",
+        ),
+        (
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\n".to_owned(),
+            "line 3: `ITEM: NUMBER OF ENTRIES` is not an item of a dump of atoms",
+        ),
+    ] {
+        assert_eq!(refused(&text), wanted);
+    }
+    let named = Options::default().with_columns(["id", "x", "y", "z"]);
+    let bare = whole.replace(" id x y z", "");
+    assert_eq!(load::from_bytes(bare.as_bytes(), "a.dump", &named).unwrap(), dump(&whole));
+    let twice = load::from_bytes(whole.as_bytes(), "a.dump", &named).unwrap_err().to_string();
+    assert_eq!(twice, "line 9: the file names its columns; remove the names that are given");
+}
+
+#[test]
+fn no_input_panics() {
+    let text =
+        format!("{HEAD}{BOX}ITEM: ATOMS id type xs ys zs\n2 1 .5 .5 .5\n1 2 0 0 0\n").repeat(2);
+    let mut random = fastrand::Rng::with_seed(1);
+    for _ in 0..5000 {
+        let mut bytes = text.clone().into_bytes();
+        for _ in 0..random.usize(1..6) {
+            let at = random.usize(..bytes.len().max(1));
+            if bytes.is_empty() {
+                break;
+            }
+            match random.u8(..4) {
+                0 => bytes[at] = random.u8(..),
+                1 => drop(bytes.remove(at)),
+                2 => bytes.insert(at, *random.choice(b"\n\t -.e09\xff").unwrap()),
+                _ => bytes.truncate(at.max(1)),
+            }
+        }
+        for format in ["lammps-dump"] {
+            let options = Options::default().with_format(load::Format::of_name(format).unwrap());
+            drop(load::from_bytes(&bytes, "", &options.with_frame(random.usize(..2))));
+        }
+    }
+}
