@@ -23,8 +23,8 @@ fn main() {
         return paths.iter().for_each(|path| file(path));
     }
     let atoms = 300_000;
-    compare("xyz", &xyz(atoms), |text| few_lines(text, 2, [1, 2, 3]));
-    compare("lammps-dump", &dump(atoms), |text| few_lines(text, 9, [2, 3, 4]));
+    compare("xyz", &xyz(atoms), |text| few_lines(text, 2, 0, &[1, 2, 3]));
+    compare("lammps-dump", &dump(atoms), |text| few_lines(text, 9, 1, &[2, 3, 4, 0, 5, 6, 7]));
 }
 
 /// Prints the median times of the reader and of the few lines, and their ratio.
@@ -85,27 +85,32 @@ fn file(path: &str) {
     );
 }
 
-/// What the few lines keep: places, and for each atom which of the different texts its first value is.
+/// What the few lines keep: places, other numbers, and for each atom which of the different texts one value is.
+#[derive(Default)]
 struct Atoms {
     centers: Vec<[f64; 3]>,
-    #[expect(dead_code, reason = "collected as a reader must")]
-    names: (Vec<String>, Vec<usize>),
+    numbers: Vec<Vec<f64>>,
+    names: Vec<String>,
+    indices: Vec<usize>,
 }
 
-fn few_lines(text: &str, head: usize, [x, y, z]: [usize; 3]) -> Atoms {
-    let mut centers = Vec::new();
-    let mut names = (Vec::<String>::new(), Vec::new());
+/// The first three of the `numbers` are places.
+fn few_lines(text: &str, head: usize, name: usize, numbers: &[usize]) -> Atoms {
+    let mut atoms = Atoms { numbers: vec![Vec::new(); numbers.len() - 3], ..Atoms::default() };
     for line in text.lines().skip(head) {
         let values: Vec<&str> = line.split_ascii_whitespace().collect();
-        centers.push([x, y, z].map(|column| values[column].parse().unwrap()));
-        let name = values[x - 1];
-        let index = names.0.iter().position(|known| known == name).unwrap_or_else(|| {
-            names.0.push(name.to_owned());
-            names.0.len() - 1
-        });
-        names.1.push(index);
+        let number = |index: usize| values[numbers[index]].parse().unwrap();
+        atoms.centers.push([0, 1, 2].map(number));
+        for (index, column) in atoms.numbers.iter_mut().enumerate() {
+            column.push(number(index + 3));
+        }
+        let known = atoms.names.iter().position(|known| known == values[name]);
+        atoms.indices.push(known.unwrap_or(atoms.names.len()));
+        if known.is_none() {
+            atoms.names.push(values[name].to_owned());
+        }
     }
-    Atoms { centers, names }
+    atoms
 }
 
 fn xyz(atoms: usize) -> String {

@@ -51,10 +51,18 @@ pub enum LoadError {
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// A table of text cannot be read.
+    #[cfg(feature = "csv")]
+    #[error(transparent)]
+    Csv(#[from] super::csv::CsvError),
     /// A file of LAMMPS cannot be read.
     #[cfg(feature = "lammps")]
     #[error(transparent)]
     Lammps(#[from] super::lammps::LammpsError),
+    /// An mmCIF file cannot be read.
+    #[cfg(feature = "mmcif")]
+    #[error(transparent)]
+    MmCif(#[from] super::mmcif::MmCifError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]

@@ -111,6 +111,34 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::lammps::dump::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "lammps")]
+    Format {
+        name: "lammps-data",
+        extensions: &["data", "lmp"],
+        about: "A data file of LAMMPS, with the section Atoms",
+        frames: None,
+        needs_topology: false,
+        may_lack_names: true,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::lammps::data::starts,
+        reader: super::lammps::data::read,
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "mmcif")]
+    Format {
+        name: "mmcif",
+        extensions: &["cif", "mmcif"],
+        about: "Text of named items (mmCIF), or the CIF of a small molecule; a frame is a model",
+        frames: Some(super::mmcif::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: true,
+        starts: super::mmcif::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::mmcif::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
     #[cfg(feature = "npy")]
     Format {
         name: "npy",
@@ -138,6 +166,20 @@ pub static FORMATS: &[Format] = &[
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
         reader: |bytes, options| Ok(Loaded::new(super::npz::read_spheres(bytes, options.radius)?)),
         extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
+    },
+    #[cfg(feature = "csv")]
+    Format {
+        name: "csv",
+        extensions: &["csv", "tsv"],
+        about: "A table of text with commas, tabs, semicolons or white space",
+        frames: None,
+        needs_topology: false,
+        may_lack_names: true,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::csv::starts,
+        reader: super::csv::read,
+        extra_bytes: no_extra_bytes,
     },
     Format {
         name: "raw-f32x4",
@@ -346,7 +388,13 @@ mod tests {
         assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
-    #[cfg(all(feature = "lammps", feature = "npy", feature = "pdb", feature = "xyz"))]
+    #[cfg(all(
+        feature = "lammps",
+        feature = "mmcif",
+        feature = "npy",
+        feature = "pdb",
+        feature = "xyz"
+    ))]
     #[test]
     fn content_shows_the_format() {
         for (bytes, name) in [
@@ -355,6 +403,9 @@ mod tests {
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
+            (b"id,X,y,z,q\n1,2", "csv"),
+            (b"made by me\n\n 20 atoms\n", "lammps-data"),
+            (b"# comment\n\nData_4HHB\n", "mmcif"),
         ] {
             assert_eq!(Format::of_content(bytes).map(|format| format.name), Some(name));
         }

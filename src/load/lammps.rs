@@ -4,9 +4,14 @@
 //! taken as they are, in the simulation's unit.
 
 mod cell;
+pub(super) mod data;
+#[cfg(test)]
+mod data_tests;
 pub(super) mod dump;
+mod elements;
 mod error;
 mod order;
+mod styles;
 #[cfg(test)]
 mod tests;
 

@@ -15,6 +15,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(any(feature = "mmcif", feature = "pdb"))]
+mod atoms;
+#[cfg(feature = "csv")]
+pub mod csv;
 #[cfg(feature = "table")]
 mod elements;
 #[cfg(any(feature = "exr", feature = "hdr"))]
@@ -29,6 +33,8 @@ mod labels;
 #[cfg(feature = "lammps")]
 pub mod lammps;
 mod loaded;
+#[cfg(feature = "mmcif")]
+pub mod mmcif;
 #[cfg(feature = "npy")]
 pub mod npy;
 #[cfg(feature = "npy")]

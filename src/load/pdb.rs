@@ -10,24 +10,20 @@
 //! Many programs deviate from the format, so this reader accepts more than it allows: residue names of four
 //! characters, residue numbers in hybrid-36, and lines that end after the coordinates.
 
-mod altloc;
-mod atoms;
 mod cell;
-mod element;
 mod error;
 mod hybrid36;
-mod labels;
 mod record;
 #[cfg(test)]
 mod tests;
 
 use std::io;
 
-use atoms::Atoms;
 pub use error::PdbError;
 use record::{Kind, Lines, Record};
 
 use super::Loaded;
+use super::atoms::{Atom, Atoms};
 use super::error::LoadError;
 use super::format::Options;
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
@@ -194,7 +190,7 @@ impl Reader {
         if self.models.saturating_sub(1) != self.frame {
             return Ok(());
         }
-        self.atoms.push(&Record::new(line, text, record)?)
+        push(&mut self.atoms, &Record::new(line, text, record)?)
     }
 
     fn model(&mut self, line: usize) -> Result<(), PdbError> {
@@ -238,4 +234,47 @@ impl Reader {
         }
         Ok(loaded)
     }
+}
+
+/// Fields that an atom must have, each with its first and last column.
+const NEEDED: [(&str, usize, usize); 6] = [
+    ("atom name", 13, 16),
+    ("residue name", 18, 20),
+    ("residue number", 23, 26),
+    ("x coordinate", 31, 38),
+    ("y coordinate", 39, 46),
+    ("z coordinate", 47, 54),
+];
+
+/// Appends the atom of an ATOM or HETATM record.
+fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), PdbError> {
+    record.must_have(&NEEDED)?;
+    let text = record.text(23, 26);
+    let number = hybrid36::decode(text).ok_or_else(|| PdbError::ResidueNumber {
+        line: record.line,
+        found: text.escape_debug().to_string(),
+    })?;
+    let place = [
+        record.number("x coordinate", 31, 38)?,
+        record.number("y coordinate", 39, 46)?,
+        record.number("z coordinate", 47, 54)?,
+    ];
+    let ([letter], [insertion]) = (record.bytes(17), record.bytes(27));
+    atoms.push(&Atom {
+        place,
+        occupancy: record.number_or(1.0, "occupancy", 55, 60)?,
+        b_factor: record.number_or(0.0, "B-factor", 61, 66)?,
+        residue_number: f64::from(number),
+        name: record.bytes::<4>(13).trim_ascii(),
+        name_field: record.bytes(13),
+        symbol: record.bytes(77),
+        // The format has residue names of three characters and a blank column 21; other programs use all four.
+        residue: record.bytes::<4>(18).trim_ascii(),
+        chain: record.bytes::<1>(22).trim_ascii(),
+        record: record.name.as_bytes(),
+        entity: None,
+        letter,
+        insertion,
+    });
+    Ok(())
 }

@@ -8,6 +8,7 @@ use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
 use crate::image::color::LinearRgb;
+use crate::parallel;
 use crate::scene::sphere_array::SphereArray;
 use crate::text::shortened;
 
@@ -153,24 +154,27 @@ impl Table {
             .as_ref()
             .zip(elements.as_ref())
             .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
-        let radius_of: Box<dyn Fn(usize) -> f64> = match (&found_radii, options.radius, &element_of)
-        {
-            (Some((column, _)), Some(_), _) => {
-                return Err(TableError::TwoRadii { column: column.clone() });
-            }
-            (Some((_, radii)), None, _) => Box::new(|row| radii[row]),
-            (None, Some(radius), _) => Box::new(move |_| radius),
-            (None, None, Some(element_of)) => Box::new(|row| element_of(row).radius),
-            (None, None, None) => {
-                let radius =
-                    guessed_radius(x.len(), |row| DVec3::new(x[row], y[row], z[row]), &mut notes);
-                Box::new(move |_| radius)
-            }
-        };
-        let spheres = (0..x.len()).map(|row| [x[row], y[row], z[row], radius_of(row)]).collect();
+        let radius_of: Box<dyn Fn(usize) -> f64 + Send + Sync> =
+            match (&found_radii, options.radius, &element_of) {
+                (Some((column, _)), Some(_), _) => {
+                    return Err(TableError::TwoRadii { column: column.clone() });
+                }
+                (Some((_, radii)), None, _) => Box::new(|row| radii[row]),
+                (None, Some(radius), _) => Box::new(move |_| radius),
+                (None, None, Some(element_of)) => Box::new(|row| element_of(row).radius),
+                (None, None, None) => {
+                    let radius = guessed_radius(
+                        x.len(),
+                        |row| DVec3::new(x[row], y[row], z[row]),
+                        &mut notes,
+                    );
+                    Box::new(move |_| radius)
+                }
+            };
+        let spheres = parallel::map(x.len(), |row| [x[row], y[row], z[row], radius_of(row)]);
         let by_element = element_of
             .as_ref()
-            .map(|element_of| (0..x.len()).map(|row| element_of(row).color).collect::<Vec<_>>());
+            .map(|element_of| parallel::map(x.len(), |row| element_of(row).color));
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
             named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
@@ -350,6 +354,29 @@ impl TableColumn {
             ColumnValues::Labels(labels) => labels.indices.is_empty(),
         }
     }
+}
+
+/// The name of a column in lower case, with dots for what separates words.
+fn plain(name: &str) -> String {
+    TableColumn::numbers(name, Vec::new()).plain_name()
+}
+
+/// Whether a column with this name must have numbers, because positions or radii follow from it.
+pub(super) fn must_be_numbers(name: &str) -> bool {
+    let name = plain(name);
+    let name = name.as_str();
+    POSITIONS.as_flattened().contains(&name) || RADII.contains(&name) || DIAMETERS.contains(&name)
+}
+
+/// Whether a column with this name has chemical elements, which may be atomic numbers.
+pub(super) fn is_element(name: &str) -> bool {
+    ELEMENTS.contains(&plain(name).as_str())
+}
+
+/// Whether columns with these names have positions.
+pub(super) fn has_positions(names: &[String]) -> bool {
+    let names: Vec<String> = names.iter().map(|name| plain(name)).collect();
+    POSITIONS.iter().any(|set| set.iter().all(|wanted| names.iter().any(|name| name == wanted)))
 }
 
 /// The radius of spheres that have none, with a note.

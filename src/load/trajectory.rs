@@ -274,6 +274,7 @@ impl<'a> LineReader<'a> {
     /// Skips lines, and returns how many there were. The last may lack a line end.
     #[cfg(feature = "table")]
     pub(super) fn skip(&mut self, lines: usize) -> io::Result<usize> {
+        const BLOCK: usize = 1 << 13;
         let (mut found, mut is_within) = (0, false);
         while found < lines {
             let buffer = self.source.fill_buf()?;
@@ -281,17 +282,17 @@ impl<'a> LineReader<'a> {
                 found += usize::from(is_within);
                 break;
             }
+            // Counting is faster than looking at every line, but where a frame ends is not known.
+            let block = &buffer[..buffer.len().min(BLOCK)];
             let wanted = lines - found;
-            // Counting is faster than looking at every line.
-            let count = memchr::memchr_iter(b'\n', buffer).count();
-            let end = if count < wanted {
-                buffer.len()
+            let count = memchr::memchr_iter(b'\n', block).count();
+            let last = if count < wanted {
+                None
             } else {
-                memchr::memchr_iter(b'\n', buffer)
-                    .nth(wanted - 1)
-                    .map_or(buffer.len(), |end| end + 1)
+                memchr::memchr_iter(b'\n', block).nth(wanted - 1)
             };
-            is_within = buffer[end - 1] != b'\n';
+            let end = last.map_or(block.len(), |last| last + 1);
+            is_within = block[end - 1] != b'\n';
             found += count.min(wanted);
             self.offset += end as u64;
             self.source.consume(end);

@@ -99,4 +99,80 @@ pub enum LammpsError {
         /// Names of the columns.
         columns: String,
     },
+    /// A line of a data file is not valid.
+    #[error("line {line}: `{found}` cannot be read")]
+    Line {
+        /// Number of the line.
+        line: usize,
+        /// The text of the line.
+        found: String,
+    },
+    /// A data file declares no number of atoms before the atoms.
+    #[error("line {line}: a line such as `100 atoms` must come before the atoms")]
+    NoCount {
+        /// Number of the line.
+        line: usize,
+    },
+    /// A data file has no atoms.
+    #[error("there is no section Atoms; a data file of LAMMPS has one")]
+    NoAtoms,
+    /// Something else stands where a section of a data file must begin.
+    #[error(
+        "line {line}: `{found}` stands where a section must begin; {declared} atoms are declared on line {line_of_count}"
+    )]
+    NoSection {
+        /// Number of the line.
+        line: usize,
+        /// The text of the line.
+        found: String,
+        /// The number of atoms that is declared.
+        declared: usize,
+        /// Number of the line that declares it.
+        line_of_count: usize,
+    },
+    /// A mass is not a finite number.
+    #[error("line {line}: the mass is `{found}`, which is not a finite number")]
+    Mass {
+        /// Number of the line.
+        line: usize,
+        /// The text that was found.
+        found: String,
+    },
+    /// The file does not say what its columns are.
+    #[error(
+        "line {line}: atoms have {found} columns, and the file does not say which; name their style, as in \
+         `Atoms # full`, or the columns, as with --columns {charge}"
+    )]
+    NoStyle {
+        /// Number of the line of the first atom.
+        line: usize,
+        /// Number of columns.
+        found: usize,
+        /// Columns of a style, as an example.
+        charge: String,
+    },
+    /// The style of atoms has no columns that this reader knows.
+    #[error(
+        "line {line}: the columns of the style {style} are not known; name them, such as with --columns id,type,x,y,z"
+    )]
+    UnknownStyle {
+        /// Number of the line of the first atom.
+        line: usize,
+        /// Name of the style.
+        style: String,
+    },
+    /// The first atom has another number of columns than have names.
+    #[error(
+        "line {line}: this line has {found} columns, but {declared} have names ({names}); three whole numbers may follow"
+    )]
+    Columns {
+        /// Number of the line of the first atom.
+        line: usize,
+        /// Number of columns.
+        found: usize,
+        /// Number of names.
+        declared: usize,
+        /// The names.
+        names: String,
+    },
 }

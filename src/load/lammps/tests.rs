@@ -1,5 +1,6 @@
 //! Dumps and data files that are made here.
 
+use super::data_tests::DATA;
 use crate::load::{self, ColumnValues, Loaded, Options};
 use crate::scene::sphere_array::SphereArray;
 
@@ -11,25 +12,25 @@ fn refused(text: &str) -> String {
     load::from_bytes(text.as_bytes(), "a.dump", &Options::default()).unwrap_err().to_string()
 }
 
-fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
+pub(super) fn spheres(loaded: &Loaded) -> &[[f64; 4]] {
     match &loaded.spheres {
         SphereArray::F64(spheres) => spheres,
         SphereArray::F32(_) => panic!("f32"),
     }
 }
 
-fn centers(loaded: &Loaded) -> Vec<[f64; 3]> {
+pub(super) fn centers(loaded: &Loaded) -> Vec<[f64; 3]> {
     spheres(loaded).iter().map(|[x, y, z, _]| [*x, *y, *z]).collect()
 }
 
-fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
+pub(super) fn numbers(loaded: &Loaded, column: &str) -> Vec<f64> {
     match loaded.column(column) {
         Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
         other => panic!("{column}: {other:?}"),
     }
 }
 
-fn labels(loaded: &Loaded, column: &str) -> Vec<String> {
+pub(super) fn labels(loaded: &Loaded, column: &str) -> Vec<String> {
     let labels = loaded.labels(column).unwrap();
     labels.indices.iter().map(|index| labels.names[*index as usize].clone()).collect()
 }
@@ -188,7 +189,7 @@ fn no_input_panics() {
         format!("{HEAD}{BOX}ITEM: ATOMS id type xs ys zs\n2 1 .5 .5 .5\n1 2 0 0 0\n").repeat(2);
     let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..5000 {
-        let mut bytes = text.clone().into_bytes();
+        let mut bytes = if random.bool() { text.clone() } else { DATA.to_owned() }.into_bytes();
         for _ in 0..random.usize(1..6) {
             let at = random.usize(..bytes.len().max(1));
             if bytes.is_empty() {
@@ -201,9 +202,9 @@ fn no_input_panics() {
                 _ => bytes.truncate(at.max(1)),
             }
         }
-        for format in ["lammps-dump"] {
+        for format in ["lammps-dump", "lammps-data"] {
             let options = Options::default().with_format(load::Format::of_name(format).unwrap());
-            drop(load::from_bytes(&bytes, "", &options.with_frame(random.usize(..2))));
+            drop(load::from_bytes(&bytes, "", &options));
         }
     }
 }

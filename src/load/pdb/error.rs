@@ -114,7 +114,7 @@ pub enum PdbError {
     #[error("there are no ATOM or HETATM records; a PDB file has one for each atom")]
     NoAtoms,
     /// The file is an mmCIF file, the successor of PDB.
-    #[error("this is an mmCIF file, not a PDB file; download the entry in PDB format")]
+    #[error("this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif")]
     MmCif,
     /// No periodic cell has these lengths and angles.
     #[error(

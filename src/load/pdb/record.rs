@@ -128,10 +128,12 @@ impl<'a> Record<'a> {
         last: usize,
     ) -> Result<f64, PdbError> {
         let text = self.text(first, last);
-        text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-            let found = text.escape_debug().to_string();
-            PdbError::Number { line: self.line, first, last, what, found }
-        })
+        crate::load::rows::number(text.as_bytes()).filter(|number| number.is_finite()).ok_or_else(
+            || {
+                let found = text.escape_debug().to_string();
+                PdbError::Number { line: self.line, first, last, what, found }
+            },
+        )
     }
 
     /// Returns the number in a field, or `absent` if the field is blank.

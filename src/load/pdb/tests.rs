@@ -150,6 +150,34 @@ fn unknown_elements_are_noted() {
 }
 
 #[test]
+fn names_that_calcium_and_alpha_carbon_share() {
+    let at = |name, residue, number, symbol| Row { name, residue, number, symbol, ..ROW };
+    let species = |rows: &[Row]| {
+        let loaded = loaded(&file(rows));
+        (labels(&loaded, "species"), loaded.notes)
+    };
+    let none = Vec::<String>::new();
+    assert_eq!(species(&[at("CA  ", "ALA", "1", "")]), (vec!["C".to_owned()], none.clone()));
+    assert_eq!(species(&[at(" CA ", "LIG", "1", "")]), (vec!["C".to_owned()], none.clone()));
+    assert_eq!(species(&[at("CA  ", "CA", "1", "")]), (vec!["Ca".to_owned()], none.clone()));
+    assert_eq!(species(&[at("CA  ", "LIG", "1", "CA")]), (vec!["Ca".to_owned()], none));
+    // A residue that is not known, whose name is in the wrong columns.
+    let residue =
+        [at("N   ", "SEP", "1", ""), at("CA  ", "SEP", "1", ""), at("CA  ", "XXX", "2", "")];
+    let (found, notes) = species(&residue);
+    assert_eq!(found, ["N", "C", "Ca"]);
+    assert_eq!(
+        notes,
+        [
+            "1 atoms CA of the residues SEP have no element and are taken as carbon, because these residues have atoms C \
+             or N as well",
+            "1 atoms CA of the residues XXX have no element and are taken as calcium, because the place of the name says \
+             so"
+        ]
+    );
+}
+
+#[test]
 fn alternate_locations() {
     let at = |name, letter, occupancy, x| Row { name, letter, occupancy, x, ..ROW };
     let rows = [
@@ -357,7 +385,7 @@ fn files_without_atoms() {
     for start in ["data_X\n#\n", "\n# x\n  DATA_x\n", "loop_\n_atom_site.group_PDB\n"] {
         assert_eq!(
             error(&format!("{start}{atom}")),
-            "this is an mmCIF file, not a PDB file; download the entry in PDB format"
+            "this is an mmCIF file, not a PDB file; call it .cif, or read it as the format mmcif"
         );
     }
 }

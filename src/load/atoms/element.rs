@@ -4,7 +4,7 @@ use crate::load::elements::appearance;
 
 /// Kinds of residues. The atoms of known kinds are of few elements, whatever their names look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Residue {
+pub(in crate::load) enum Residue {
     AminoAcid,
     NucleotideOrWater,
     Other,
@@ -47,6 +47,15 @@ pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (Strin
         // The wwPDB gives this symbol to atoms of unknown elements.
         ("X".to_owned(), false)
     }
+}
+
+/// Whether an atom without a symbol has a name that can be that of calcium or, in the wrong columns, of an alpha carbon: its
+/// residue is neither known nor that of the ion.
+pub(super) fn is_doubtful(name: [u8; 4], symbol: [u8; 2], kind: Residue, residue: &[u8]) -> bool {
+    &name == b"CA  "
+        && symbol.trim_ascii().is_empty()
+        && kind == Residue::Other
+        && !residue.to_ascii_uppercase().starts_with(b"CA")
 }
 
 /// Returns the element that an atom's name shows. Old files have no symbols, but names whose first two characters are

@@ -1,0 +1,261 @@
+//! Collects the atoms of one model of a molecule, as PDB and mmCIF have them.
+
+mod altloc;
+pub(super) mod cell;
+pub(super) mod element;
+
+use std::collections::HashSet;
+
+use altloc::Candidate;
+use element::Residue;
+
+use super::elements::{Appearance, appearance, unknown_note};
+use super::labels::{LabelsBuilder, Memo, retain};
+use super::{Column, ColumnValues, Loaded};
+use crate::image::color::LinearRgb;
+use crate::scene::sphere_array::SphereArray;
+
+/// An atom of a file.
+pub(super) struct Atom<'a> {
+    pub(super) place: [f64; 3],
+    pub(super) occupancy: f64,
+    pub(super) b_factor: f64,
+    pub(super) residue_number: f64,
+    pub(super) name: &'a [u8],
+    /// The name as in columns 13-16 of a PDB file, where its place shows the element.
+    pub(super) name_field: [u8; 4],
+    /// The symbol of the element; blank if the file does not have it.
+    pub(super) symbol: [u8; 2],
+    pub(super) residue: &'a [u8],
+    pub(super) chain: &'a [u8],
+    /// The name of the record: ATOM or HETATM.
+    pub(super) record: &'a [u8],
+    /// The molecule that the atom is of, in mmCIF.
+    pub(super) entity: Option<&'a [u8]>,
+    /// The letter of the alternate location, or a blank.
+    pub(super) letter: u8,
+    /// The insertion code of the residue, or a blank.
+    pub(super) insertion: u8,
+}
+
+/// The atoms that were read so far, in the order of the file.
+#[derive(Default)]
+pub(super) struct Atoms {
+    spheres: Vec<[f64; 4]>,
+    colors: Vec<LinearRgb>,
+    species: Species,
+    name: LabelsBuilder,
+    residue: LabelsBuilder,
+    residues: Vec<Residue>,
+    chain: LabelsBuilder,
+    record: LabelsBuilder,
+    entity: LabelsBuilder,
+    residue_number: Vec<f64>,
+    occupancy: Vec<f64>,
+    b_factor: Vec<f64>,
+    /// The letter of the alternate location and the insertion code of the residue, for each atom.
+    letters: Vec<[u8; 2]>,
+    has_alternates: bool,
+    /// Atoms whose name is that of calcium and of the alpha carbon, and that have no symbol.
+    doubtful: Vec<usize>,
+}
+
+impl Atoms {
+    pub(super) fn is_empty(&self) -> bool {
+        self.spheres.is_empty()
+    }
+
+    pub(super) fn push(&mut self, atom: &Atom<'_>) {
+        self.occupancy.push(atom.occupancy);
+        self.b_factor.push(atom.b_factor);
+        self.residue_number.push(atom.residue_number);
+        self.name.push(atom.name);
+        let index = self.residue.push(atom.residue) as usize;
+        if let (true, Some(name)) = (index == self.residues.len(), self.residue.names.get(index)) {
+            self.residues.push(Residue::of(name));
+        }
+        let residue = self.residues.get(index).copied().unwrap_or(Residue::Other);
+        self.chain.push(atom.chain);
+        self.record.push(atom.record);
+        if let Some(entity) = atom.entity {
+            self.entity.push(entity);
+        }
+        if element::is_doubtful(atom.name_field, atom.symbol, residue, atom.residue) {
+            self.doubtful.push(self.spheres.len());
+        }
+        let appearance = self.species.push(atom.name_field, atom.symbol, residue);
+        let [x, y, z] = atom.place;
+        self.spheres.push([x, y, z, appearance.radius]);
+        self.colors.push(appearance.color);
+        self.letters.push([atom.letter, atom.insertion]);
+        self.has_alternates |= atom.letter != b' ';
+    }
+
+    /// Decides which atoms that may be calcium or an alpha carbon are carbon: those whose residue has other atoms of a
+    /// backbone. Returns notes.
+    fn decide_doubtful(&mut self) -> Vec<String> {
+        let residue_of = |atom: usize| {
+            let labels = (self.chain.indices[atom], self.residue.indices[atom]);
+            (labels, self.residue_number[atom].to_bits(), self.letters[atom][1])
+        };
+        let is_backbone = |atom: &usize| {
+            let name = &self.name.names[self.name.indices[*atom] as usize];
+            name == "C" || name == "N"
+        };
+        let backbones: HashSet<_> = match self.doubtful.as_slice() {
+            [] => return Vec::new(),
+            _ => (0..self.spheres.len()).filter(is_backbone).map(residue_of).collect(),
+        };
+        let is_carbon = |atom: &usize| backbones.contains(&residue_of(*atom));
+        let (carbon, calcium): (Vec<_>, Vec<_>) =
+            self.doubtful.iter().partition(|atom| is_carbon(atom));
+        let named = |atoms: &[usize]| {
+            let mut names: Vec<_> = atoms.iter().map(|atom| self.residue.indices[*atom]).collect();
+            names.sort_unstable();
+            names.dedup();
+            let all: Vec<_> = names
+                .iter()
+                .take(5)
+                .map(|index| self.residue.names[*index as usize].clone())
+                .collect();
+            all.join(", ") + if names.len() > 5 { ", …" } else { "" }
+        };
+        let note = |atoms: &[usize], is: &str, why: &str| {
+            (!atoms.is_empty()).then(|| {
+                format!(
+                    "{} atoms CA of the residues {} have no element and are taken as {is}, because {why}",
+                    atoms.len(),
+                    named(atoms)
+                )
+            })
+        };
+        let notes = [
+            note(&carbon, "carbon", "these residues have atoms C or N as well"),
+            note(&calcium, "calcium", "the place of the name says so"),
+        ];
+        for atom in carbon {
+            let (index, appearance) = self.species.of_text("C", true);
+            self.species.labels.indices[atom] = index;
+            self.spheres[atom][3] = appearance.radius;
+            self.colors[atom] = appearance.color;
+        }
+        notes.into_iter().flatten().collect()
+    }
+
+    /// Keeps one location of each atom. Returns a note if others were left out.
+    fn keep_one_location(&mut self) -> Option<String> {
+        if !self.has_alternates {
+            return None;
+        }
+        let keep = altloc::kept(self.candidates());
+        let left_out = keep.iter().filter(|kept| !**kept).count();
+        if left_out == 0 {
+            return None;
+        }
+        retain(&mut self.spheres, &keep);
+        retain(&mut self.colors, &keep);
+        retain(&mut self.residue_number, &keep);
+        retain(&mut self.occupancy, &keep);
+        retain(&mut self.b_factor, &keep);
+        self.species.retain(&keep);
+        for labels in [&mut self.name, &mut self.residue, &mut self.chain, &mut self.record] {
+            labels.retain(&keep);
+        }
+        self.entity.retain(&keep);
+        let atoms = if left_out == 1 { "1 atom is" } else { &format!("{left_out} atoms are") };
+        Some(format!(
+            "{atoms} left out as alternate {}; the locations with the highest occupancy are kept",
+            if left_out == 1 { "location of another atom" } else { "locations of other atoms" }
+        ))
+    }
+
+    fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone {
+        let indices = self.chain.indices.iter().zip(&self.residue.indices).zip(&self.name.indices);
+        let numbers = self.residue_number.iter().zip(&self.occupancy);
+        indices.zip(numbers).zip(&self.letters).map(
+            |((((chain, residue), name), (number, occupancy)), [letter, insertion])| Candidate {
+                key: (*chain, number.to_bits(), *insertion),
+                residue: *residue,
+                name: *name,
+                letter: *letter,
+                occupancy: *occupancy,
+            },
+        )
+    }
+
+    /// Returns the atoms as loaded data, without a cell and a number of frames.
+    pub(super) fn into_loaded(mut self) -> Loaded {
+        let doubtful = self.decide_doubtful();
+        let left_out = self.keep_one_location();
+        let unknown = self.species.unknown();
+        let mut loaded = Loaded::new(SphereArray::F64(self.spheres));
+        loaded.colors = Some(self.colors);
+        loaded.columns = [
+            ("species", self.species.labels.into_values()),
+            ("name", self.name.into_values()),
+            ("residue", self.residue.into_values()),
+            ("chain", self.chain.into_values()),
+            ("residue_number", ColumnValues::Numbers(self.residue_number)),
+            ("b_factor", ColumnValues::Numbers(self.b_factor)),
+            ("occupancy", ColumnValues::Numbers(self.occupancy)),
+            ("record", self.record.into_values()),
+        ]
+        .map(|(name, values)| Column { name: name.to_owned(), values })
+        .into();
+        if !self.entity.indices.is_empty() {
+            let values = self.entity.into_values();
+            loaded.columns.push(Column { name: "entity".to_owned(), values });
+        }
+        loaded.notes = unknown.into_iter().chain(doubtful).chain(left_out).collect();
+        loaded
+    }
+}
+
+/// The elements of the atoms.
+#[derive(Default)]
+struct Species {
+    labels: LabelsBuilder,
+    /// The appearance of each name in `labels`.
+    appearances: Vec<Appearance>,
+    /// The index in `labels` for a name, a symbol and a kind of residue.
+    known: Memo,
+}
+
+impl Species {
+    fn push(&mut self, name: [u8; 4], symbol: [u8; 2], residue: Residue) -> Appearance {
+        let [a, b, c, d] = name;
+        let [e, f] = symbol;
+        let key = u64::from_le_bytes([a, b, c, d, e, f, residue as u8, 0]);
+        let index = self.known.get(key).unwrap_or_else(|| {
+            let (text, is_element) = element::symbol(name, symbol, residue);
+            let (index, _) = self.of_text(&text, is_element);
+            self.known.insert(key, index);
+            index
+        });
+        self.labels.indices.push(index);
+        self.appearances.get(index as usize).copied().unwrap_or_else(|| appearance(""))
+    }
+
+    fn of_text(&mut self, text: &str, is_element: bool) -> (u32, Appearance) {
+        let index = self.labels.index(text.as_bytes());
+        // An empty text gives the appearance of a species that is not an element.
+        let new = || appearance(if is_element { text } else { "" });
+        if index as usize == self.appearances.len() {
+            self.appearances.push(new());
+        }
+        (index, self.appearances.get(index as usize).copied().unwrap_or_else(new))
+    }
+
+    fn retain(&mut self, keep: &[bool]) {
+        let former = self.labels.retain(keep);
+        let appearance = |index: &u32| self.appearances.get(*index as usize).copied();
+        self.appearances = former.iter().filter_map(appearance).collect();
+    }
+
+    /// Returns a note about species that are not elements.
+    fn unknown(&self) -> Option<String> {
+        let appearances = self.labels.names.iter().zip(&self.appearances);
+        let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);
+        unknown_note(&unknown.map(|(name, _)| name.clone()).collect::<Vec<_>>(), "")
+    }
+}

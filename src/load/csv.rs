@@ -1,0 +1,186 @@
+//! Reads tables of text, such as CSV and TSV.
+//!
+//! Values are separated by commas, tabs, semicolons or white space, whichever the first row has. Lines that begin with `#`
+//! are comments, and the last comment before the first row may have the names of the columns. What the names mean is the
+//! same as in all tables. A value that is missing (empty, `NaN`, `NA`, `null`) is NaN.
+
+mod error;
+mod first;
+#[cfg(test)]
+mod tests;
+
+pub use error::CsvError;
+use first::First;
+pub(super) use first::starts;
+
+use super::error::LoadError;
+use super::format::Options;
+use super::labels::LabelsBuilder;
+use super::loaded::{ColumnValues, Loaded};
+use super::rows::{self, LineError, Lines, Values, number};
+use super::table::{self, Table, TableColumn};
+use crate::text::{shortened, without_byte_order_mark};
+
+/// What separates the values of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Separator {
+    Blank,
+    Byte(u8),
+}
+
+/// Reads a table.
+///
+/// # Errors
+/// If the columns have no names, a row has more or fewer values than the others, or positions or radii are not numbers.
+pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+    let text = without_byte_order_mark(bytes);
+    let first = First::of(text, &options.columns)?;
+    let mut columns: Vec<Building> = first.names.iter().map(|name| Building::new(name)).collect();
+    // A column is of text if any of its values is; that is known at the first such value, and the rows are read again.
+    while let Err(refused) = read_rows(&first, &mut columns) {
+        let column = refused.column.filter(|column| !table::must_be_numbers(&first.names[*column]));
+        let Some(column) = column else { return Err(refused.error.into()) };
+        columns[column].is_text = true;
+        columns.iter_mut().for_each(Building::clear);
+    }
+    let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
+    let table = Table { columns: columns.collect() };
+    let line_of = |wanted: usize| {
+        let (mut row, mut line) = (0, 0);
+        drop(first.each_row(|number, _| {
+            if row == wanted {
+                line = number;
+            }
+            row += 1;
+            Ok(())
+        }));
+        line
+    };
+    rows::into_loaded(table, options, line_of)
+}
+
+/// The values of a column so far.
+struct Building {
+    is_text: bool,
+    numbers: Vec<f64>,
+    labels: LabelsBuilder,
+}
+
+impl Building {
+    fn new(name: &str) -> Self {
+        let is_text = table::is_element(name);
+        Self { is_text, numbers: Vec::new(), labels: LabelsBuilder::default() }
+    }
+
+    fn clear(&mut self) {
+        self.numbers.clear();
+        self.labels = LabelsBuilder::default();
+    }
+
+    fn into_column(self, name: &str) -> TableColumn {
+        if self.is_text {
+            let values = ColumnValues::Labels(self.labels.into_labels());
+            return TableColumn { name: name.to_owned(), values, full: None };
+        }
+        TableColumn::numbers(name, self.numbers)
+    }
+}
+
+/// Why rows cannot be read, and the column whose value is not a number.
+struct Refused {
+    column: Option<usize>,
+    error: LineError,
+}
+
+impl From<LineError> for Refused {
+    fn from(error: LineError) -> Self {
+        Self { column: None, error }
+    }
+}
+
+fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<(), Refused> {
+    let declared = columns.len();
+    first.each_row(|line, values| {
+        let mut found = 0;
+        for value in values {
+            let column = found;
+            found += 1;
+            let Some(building) = columns.get_mut(column) else { continue };
+            if building.is_text {
+                if !value.is_ascii() && std::str::from_utf8(value).is_err() {
+                    return Err(LineError::NotText { line }.into());
+                }
+                building.labels.push(value);
+                continue;
+            }
+            let parsed = if is_missing(value) { Some(f64::NAN) } else { number(value) };
+            let Some(parsed) = parsed else {
+                let found = shortened(&String::from_utf8_lossy(value));
+                let what = first.names[column].clone();
+                let error = LineError::Number { line, column: column + 1, what, found };
+                return Err(Refused { column: Some(column), error });
+            };
+            building.numbers.push(parsed);
+        }
+        if found < declared {
+            let what = first.names[found].clone();
+            return Err(LineError::Missing { line, column: found + 1, what, columns: found }.into());
+        }
+        if found > declared {
+            return Err(LineError::TooMany { line, columns: found, declared }.into());
+        }
+        Ok(())
+    })
+}
+
+fn is_missing(value: &[u8]) -> bool {
+    value.is_empty()
+        || [&b"nan"[..], b"na", b"n/a", b"null", b"none"]
+            .iter()
+            .any(|name| value.eq_ignore_ascii_case(name))
+}
+
+impl First<'_> {
+    /// Calls a function with the line of each row and its values.
+    fn each_row(
+        &self,
+        mut each: impl FnMut(usize, &mut dyn Iterator<Item = &[u8]>) -> Result<(), Refused>,
+    ) -> Result<(), Refused> {
+        let separator = match self.separator {
+            Separator::Byte(separator) => separator,
+            Separator::Blank => {
+                for (index, line) in Lines::new(self.rows).enumerate() {
+                    let line = line.trim_ascii();
+                    if !line.is_empty() && !line.starts_with(b"#") {
+                        each(self.lines_before + index + 1, &mut Values { rest: line })?;
+                    }
+                }
+                return Ok(());
+            }
+        };
+        let mut reader = ::csv::ReaderBuilder::new()
+            .delimiter(separator)
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .trim(::csv::Trim::All)
+            .from_reader(self.rows);
+        let mut record = ::csv::ByteRecord::new();
+        loop {
+            let before = reader.position().line() as usize;
+            match reader.read_byte_record(&mut record) {
+                Ok(true) => {}
+                Ok(false) => return Ok(()),
+                Err(_) => {
+                    return Err(LineError::NotText { line: self.lines_before + before }.into());
+                }
+            }
+            let line = record.position().map_or(before, |position| position.line() as usize);
+            // A line with nothing but white space is not a row.
+            if record.len() == 1 && record.get(0).is_some_and(<[u8]>::is_empty) {
+                continue;
+            }
+            each(self.lines_before + line, &mut record.iter())?;
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! Reads data files: a header with counts and the box, and sections, of which the atoms and what their types are make
+//! spheres.
+
+use super::cell::Cell;
+use super::elements::{self, Types};
+use super::styles::{columns_of, fields_of};
+use super::{LammpsError, order};
+use crate::load::error::LoadError;
+use crate::load::format::Options;
+use crate::load::loaded::{ColumnValues, Loaded};
+use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
+use crate::load::table::{Table, TableColumn};
+use crate::text::{shortened, without_byte_order_mark};
+
+/// Whether one of the first lines declares a number of atoms.
+pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+    let lines = Lines::new(without_byte_order_mark(bytes)).skip(1).take(20);
+    lines
+        .map(without_comment)
+        .any(|line| count_of(line, b"atoms").is_some_and(|count| count.is_ok()))
+}
+
+/// Reads a data file.
+///
+/// # Errors
+/// If a line of the header, of the atoms, of the masses or of the labels of types is not valid, or the style of the atoms
+/// is not known.
+pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+    let mut file = File::new(without_byte_order_mark(bytes));
+    // The first line is a comment, whatever it is.
+    file.next();
+    let (mut count, mut ends, mut tilt) = (None, [None; 3], [0.0; 3]);
+    let (mut atoms, mut velocities, mut types) = (None, None, Types::default());
+    while let Some(text) = file.next() {
+        let line = file.line;
+        let content = without_comment(text);
+        if content.is_empty() {
+            continue;
+        }
+        let invalid =
+            || LammpsError::Line { line, found: shortened(&String::from_utf8_lossy(content)) };
+        if !is_section(content) {
+            if atoms.is_some() {
+                let (line_of_count, declared) = count.unwrap_or_default();
+                let found = shortened(&String::from_utf8_lossy(content));
+                return Err(LammpsError::NoSection { line, found, declared, line_of_count }.into());
+            }
+            if let Some(found) = count_of(content, b"atoms") {
+                let found =
+                    found.map_err(|found| LammpsError::Count { line, what: "atoms", found })?;
+                count = Some((line, found));
+            } else if let Some(axis) = ["xlo xhi", "ylo yhi", "zlo zhi"]
+                .iter()
+                .position(|n| content.ends_with(n.as_bytes()))
+            {
+                let [low, high] = numbers_of(content).ok_or_else(invalid)?;
+                ends[axis] = Some((low, high));
+            } else if content.ends_with(b"xy xz yz") {
+                tilt = numbers_of(content).ok_or_else(invalid)?;
+            }
+            continue;
+        }
+        file.skip_blank();
+        let number_of_atoms = || count.ok_or(LammpsError::NoCount { line });
+        match content {
+            b"Atoms" => {
+                let (line_of_count, declared) = number_of_atoms()?;
+                let style = comment_of(text);
+                let rows = file.take_rows(declared).map_err(|found| LammpsError::TooFewAtoms {
+                    line: line_of_count,
+                    declared,
+                    found,
+                })?;
+                atoms = Some((rows, fields_of(rows, style, &options.columns)?));
+            }
+            b"Velocities" => {
+                let (line_of_count, declared) = number_of_atoms()?;
+                let rows = file.take_rows(declared).map_err(|found| LammpsError::TooFewAtoms {
+                    line: line_of_count,
+                    declared,
+                    found,
+                })?;
+                velocities = Some(rows);
+            }
+            b"Masses" => file.each_pair(|line, name, value| {
+                let mass = number(value).filter(|mass| mass.is_finite());
+                let mass = mass.ok_or(LammpsError::Mass {
+                    line,
+                    found: String::from_utf8_lossy(value).into_owned(),
+                })?;
+                types.masses.push((String::from_utf8_lossy(name).into_owned(), mass));
+                Ok(())
+            })?,
+            b"Atom Type Labels" => file.each_pair(|_, name, label| {
+                let text = |text| String::from_utf8_lossy(text).into_owned();
+                types.labels.push((text(name), text(label)));
+                Ok(())
+            })?,
+            _ => file.skip_section(),
+        }
+    }
+    let Some((rows, fields)) = atoms else { return Err(LammpsError::NoAtoms.into()) };
+    let mut table = Table { columns: rows.read(&fields)? };
+    let mut notes = Vec::from_iter(elements::name_types(&mut table, &types));
+    let order = order::by_id(&mut table);
+    if let Some(rows) = velocities {
+        notes.extend(add_velocities(&mut table, rows)?);
+    }
+    let line_of = |row| {
+        let row = order.as_ref().map_or(row, |order| order[row] as usize);
+        rows.lines_before + row + 1
+    };
+    let mut loaded = rows::into_loaded(table, options, line_of)?;
+    if let [Some(x), Some(y), Some(z)] = ends {
+        let cell = Cell::tilted([x.0, y.0, z.0], [x.1, y.1, z.1], tilt);
+        loaded.cell = Some(cell.edges);
+    }
+    loaded.notes.extend(notes);
+    Ok(loaded)
+}
+
+/// Adds the velocities of the atoms with the same ids. Returns a note if there are others.
+fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, LoadError> {
+    let fields = ["id", "vx", "vy", "vz"].map(|name| Field::new(name, Kind::Number));
+    let rows = Rows { may_be_longer: true, ..rows };
+    let mut velocities = Table { columns: rows.read(&fields)? };
+    order::by_id(&mut velocities);
+    let ids = |table: &Table| {
+        let column = table.columns.iter().find(|column| column.name == "id")?;
+        match &column.values {
+            ColumnValues::Numbers(ids) => Some(ids.clone()),
+            ColumnValues::Labels(_) => None,
+        }
+    };
+    if ids(table) != ids(&velocities) {
+        return Ok(Some(
+            "the velocities are not used, because their ids are not those of the atoms".to_owned(),
+        ));
+    }
+    table.columns.extend(velocities.columns.drain(1..));
+    Ok(None)
+}
+
+/// The lines of the file, which it counts.
+struct File<'a> {
+    lines: Lines<'a>,
+    line: usize,
+}
+
+impl<'a> File<'a> {
+    fn new(text: &'a [u8]) -> Self {
+        Self { lines: Lines::new(text), line: 0 }
+    }
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let line = self.lines.next()?;
+        self.line += 1;
+        Some(line)
+    }
+
+    /// The next line, without its comment, if it is one of a section.
+    fn peek(&self) -> Option<&'a [u8]> {
+        let line = without_comment(self.lines.clone().next()?);
+        (!line.is_empty() && !is_section(line)).then_some(line)
+    }
+
+    fn skip_blank(&mut self) {
+        while self.lines.clone().next().is_some_and(|line| without_comment(line).is_empty()) {
+            self.next();
+        }
+    }
+
+    fn skip_section(&mut self) {
+        while self.peek().is_some() {
+            self.next();
+        }
+    }
+
+    /// Calls a function with the line and the first two values of each line of a section.
+    fn each_pair(
+        &mut self,
+        mut each: impl FnMut(usize, &[u8], &[u8]) -> Result<(), LammpsError>,
+    ) -> Result<(), LammpsError> {
+        while let Some(text) = self.peek() {
+            self.next();
+            let mut values = Values { rest: text };
+            let (Some(first), Some(second)) = (values.next(), values.next()) else {
+                let found = shortened(&String::from_utf8_lossy(text));
+                return Err(LammpsError::Line { line: self.line, found });
+            };
+            each(self.line, first, second)?;
+        }
+        Ok(())
+    }
+
+    /// Takes lines, or returns how many there are before the end of the file.
+    fn take_rows(&mut self, count: usize) -> Result<Rows<'a>, usize> {
+        let (start, lines_before) = (self.lines.rest, self.line);
+        for found in 0..count {
+            self.next().ok_or(found)?;
+        }
+        let text = &start[..start.len() - self.lines.rest.len()];
+        // A comment may follow the values of any line.
+        let may_be_longer = memchr::memchr(b'#', text).is_some();
+        Ok(Rows { text, lines_before, may_be_longer })
+    }
+}
+
+fn without_comment(line: &[u8]) -> &[u8] {
+    let end = memchr::memchr(b'#', line).unwrap_or(line.len());
+    line[..end].trim_ascii()
+}
+
+fn comment_of(line: &[u8]) -> Option<String> {
+    let start = memchr::memchr(b'#', line)?;
+    let comment = String::from_utf8_lossy(&line[start + 1..]).trim().to_owned();
+    (!comment.is_empty()).then_some(comment)
+}
+
+fn is_section(line: &[u8]) -> bool {
+    const NAMES: [&[u8]; 11] = [
+        b"Atoms",
+        b"Velocities",
+        b"Masses",
+        b"Ellipsoids",
+        b"Lines",
+        b"Triangles",
+        b"Bodies",
+        b"Bonds",
+        b"Angles",
+        b"Dihedrals",
+        b"Impropers",
+    ];
+    NAMES.contains(&line) || line.ends_with(b" Coeffs") || line.ends_with(b" Type Labels")
+}
+
+/// The number before a word that ends the line, if it ends it.
+fn count_of(line: &[u8], word: &[u8]) -> Option<Result<usize, String>> {
+    let text = line
+        .strip_suffix(word)?
+        .strip_suffix(b" ")
+        .or_else(|| line.strip_suffix(word)?.strip_suffix(b"\t"))?;
+    let text = String::from_utf8_lossy(text.trim_ascii()).into_owned();
+    Some(text.parse().map_err(|_| shortened(&text)))
+}
+
+fn numbers_of<const COUNT: usize>(line: &[u8]) -> Option<[f64; COUNT]> {
+    let mut numbers = [0.0; COUNT];
+    let mut values = Values { rest: line };
+    for value in &mut numbers {
+        *value = values.next().and_then(number).filter(|number| number.is_finite())?;
+    }
+    Some(numbers)
+}
+
+/// A column of text from one of another.
+pub(super) fn relabelled(
+    column: &TableColumn,
+    name: &str,
+    of: impl Fn(&str) -> String,
+) -> Option<TableColumn> {
+    let ColumnValues::Labels(labels) = &column.values else { return None };
+    let mut labels = labels.clone();
+    labels.names.iter_mut().for_each(|label| *label = of(label));
+    // Several types may be of one element.
+    let mut unique = crate::load::labels::LabelsBuilder::default();
+    let renumbered: Vec<u32> =
+        labels.names.iter().map(|name| unique.index(name.as_bytes())).collect();
+    labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
+    labels.names = unique.names;
+    Some(TableColumn::labels(name, labels))
+}
+
+/// The columns of a style by its name, for messages.
+pub(super) fn listed(style: &str) -> String {
+    columns_of(style).unwrap_or_default().join(",")
+}

@@ -1,0 +1,213 @@
+//! Reads mmCIF files, and CIF files of small molecules.
+//!
+//! Atoms are the rows of the loop with the positions of `_atom_site`. A frame is a model; those of several data blocks
+//! follow each other. Columns and the choice between alternate locations are those of PDB files, so that an entry in either
+//! format gives the same: where the authors' names and numbers (`auth_…`) differ from those of the dictionary (`label_…`),
+//! they count. Lengths are taken as they are, in Å.
+//!
+//! Positions that are fractions of the cell give the atoms that the file lists; its symmetry is not applied.
+
+mod error;
+mod header;
+mod models;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+use std::io::SeekFrom;
+
+pub use error::MmCifError;
+use header::{Columns, Header, SLOTS, decimal, is_unknown};
+use tokens::{Place, Token, Tokens};
+
+use super::Loaded;
+use super::atoms::{Atom, Atoms};
+use super::error::LoadError;
+use super::format::Options;
+use super::source::Bytes;
+use super::trajectory::{FrameIndex, FrameSpan, Frames, bytes};
+use crate::text::{shortened, without_byte_order_mark};
+
+/// How frames are found and read one by one.
+pub(super) const FRAMES: Frames = Frames::Bytes { find, read };
+
+/// Whether the first line that is neither blank nor a comment begins a data block.
+pub(super) fn starts(bytes: &[u8]) -> bool {
+    let mut lines =
+        without_byte_order_mark(bytes).split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    first.and_then(|line| line.get(..5)).is_some_and(|name| name.eq_ignore_ascii_case(b"data_"))
+}
+
+/// Finds the models. The whole file is in memory for that, because a row may go over several lines.
+fn find(source: &mut dyn Bytes, _: Option<usize>) -> Result<FrameIndex, LoadError> {
+    let mut text = Vec::new();
+    source.seek(SeekFrom::Start(0))?;
+    source.read_to_end(&mut text)?;
+    let (models, problem) = models::find(&text);
+    let frames: Vec<FrameSpan> = models
+        .into_iter()
+        .map(|model| FrameSpan {
+            bytes: model.start as u64..model.end as u64,
+            lines_before: model.lines_before,
+        })
+        .collect();
+    let none = frames.is_empty().then_some(MmCifError::NoAtoms);
+    let problem = problem.or(none).map(LoadError::from);
+    // The end of the last gap is the end of the file.
+    Ok(FrameIndex { head: 0..text.len() as u64, frames, is_whole: true, problem })
+}
+
+fn read(
+    source: &mut dyn Bytes,
+    index: &FrameIndex,
+    wanted: usize,
+    _: &Options,
+) -> Result<Loaded, LoadError> {
+    let frames = &index.frames;
+    let Some(FrameSpan { bytes: rows, lines_before }) = frames.get(wanted) else {
+        return Err(LoadError::NoSuchFrame { wanted, frames: frames.len() });
+    };
+    // Models of a block follow each other without a gap; the text between blocks has their names and cells.
+    let is_first =
+        |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
+    let first = (0..=wanted).rev().find(|frame| is_first(*frame)).unwrap_or_default();
+    let last =
+        (wanted..frames.len()).find(|frame| frame + 1 == frames.len() || is_first(frame + 1));
+    let last = last.unwrap_or(wanted);
+    let start = if first == 0 { 0 } else { frames[first - 1].bytes.end };
+    let before = bytes(source, &(start..frames[first].bytes.start))?;
+    let count_lines = |text: &[u8]| memchr::memchr_iter(b'\n', text).count();
+    let lines_of_rows = frames[first].lines_before;
+    let lines = lines_of_rows.saturating_sub(count_lines(&before));
+    let mut header = Header::before(without_byte_order_mark(&before), lines)?;
+    let end = frames.get(last + 1).map_or(index.head.end, |next| next.bytes.start);
+    if header.cell()?.is_none() && index.problem.is_none() {
+        let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
+        header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
+    }
+    let cell = header.cell()?;
+    let columns = header.columns.ok_or(MmCifError::NoAtoms)?;
+    let text = bytes(source, rows)?;
+    let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
+    loaded.cell = cell;
+    if columns.is_fractional {
+        loaded.notes.push(
+            "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them".to_owned(),
+        );
+    }
+    Ok(loaded)
+}
+
+/// Where a value begins, and the value.
+type Values<'a> = [(Place, &'a [u8]); SLOTS.len()];
+
+fn read_rows(
+    text: &[u8],
+    lines_before: usize,
+    columns: &Columns,
+    cell: Option<[[f64; 3]; 3]>,
+) -> Result<Loaded, MmCifError> {
+    let mut tokens = Tokens::new(text, lines_before);
+    let mut atoms = Atoms::default();
+    let none = Place { offset: 0, lines_before, column: 0 };
+    let mut values: Values<'_> = [(none, &b"."[..]); SLOTS.len()];
+    loop {
+        let row = tokens.place();
+        for (column, slot) in columns.slots.iter().enumerate() {
+            let place = tokens.place();
+            let Some(Token::Value(value)) = tokens.next()? else {
+                if column == 0 {
+                    return Ok(atoms.into_loaded());
+                }
+                let line = row.lines_before + 1;
+                return Err(MmCifError::CutRow { line, values: column, columns: columns.count });
+            };
+            if let Some(slot) = slot {
+                values[*slot] = (place, value);
+            }
+        }
+        push(&mut atoms, &values, columns, cell)?;
+    }
+}
+
+/// Appends the atom of a row.
+fn push(
+    atoms: &mut Atoms,
+    values: &Values<'_>,
+    columns: &Columns,
+    cell: Option<[[f64; 3]; 3]>,
+) -> Result<(), MmCifError> {
+    let number = |slot: usize, what| {
+        let (place, text): (Place, &[u8]) = values[slot];
+        decimal(text).ok_or_else(|| MmCifError::Number {
+            line: place.lines_before + 1,
+            column: place.column + 1,
+            what,
+            found: shortened(&String::from_utf8_lossy(text)),
+        })
+    };
+    let number_or = |slot: usize, absent, what| {
+        if is_unknown(values[slot].1) { Ok(absent) } else { number(slot, what) }
+    };
+    let text = |slot: usize| if is_unknown(values[slot].1) { &[][..] } else { values[slot].1 };
+    let letter = |slot: usize| text(slot).first().copied().unwrap_or(b' ');
+    let place = if columns.is_fractional {
+        let [u, v, w] = [number(3, "fract_x")?, number(4, "fract_y")?, number(5, "fract_z")?];
+        let line = values[3].0.lines_before + 1;
+        let [a, b, c] = cell.ok_or(MmCifError::NoCell { line })?;
+        [0, 1, 2].map(|axis| u * a[axis] + v * b[axis] + w * c[axis])
+    } else {
+        [number(0, "Cartn_x")?, number(1, "Cartn_y")?, number(2, "Cartn_z")?]
+    };
+    let (name, residue) = (text(7), text(8));
+    let mut symbol = symbol_of(text(6));
+    if symbol == *b"  " && residue.is_empty() {
+        // A label of a small molecule is a symbol and a number.
+        symbol = symbol_of(name);
+    }
+    atoms.push(&Atom {
+        place,
+        occupancy: number_or(12, 1.0, "occupancy")?,
+        b_factor: number_or(11, 0.0, "B_iso_or_equiv")?,
+        residue_number: number_or(10, f64::NAN, "auth_seq_id")?,
+        name,
+        name_field: field_of(name, residue),
+        symbol,
+        residue,
+        chain: text(9),
+        record: if columns.has[13] { text(13) } else { b"HETATM" },
+        entity: columns.has[16].then(|| text(16)),
+        letter: letter(14),
+        insertion: letter(15),
+    });
+    Ok(())
+}
+
+/// The letters with which a text begins, at most two, as a symbol in its field.
+fn symbol_of(text: &[u8]) -> [u8; 2] {
+    match text {
+        [a, b, rest @ ..]
+            if a.is_ascii_alphabetic()
+                && b.is_ascii_alphabetic()
+                && !rest.first().is_some_and(u8::is_ascii_alphabetic) =>
+        {
+            [*a, *b]
+        }
+        [a, rest @ ..]
+            if a.is_ascii_alphabetic() && !rest.first().is_some_and(u8::is_ascii_alphabetic) =>
+        {
+            [b' ', *a]
+        }
+        _ => *b"  ",
+    }
+}
+
+/// The name as in a PDB file, where a name of up to three characters begins in the second column unless its symbol has two
+/// letters, as that of an ion has, which is called as its residue.
+fn field_of(name: &[u8], residue: &[u8]) -> [u8; 4] {
+    let mut field = [b' '; 4];
+    let skipped = usize::from(name.len() < 4 && name != residue);
+    field[skipped..].iter_mut().zip(name).for_each(|(to, from)| *to = *from);
+    field
+}
