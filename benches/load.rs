@@ -24,6 +24,10 @@ fn main() {
     }
     let atoms = 300_000;
     compare("xyz", &xyz(atoms), |text| few_lines(text, 2, 0, &[1, 2, 3]));
+    let cif = cif(atoms);
+    compare("mmcif", &cif, |text| few_lines(text, CIF.len() + 2, 5, &[10, 11, 12, 13, 14, 16]));
+    let pdb = pdb(atoms);
+    compare("pdb", &pdb, few_columns);
     compare("lammps-dump", &dump(atoms), |text| few_lines(text, 9, 1, &[2, 3, 4, 0, 5, 6, 7]));
 }
 
@@ -111,6 +115,90 @@ fn few_lines(text: &str, head: usize, name: usize, numbers: &[usize]) -> Atoms {
         }
     }
     atoms
+}
+
+/// As [`few_lines`], for the fixed columns of PDB.
+fn few_columns(text: &str) -> Atoms {
+    let mut atoms = Atoms { numbers: vec![Vec::new(); 3], ..Atoms::default() };
+    for line in text.lines() {
+        let number = |range: std::ops::Range<usize>| line[range].trim().parse::<f64>().unwrap();
+        atoms.centers.push([number(30..38), number(38..46), number(46..54)]);
+        for (column, range) in atoms.numbers.iter_mut().zip([54..60, 60..66, 22..26]) {
+            column.push(number(range));
+        }
+        let residue = line[17..20].trim();
+        let known = atoms.names.iter().position(|known| known == residue);
+        atoms.indices.push(known.unwrap_or(atoms.names.len()));
+        if known.is_none() {
+            atoms.names.push(residue.to_owned());
+        }
+    }
+    atoms
+}
+
+const CIF: [&str; 21] = [
+    "group_PDB",
+    "id",
+    "type_symbol",
+    "label_atom_id",
+    "label_alt_id",
+    "label_comp_id",
+    "label_asym_id",
+    "label_entity_id",
+    "label_seq_id",
+    "pdbx_PDB_ins_code",
+    "Cartn_x",
+    "Cartn_y",
+    "Cartn_z",
+    "occupancy",
+    "B_iso_or_equiv",
+    "pdbx_formal_charge",
+    "auth_seq_id",
+    "auth_comp_id",
+    "auth_asym_id",
+    "auth_atom_id",
+    "pdbx_PDB_model_num",
+];
+
+/// Atoms of residues: element, name, residue, number, place and B-factor.
+fn residues(atoms: usize, mut each: impl FnMut(usize, [&'static str; 3], usize, [f64; 3], f64)) {
+    let mut random = fastrand::Rng::with_seed(3);
+    for atom in 0..atoms {
+        let (element, name) =
+            [("N", "N"), ("C", "CA"), ("C", "C"), ("O", "O"), ("C", "CB")][atom % 5];
+        let residue = ["ALA", "GLY", "LEU", "SER", "VAL"][atom / 5 % 5];
+        let place = [(); 3].map(|()| 100.0 * random.f64());
+        each(atom, [element, name, residue], atom / 5 % 9999, place, 90.0 * random.f64());
+    }
+}
+
+fn cif(atoms: usize) -> String {
+    let mut text = CIF
+        .iter()
+        .fold("data_X\nloop_\n".to_owned(), |text, name| text + "_atom_site." + name + "\n");
+    residues(atoms, |atom, [element, name, residue], number, [x, y, z], b| {
+        writeln!(
+            text,
+            "ATOM   {:<6} {element} {name:<3} . {residue} A 1 {number:<4} ? {x:<8.3} {y:<8.3} {z:<8.3} 1.00 {b:<6.2} ? \
+             {number:<4} {residue} A {name:<3} 1 ",
+            atom + 1
+        )
+        .unwrap();
+    });
+    text
+}
+
+fn pdb(atoms: usize) -> String {
+    let mut text = String::new();
+    residues(atoms, |atom, [element, name, residue], number, [x, y, z], b| {
+        writeln!(
+            text,
+            "ATOM  {:5}  {name:<3} {residue} A{number:4}    {x:8.3}{y:8.3}{z:8.3}  1.00{b:6.2}          {element:>2}",
+            (atom + 1) % 100_000
+        )
+        .unwrap();
+    });
+    text
 }
 
 fn xyz(atoms: usize) -> String {

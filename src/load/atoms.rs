@@ -61,6 +61,19 @@ pub(super) struct Atoms {
 }
 
 impl Atoms {
+    /// Makes room for about so many atoms.
+    pub(super) fn with_capacity(atoms: usize) -> Self {
+        Self {
+            spheres: Vec::with_capacity(atoms),
+            colors: Vec::with_capacity(atoms),
+            residue_number: Vec::with_capacity(atoms),
+            occupancy: Vec::with_capacity(atoms),
+            b_factor: Vec::with_capacity(atoms),
+            letters: Vec::with_capacity(atoms),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }

@@ -109,14 +109,15 @@ fn read_rows(
     cell: Option<[[f64; 3]; 3]>,
 ) -> Result<Loaded, MmCifError> {
     let mut tokens = Tokens::new(text, lines_before);
-    let mut atoms = Atoms::default();
+    // Rows are hardly ever shorter.
+    let mut atoms = Atoms::with_capacity(text.len() / 80);
     let none = Place { offset: 0, lines_before, column: 0 };
     let mut values: Values<'_> = [(none, &b"."[..]); SLOTS.len()];
     loop {
         let row = tokens.place();
         for (column, slot) in columns.slots.iter().enumerate() {
             let place = tokens.place();
-            let Some(Token::Value(value)) = tokens.next()? else {
+            let Some(Token::Value(value)) = tokens.next_at(place)? else {
                 if column == 0 {
                     return Ok(atoms.into_loaded());
                 }

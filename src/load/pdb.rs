@@ -87,7 +87,8 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
 fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
-    let mut reader = Reader::default();
+    let atoms = Atoms::with_capacity(text.len() / 81);
+    let mut reader = Reader { atoms, ..Reader::default() };
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
     for (line, text) in Lines::new(head).chain(text) {
         reader.take(line, text)?;

@@ -75,8 +75,10 @@ impl Frames {
 
 /// Reads a range of the bytes of a file.
 pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8>, LoadError> {
-    let mut bytes = Vec::new();
+    /// More is allocated as it arrives, because a file may lie about its frames.
+    const AT_ONCE: u64 = 1 << 26;
     let length = range.end - range.start;
+    let mut bytes = Vec::with_capacity(length.min(AT_ONCE) as usize);
     source.seek(SeekFrom::Start(range.start))?;
     if source.take(length).read_to_end(&mut bytes)? as u64 != length {
         return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
@@ -254,9 +256,20 @@ impl<'a> LineReader<'a> {
 
     /// Returns the next line without its line end; `None` at the end of the file. Of a line longer than 1 KiB only the
     /// start.
+    #[cfg(feature = "table")]
     pub(super) fn next(&mut self) -> io::Result<Option<&[u8]>> {
         const LONGEST: u64 = 1 << 10;
         self.text.clear();
+        // Most lines are short and lie in what has been read.
+        let buffer = self.source.fill_buf()?;
+        let near = &buffer[..buffer.len().min(LONGEST as usize)];
+        if let Some(end) = memchr::memchr(b'\n', near) {
+            self.text.extend_from_slice(&near[..end]);
+            self.source.consume(end + 1);
+            self.offset += end as u64 + 1;
+            self.line += 1;
+            return Ok(Some(&self.text));
+        }
         let read = (&mut *self.source).take(LONGEST).read_until(b'\n', &mut self.text)?;
         if read == 0 {
             return Ok(None);

@@ -181,12 +181,12 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "a.npy --frame 0",
             2,
-            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
+            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif); remove it",
         ),
         (
             "a.bin --format raw-f32x4 --radius 1",
             2,
-            "--radius applies only to data that can lack radii (.xyz, .extxyz, .npy, .npz); remove it",
+            "--radius applies only to data that can lack radii (.xyz, .extxyz, .lammpstrj, .dump, .data, .lmp, .npy, .npz, .csv, .tsv); remove it",
         ),
         (
             "water.xyz --color red",
@@ -206,7 +206,7 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "data.toml",
             1,
-            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
+            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif); remove it",
         ),
     ] {
         refused(&folder, arguments, code, line);

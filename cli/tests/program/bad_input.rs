@@ -55,7 +55,7 @@ fn scene_files_with_errors() {
     }
     scene("[film]\nwidth = 0\n", &["bad.toml", "0x600 has no pixel"]);
     scene("data = 'scene.toml'\n", &["bad.toml: `data`", "another scene file"]);
-    scene("data = 'data.csv'\n", &["bad.toml: `data`", "data.csv", ".xyz"]);
+    scene("data = 'data.doc'\n", &["bad.toml: `data`", "data.doc", ".xyz"]);
     scene("data = 'water.xyz'\nframe = 5\n", &["water.xyz", "there is no frame 5"]);
 }
 
@@ -277,7 +277,7 @@ fn a_stream_that_cannot_be_written_changes_no_exit_code() {
 
 #[test]
 fn usage() {
-    refused(&[], "render data.csv -o out.png", 2, &["data.csv", ".toml", ".xyz"]);
+    refused(&[], "render data.doc -o out.png", 2, &["data.doc", ".toml", ".xyz"]);
     refused(&[], "render scene -o out.png", 2, &["scene", ".toml"]);
     refused(&[], "render scene.toml -o out.png --backend tpu", 2, &["tpu", "auto", "gpu", "cpu"]);
     refused(&[], "render scene.toml -o out.png --frame 0", 2, &["--frame", "`data`"]);
@@ -301,7 +301,7 @@ fn usage() {
 #[test]
 #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
 fn usage_with_adapters() {
-    refused(&[], "plan scene.csv", 2, &["scene.csv", ".toml"]);
+    refused(&[], "plan scene.doc", 2, &["scene.doc", ".toml"]);
     refused(&[], "plan scene.toml --layer depht", 2, &["--layer depht", "depth"]);
     refused(&[], "plan no.toml", 1, &["no.toml", "cannot be read"]);
     refused(&[], "bench R2M", 2, &["R2M", "R1M", "a file"]);

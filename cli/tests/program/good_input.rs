@@ -178,15 +178,20 @@ fn a_link_and_permissions_stay() {
 
 #[test]
 fn species_that_are_not_elements_are_drawn_and_noted() {
-    let folder = Folder::with(&[("beads.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
+    let folder = Folder::with(&[("beads.xyz", "3\n\nXx 0 0 0\nYy 5 0 0\nO 9 0 0\n")]);
     let run = folder.run("render beads.xyz -o out.png --size 20x10 --backend cpu").succeeded();
     assert_eq!(run.stderr.lines().count(), 1);
     assert!(run.stderr.contains("beads.xyz") && run.stderr.contains("Xx, Yy"), "{}", run.stderr);
 
     let atoms: String = (0..1000).map(|i| format!("bead{i} {i} 0 0\n")).collect();
-    let folder = Folder::with(&[("many.xyz", &format!("1000\n\n{atoms}"))]);
+    let folder = Folder::with(&[("many.xyz", &format!("1001\n\n{atoms}O 0 9 0\n"))]);
     let run = folder.run("render many.xyz -o out.png --size 2x2 --backend cpu").succeeded();
     assert!(run.stderr.contains("bead4 and 995 more"), "{}", run.stderr);
+
+    // Where no species is an element, names say nothing about radii.
+    let folder = Folder::with(&[("kinds.xyz", "2\n\nXx 0 0 0\nYy 5 0 0\n")]);
+    let run = folder.run("render kinds.xyz -o out.png --size 20x10 --backend cpu").succeeded();
+    assert!(run.stderr.contains("all spheres have the radius 2.5"), "{}", run.stderr);
 }
 
 #[test]

@@ -21,11 +21,7 @@ pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
 }
 
 /// Reads a data file.
-///
-/// # Errors
-/// If a line of the header, of the atoms, of the masses or of the labels of types is not valid, or the style of the atoms
-/// is not known.
-pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let mut file = File::new(without_byte_order_mark(bytes));
     // The first line is a comment, whatever it is.
     file.next();

@@ -9,7 +9,7 @@ use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::loaded::{ColumnValues, Loaded};
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values, number};
-use crate::load::table::{Table, TableColumn, TableError};
+use crate::load::table::{self, Table, TableColumn, TableError};
 use crate::load::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::text::{shortened, without_byte_order_mark};
 
@@ -147,7 +147,11 @@ fn fields(names: Vec<String>, text: &[u8]) -> Vec<Field> {
     let mut values = Values { rest: first };
     let kind = |name: &str| {
         let is_number = values.next().is_none_or(|value| number(value).is_some());
-        let is_text = matches!(name, "type" | "typelabel" | "element") || !is_number;
+        let must_be_number = name == "id"
+            || table::must_be_numbers(name)
+            || POSITIONS.iter().any(|(names, _)| names.contains(&name));
+        let is_text =
+            matches!(name, "type" | "typelabel" | "element") || !(is_number || must_be_number);
         if is_text { Kind::Text } else { Kind::Number }
     };
     let kinds: Vec<Kind> = names.iter().map(String::as_str).map(kind).collect();

@@ -75,6 +75,12 @@ impl<'a> Tokens<'a> {
     #[inline]
     pub(super) fn next(&mut self) -> Result<Option<Token<'a>>, MmCifError> {
         let place = self.place();
+        self.next_at(place)
+    }
+
+    /// Returns the token at the place that [`Tokens::place`] has found.
+    #[inline]
+    pub(super) fn next_at(&mut self, place: Place) -> Result<Option<Token<'a>>, MmCifError> {
         let rest = &self.text[self.at..];
         let Some(first) = rest.first() else { return Ok(None) };
         match first {

@@ -58,7 +58,7 @@ impl<'a> Iterator for Lines<'a> {
             return None;
         }
         self.line += 1;
-        let end = self.rest.iter().position(|byte| *byte == b'\n').unwrap_or(self.rest.len());
+        let end = memchr::memchr(b'\n', self.rest).unwrap_or(self.rest.len());
         let (text, rest) = self.rest.split_at_checked(end)?;
         self.rest = rest.strip_prefix(b"\n").unwrap_or(rest);
         Some((self.line, text.strip_suffix(b"\r").unwrap_or(text)))

@@ -19,7 +19,7 @@ pub(super) fn folder() -> Folder {
     let folder = Folder::with(&[
         ("scene.toml", SCENE),
         ("water.xyz", WATER),
-        ("unknown.csv", "x,y,z\n0,0,0\n"),
+        ("unknown.doc", "Hello\n"),
         ("missing-data.toml", "data = 'no.xyz'\n"),
         ("trajectory.toml", "data = 'water.xyz'\nframe = 5\n"),
         ("array.toml", "data = 'spheres.npy'\nframe = 2\n"),
@@ -94,12 +94,12 @@ pub(super) fn arguments() -> Vec<Case> {
          render scene.toml -o out.png --stereo two-files
          render scene.toml -o out.png --frame 0
          render water.xyz -o out.png --frame x
-         render water.xyz -o out.png --radius 1
+         render spheres.bin -o out.png --format raw-f32x4 --radius 1
          render water.xyz -o out.png --color red
          render spheres.npy -o out.png --color gren
          render spheres.npy -o out.png --frame 0
          render no-radius.npy -o out.png --radius -1
-         render scene.toml -o out.png --format csv
+         render scene.toml -o out.png --format doc
          render spheres.npy -o out.png --fov 30 --half-extent 1,1
          render spheres.npy -o out.png --fov -5
          render spheres.npy -o out.png --eye 0,0,5
@@ -137,7 +137,7 @@ pub(super) fn files() -> Vec<Case> {
          render folder.toml -o out.png
          render binary.toml -o out.png
          render binary.xyz -o out.png
-         render unknown.csv -o out.png
+         render unknown.doc -o out.png
          render scene -o out.png
          render spheres.bin -o out.png
          render water.xyz -o out.png --frame 1

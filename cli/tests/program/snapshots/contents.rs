@@ -27,7 +27,7 @@ pub(super) fn scene_files() -> Vec<Case> {
             "[output]\ntone = 'agxx'\n",
             "[output]\ntransparent = 1\n",
             "data = 'scene.toml'\n",
-            "data = 'unknown.csv'\n",
+            "data = 'unknown.doc'\n",
             "data = 'no-radius.npy'\n",
             "data = 'spheres.npy'\n[elements.O]\nopacity = 0.5\n",
             "data = 'water.xyz'\n[elements.O]\ncolor = 'gren'\n",
@@ -74,7 +74,7 @@ pub(super) fn lit_scene_files() -> Vec<Case> {
     )
 }
 
-/// XYZ and PDB.
+/// Text formats.
 pub(super) fn atoms() -> Vec<Case> {
     let mut cases = contents(
         "bad.xyz",
@@ -117,5 +117,45 @@ pub(super) fn atoms() -> Vec<Case> {
         " --frame 2",
         &["ATOM      1  N   VAL A   1       6.204  16.869   4.854  1.00 49.05           N\n"],
     ));
+    cases.extend(contents("bad.cif", "", &BAD_CIF));
+    cases.extend(contents("bad.lammpstrj", "", &BAD_DUMPS));
+    cases.extend(contents(
+        "bad.data",
+        "",
+        &[
+            "\n1 atoms\n\nAtoms\n\n1 1 0.5 0 0 0\n",
+            "\n1 atoms\n\nAtoms # full\n\n1 1 0 0 0\n",
+            "\n2 atoms\n\nAtoms # atomic\n\n1 1 0 0 0\n",
+        ],
+    ));
+    cases.extend(contents(
+        "bad.csv",
+        "",
+        &[
+            "",
+            "0,0,0\n",
+            "a,b,c\n0,0,0\n",
+            "x,y,z\n0,0\n",
+            "x,y,z\n0,0,0,0\n",
+            "x,y,z\n0,north,0\n",
+            "x,y,z\n0,,0\n",
+        ],
+    ));
+    cases.extend(contents("names.csv", " --columns x,y,z", &["x,y,z\n0,0,0\n", "0,0\n"]));
     cases
 }
+
+const BAD_CIF: [&str; 5] = [
+    "data_X\n",
+    "data_X\nloop_\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n0 0 x\n",
+    "data_X\nloop_\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n0 0 0 0\n",
+    "data_X\nloop_\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n0 0 0\n",
+    "data_X\nloop_\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n0 'a 0\n",
+];
+
+const BAD_DUMPS: [&str; 4] = [
+    "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z\n1 0 0 0\n",
+    "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0\n0 1\nITEM: ATOMS id x y z\n1 0 0 0\n",
+    "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\nITEM: ATOMS id x y\n1 0 0\n",
+    "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z\n1 0 zero 0\n",
+];
