@@ -108,10 +108,9 @@
 //! ```
 //!
 //! # Features
-//! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, array readers and the CPU
-//! reference on all cores. `csv`, `lammps`, `mmcif`, `npy`, `pdb`,
-//! `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
-//! writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
+//! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, readers and the CPU
+//! reference on all cores. `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`, `exr`, `hdr` and
+//! `scene-file` are readers and writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
 //! # Stability

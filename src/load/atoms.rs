@@ -74,6 +74,7 @@ impl Atoms {
         }
     }
 
+    #[cfg(feature = "pdb")]
     pub(super) fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }

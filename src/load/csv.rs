@@ -7,6 +7,7 @@
 mod error;
 mod first;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod tests;
 
 pub use error::CsvError;

@@ -9,7 +9,9 @@ use super::gzip;
 use super::loaded::Loaded;
 use super::raw;
 use super::source::{Source, without_gz};
-use super::trajectory::{Frames, read_from_memory};
+use super::trajectory::Frames;
+#[allow(unused_imports, reason = "not every format has frames")]
+use super::trajectory::read_from_memory;
 
 /// A file format for spheres.
 #[derive(Debug)]

@@ -6,6 +6,7 @@
 mod cell;
 pub(super) mod data;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod data_tests;
 pub(super) mod dump;
 mod elements;
@@ -13,6 +14,7 @@ mod error;
 mod order;
 mod styles;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the answers are exact")]
 mod tests;
 
 pub use cell::Shape;

@@ -48,6 +48,7 @@ pub mod raw;
 #[allow(dead_code, reason = "not every format has lines of values")]
 mod rows;
 mod source;
+#[cfg(feature = "table")]
 mod spacing;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has named columns")]

@@ -67,7 +67,7 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
                     declared,
                     found,
                 })?;
-                atoms = Some((rows, fields_of(rows, style, &options.columns)?));
+                atoms = Some((rows, fields_of(rows, style.as_deref(), &options.columns)?));
             }
             b"Velocities" => {
                 let (line_of_count, declared) = number_of_atoms()?;

@@ -39,7 +39,7 @@ pub(super) fn columns_of(style: &str) -> Option<Vec<&'static str>> {
 /// be of. Three whole numbers behind them count how often the atom has crossed the box.
 pub(super) fn fields_of(
     rows: Rows<'_>,
-    style: Option<String>,
+    style: Option<&str>,
     given: &[String],
 ) -> Result<Vec<Field>, LammpsError> {
     let line = rows.lines_before + 1;
@@ -51,8 +51,7 @@ pub(super) fn fields_of(
         |value: &&[u8]| std::str::from_utf8(value).is_ok_and(|text| text.parse::<i64>().is_ok());
     let has_images = |count: usize| found == count + 3 && first[count..].iter().all(is_whole);
     // A hybrid style has the columns of its parts in an order that only their names tell.
-    let style =
-        style.as_deref().and_then(|style| style.split_whitespace().next()).map(str::to_owned);
+    let style = style.and_then(|style| style.split_whitespace().next()).map(str::to_owned);
     let names: Vec<String> = if given.is_empty() {
         let columns = match &style {
             Some(style) => {
