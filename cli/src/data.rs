@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, TableError, Trajectory};
 
 use super::failure::Failure;
 use super::{input, memory};
@@ -76,6 +76,11 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     } else {
         read_whole(path, format, options)?
     };
+    if options.color.is_some() && loaded.colors.is_some() {
+        loaded
+            .notes
+            .push("the color for all spheres is not used: the file gives colors".to_owned());
+    }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }
@@ -118,11 +123,14 @@ pub(super) fn as_usage(error: anyhow::Error) -> Failure {
         }
         _ => None,
     };
+    let loading = error.downcast_ref::<LoadError>();
+    let has_two_radii = matches!(loading, Some(LoadError::Table(TableError::TwoRadii { .. })));
     match of_array {
         Some(SpheresError::NoRadius { .. }) => {
             Failure::usage(format!("{error:#} (add --radius R)"))
         }
         Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}")),
+        None if has_two_radii => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }
 }

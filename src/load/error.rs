@@ -59,6 +59,10 @@ pub enum LoadError {
     #[cfg(feature = "pdb")]
     #[error(transparent)]
     Pdb(#[from] super::pdb::PdbError),
+    /// A PLY file cannot be read.
+    #[cfg(feature = "ply")]
+    #[error(transparent)]
+    Ply(#[from] super::ply::PlyError),
     /// Raw numbers cannot be read.
     #[error(transparent)]
     Raw(#[from] super::raw::RawError),

@@ -125,6 +125,20 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| Ok(Loaded::new(super::npz::read_spheres(bytes, options.radius)?)),
         extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
     },
+    #[cfg(feature = "ply")]
+    Format {
+        name: "ply",
+        extensions: &["ply"],
+        about: "The vertices of a PLY file, as text or binary data",
+        frames: None,
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::ply::starts,
+        reader: super::ply::read,
+        extra_bytes: no_extra_bytes,
+    },
     Format {
         name: "raw-f32x4",
         extensions: &[],
@@ -224,7 +238,7 @@ impl Format {
         }
         if options.radius.is_some() && !self.may_lack_radii {
             let files = Self::extensions_of(|format| format.may_lack_radii);
-            let what = format!("arrays of shape (n, 3) ({files})");
+            let what = format!("data without radii ({files})");
             return Err(OptionError { option: "radius", what });
         }
         if options.topology.is_some() && !self.needs_topology {
@@ -332,12 +346,13 @@ mod tests {
         assert!(raw.read(&[], &Options::default()).unwrap().spheres.is_empty());
     }
 
-    #[cfg(all(feature = "npy", feature = "pdb", feature = "xyz"))]
+    #[cfg(all(feature = "npy", feature = "pdb", feature = "ply", feature = "xyz"))]
     #[test]
     fn content_shows_the_format() {
         for (bytes, name) in [
             (&b"\x93NUMPY\x01"[..], "npy"),
             (b"PK\x03\x04", "npz"),
+            (b"ply\r\nformat ascii 1.0", "ply"),
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
         ] {

@@ -32,6 +32,8 @@ mod numbers;
 mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
+#[cfg(feature = "ply")]
+mod ply;
 pub mod raw;
 mod source;
 mod spacing;
@@ -46,6 +48,8 @@ pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
+#[cfg(feature = "ply")]
+pub use ply::PlyError;
 #[cfg(feature = "table")]
 pub use table::TableError;
 pub use trajectory::Trajectory;
