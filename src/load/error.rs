@@ -70,6 +70,10 @@ pub enum LoadError {
     #[cfg(feature = "table")]
     #[error(transparent)]
     Table(#[from] super::table::TableError),
+    /// A VTK XML file cannot be read.
+    #[cfg(feature = "vtk")]
+    #[error(transparent)]
+    Vtk(#[from] super::vtk::VtkError),
     /// An XYZ file cannot be read.
     #[cfg(feature = "xyz")]
     #[error(transparent)]

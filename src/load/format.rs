@@ -139,6 +139,20 @@ pub static FORMATS: &[Format] = &[
         reader: super::ply::read,
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "vtk")]
+    Format {
+        name: "vtk",
+        extensions: &["vtp", "vtu"],
+        about: "The points of a VTK XML file: PolyData or UnstructuredGrid",
+        frames: None,
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::vtk::starts,
+        reader: super::vtk::read,
+        extra_bytes: no_extra_bytes,
+    },
     Format {
         name: "raw-f32x4",
         extensions: &[],

@@ -41,6 +41,8 @@ mod spacing;
 #[allow(dead_code, reason = "not every format has named columns")]
 mod table;
 mod trajectory;
+#[cfg(feature = "vtk")]
+mod vtk;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
@@ -53,3 +55,5 @@ pub use ply::PlyError;
 #[cfg(feature = "table")]
 pub use table::TableError;
 pub use trajectory::Trajectory;
+#[cfg(feature = "vtk")]
+pub use vtk::VtkError;

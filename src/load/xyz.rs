@@ -23,7 +23,7 @@ use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::text::{shortened, without_byte_order_mark};
+use crate::text::{one_line, shortened, without_byte_order_mark};
 
 /// The atoms of one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,7 +196,8 @@ fn skip_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<(), XyzErro
 fn read_atoms(lines: &mut Lines<'_>, frame: DeclaredFrame) -> Result<Atoms, XyzError> {
     // The comment may have any encoding; the part that is read is ASCII.
     let comment = String::from_utf8_lossy(lines.next_bytes().unwrap_or_default());
-    let refused = |message| XyzError::Properties { line: lines.line, message };
+    let refused =
+        |message: String| XyzError::Properties { line: lines.line, message: one_line(&message) };
     let columns = Columns::from_comment(&comment).map_err(refused)?;
     let cell = cell_of(&comment).map_err(refused)?;
     let mut others: Vec<OtherValues> = columns.others.iter().map(OtherValues::new).collect();
