@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::camera::CameraArgs;
 use super::data::format_parser;
+use super::file_info::FileArgs;
 use super::generate::GenerateArgs;
 use super::light::LightArgs;
 use super::stop_rule::StopArgs;
@@ -41,7 +42,7 @@ pub(super) enum Command {
     Demo(DemoArgs),
     /// Write a file of generated spheres, for tests and measurements
     Generate(GenerateArgs),
-    /// List the adapters of this machine with their drivers, limits and features
+    /// Say what a data file or a scene file holds; or list the adapters of this machine with drivers, limits and features
     Info(InfoArgs),
 }
 
@@ -391,18 +392,10 @@ pub(super) enum Backend {
 }
 
 #[derive(Debug, Args)]
-#[cfg_attr(
-    feature = "gpu",
-    command(
-        after_help = "The self-test runs computations on the adapter and checks the properties that the error bounds \
-    of `verify` rely on. Exit codes: 0 done; 1 there is no adapter, or it cannot compute; 2 wrong usage; 3 it \
-    computes, but a property fails.\n\n\
-    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
-    `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
-    outcome (ok, note, FAILED), words, figures. New versions may add keys, but do not change these."
-    )
-)]
+#[command(after_help = super::info::HELP)]
 pub(super) struct InfoArgs {
+    #[command(flatten)]
+    pub(super) file: FileArgs,
     /// Test whether an adapter computes as precisely as the error bounds of `verify` assume
     #[cfg(feature = "gpu")]
     #[arg(long)]

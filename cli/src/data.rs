@@ -89,19 +89,39 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
 
 /// Reads the frame that is asked for, if there is memory for it.
 fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
-    let named = |error| match error {
+    let frame = options.frame.unwrap_or_default();
+    let options = options.to_read().with_format(format);
+    let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
+    check_frame(path, &found, frame)?;
+    found.into_frame(frame).map_err(|error| named(path, error))
+}
+
+/// Finds all frames of a file, and checks that there is memory for the one that is asked for.
+pub(super) fn trajectory(
+    path: &Path,
+    format: &'static Format,
+    options: &DataOptions,
+) -> Result<Trajectory> {
+    let all = options.to_read().with_format(format);
+    let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
+    check_frame(path, &found, options.frame.unwrap_or_default())?;
+    Ok(found)
+}
+
+fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
+    let bytes = found.frame_bytes(frame).unwrap_or_default();
+    let what = format!("{}: reading {bytes} bytes needs", path.display());
+    memory::check_reading(&what, bytes).map_err(Error::msg)
+}
+
+/// An error of reading a file, with its path in front.
+pub(super) fn named(path: &Path, error: LoadError) -> Error {
+    match error {
         LoadError::File { error, .. } => {
             Error::new(error).context(format!("{}: cannot be read", path.display()))
         }
         other => Error::new(other).context(path.display().to_string()),
-    };
-    let frame = options.frame.unwrap_or_default();
-    let options = options.to_read().with_format(format);
-    let found = Trajectory::open_up_to(path, &options).map_err(named)?;
-    let bytes = found.frame_bytes(frame).unwrap_or_default();
-    let what = format!("{}: reading {bytes} bytes needs", path.display());
-    memory::check_reading(&what, bytes).map_err(Error::msg)?;
-    found.into_frame(frame).map_err(named)
+    }
 }
 
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {

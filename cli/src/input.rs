@@ -51,14 +51,14 @@ impl Input {
 
 /// The kind of an input file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub(super) enum Format {
     Scene,
     Data(&'static load::Format),
 }
 
 impl Format {
     /// Returns the format for the extension of a path.
-    fn of(path: &Path) -> Result<Self> {
+    pub(super) fn of(path: &Path) -> Result<Self> {
         let extension = extension(path);
         match (data_format(path), extension.as_deref()) {
             (Some(format), _) => Ok(Self::Data(format)),
@@ -81,7 +81,8 @@ impl Format {
     }
 }
 
-fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
+/// Checks that flags apply to a file of this format.
+pub(super) fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
     if let Some(radius) = options.radius
         && !(radius.is_finite() && radius > 0.0)
     {
@@ -343,6 +344,13 @@ fn data_format(path: &Path) -> Option<&'static load::Format> {
 /// Whether a path means standard input.
 pub(super) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+/// Whether a file starts as one that is compressed with gzip.
+pub(super) fn is_gzip(path: &Path) -> bool {
+    let mut start = [0; 2];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == [0x1f, 0x8b]
 }
 
 /// Bytes that are read first from a file whose size is not known, such as a pipe.

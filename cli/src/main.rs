@@ -29,6 +29,8 @@ mod device;
 mod dump_shaders;
 mod encoding;
 mod failure;
+mod file_info;
+mod file_info_text;
 mod generate;
 mod info;
 mod input;

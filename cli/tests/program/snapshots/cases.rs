@@ -150,6 +150,15 @@ pub(super) fn files() -> Vec<Case> {
          render scene.toml -o out.png/
          render spheres.npy -o out.png --layer depth=spheres.npy
          generate random -n 10 -o no/out.npy
+         info no.xyz
+         info scene
+         info folder.toml
+         info spheres.bin
+         info no-radius.npy
+         info cut.npy
+         info water.xyz --frame 1
+         info scene.toml --frame 1
+         info --frame 1
          verify --replay no
          verify --replay scene.toml
          demo --backend cpu",
