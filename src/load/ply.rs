@@ -95,8 +95,13 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
             };
             let mut number = || {
                 let word = words.next().ok_or_else(|| refused(None))?;
-                let text = std::str::from_utf8(word).ok();
-                text.and_then(|text| text.parse::<f64>().ok()).ok_or_else(|| refused(Some(word)))
+                let text = std::str::from_utf8(word).unwrap_or_default();
+                // The number is the one that a binary file has.
+                let number = match property.scalar {
+                    Scalar::F32 => text.parse::<f32>().map(f64::from),
+                    _ => text.parse(),
+                };
+                number.map_err(|_| refused(Some(word)))
             };
             let first = number()?;
             match values {

@@ -7,7 +7,7 @@ const TEXT: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 
                     property int z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
                     property float radius\nproperty float nx\nproperty list uchar int near\nelement face 1\n\
                     property list uchar int vertex_indices\nend_header\n\
-                    0 0.5 0 255 0 0 0.25 1 2 7 8\n\n1 -2.5e0 3 0 0 255 0.75 0 0\n3 0 1 0\n";
+                    0 0.5 0 255 0 0 0.25 0.1 2 7 8\n\n1 -2.5e0 3 0 0 255 0.75 0 0\n3 0 1 0\n";
 
 /// The same as [`TEXT`], as binary data.
 fn binary(is_little: bool) -> Vec<u8> {
@@ -19,7 +19,7 @@ fn binary(is_little: bool) -> Vec<u8> {
             bytes.extend(if is_little { $number.to_le_bytes().to_vec() } else { $number.to_be_bytes().to_vec() });
         )*};
     }
-    put!(0_f32, 0.5_f64, 0_i32, 255_u8, 0_u8, 0_u8, 0.25_f32, 1_f32, 2_u8, 7_i32, 8_i32);
+    put!(0_f32, 0.5_f64, 0_i32, 255_u8, 0_u8, 0_u8, 0.25_f32, 0.1_f32, 2_u8, 7_i32, 8_i32);
     put!(1_f32, -2.5_f64, 3_i32, 0_u8, 0_u8, 255_u8, 0.75_f32, 0_f32, 0_u8);
     put!(3_u8, 0_i32, 1_i32, 0_i32);
     bytes
@@ -36,7 +36,7 @@ fn text_and_binary_data_are_the_same() {
     assert_eq!(*spheres, [[0.0, 0.5, 0.0, 0.25], [1.0, -2.5, 3.0, 0.75]]);
     let [red, blue] = [[255, 0, 0], [0, 0, 255]].map(LinearRgb::from_srgb8);
     assert_eq!(text.colors, Some(vec![red, blue]));
-    assert_eq!(text.column("nx"), Some(&ColumnValues::Numbers(vec![1.0, 0.0])));
+    assert_eq!(text.column("nx"), Some(&ColumnValues::Numbers(vec![0.1_f32.into(), 0.0])));
     assert_eq!(text.columns.len(), 1);
     assert_eq!(
         text.notes,

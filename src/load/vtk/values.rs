@@ -72,7 +72,7 @@ pub(super) fn numbers(
     let count = count.ok_or_else(|| format!("{points} points are too many"))?;
     let Encoding { is_little, .. } = document.encoding;
     let (text, is_base64) = match &array.data {
-        Data::Ascii(text) => return of_text(text, count, components),
+        Data::Ascii(text) => return of_text(text, array, count),
         Data::Base64(text) => {
             let text = text.trim_ascii();
             let is_whole = !text.bytes().any(|byte| byte.is_ascii_whitespace());
@@ -111,7 +111,8 @@ pub(super) fn numbers(
     (0..components).map(column).collect()
 }
 
-fn of_text(text: &str, count: usize, components: usize) -> Result<Vec<Vec<f64>>, String> {
+fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>, String> {
+    let components = array.components;
     // Each number takes two bytes, so a count that is too large shows before there are lists.
     if count > text.len() {
         return Err(format!("it must have {count} numbers, but its text has {} bytes", text.len()));
@@ -121,7 +122,12 @@ fn of_text(text: &str, count: usize, components: usize) -> Result<Vec<Vec<f64>>,
     for index in 0..count {
         let word = words.next();
         let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
-        let number = word.parse().map_err(|_| {
+        // The number is the one that a binary file has.
+        let number = match array.scalar {
+            Scalar::F32 => word.parse::<f32>().map(f64::from),
+            _ => word.parse(),
+        };
+        let number = number.map_err(|_| {
             format!("number {index} is `{}`, which is not a number", shortened(&one_line(word)))
         })?;
         columns[index % components].push(number);
