@@ -109,7 +109,7 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, array readers and the CPU
-//! reference on all cores. `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr`, `ply`, `scene-file` and `vtk` are readers and
+//! reference on all cores. `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr`, `las`, `ply`, `scene-file` and `vtk` are readers and
 //! writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!

@@ -47,6 +47,10 @@ pub enum LoadError {
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// A LAS file cannot be read.
+    #[cfg(feature = "las")]
+    #[error(transparent)]
+    Las(#[from] super::las::LasError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]

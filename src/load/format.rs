@@ -97,6 +97,20 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "las")]
+    Format {
+        name: "las",
+        extensions: &["las"],
+        about: "Points of a laser scanner (LAS)",
+        frames: None,
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::las::starts,
+        reader: super::las::read,
+        extra_bytes: no_extra_bytes,
+    },
     #[cfg(feature = "npy")]
     Format {
         name: "npy",

@@ -23,6 +23,8 @@ mod error;
 mod format;
 #[cfg(feature = "gzip")]
 mod gzip;
+#[cfg(feature = "las")]
+mod las;
 mod loaded;
 #[cfg(feature = "npy")]
 pub mod npy;
@@ -48,6 +50,8 @@ pub mod xyz;
 
 pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
+#[cfg(feature = "las")]
+pub use las::LasError;
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
 #[cfg(feature = "ply")]

@@ -344,6 +344,14 @@ impl Table {
 }
 
 impl TableColumn {
+    /// The largest number; 0 if there is none.
+    pub(super) fn largest(&self) -> f64 {
+        match &self.values {
+            ColumnValues::Numbers(numbers) => numbers.iter().copied().fold(0.0, f64::max),
+            ColumnValues::Labels(_) => 0.0,
+        }
+    }
+
     fn is_empty(&self) -> bool {
         match &self.values {
             ColumnValues::Numbers(numbers) => numbers.is_empty(),

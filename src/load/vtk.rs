@@ -1,4 +1,4 @@
-//! Reads the points of VTK's XML files: PolyData (`.vtp`) and UnstructuredGrid (`.vtu`).
+//! Reads the points of VTK's XML files: `PolyData` (`.vtp`) and `UnstructuredGrid` (`.vtu`).
 //!
 //! The points of all pieces are the centres, and the arrays of point data are columns: one of three components is
 //! `name.x`, `name.y` and `name.z`. An array of bytes with three or four components is a colour, whatever its name. Cells,

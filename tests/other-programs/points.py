@@ -1,4 +1,4 @@
-"""Compares what pinhole reads of clouds of points with what plyfile and VTK wrote.
+"""Compares what pinhole reads of clouds of points with what laspy, plyfile and VTK wrote.
 
 Every file is read by `examples/frames.rs`, and compared number by number.
 """
@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 
+import laspy
 import numpy as np
 import vtk
 from plyfile import PlyData, PlyElement
@@ -31,7 +32,7 @@ def build():
     return os.path.abspath(f"{target}/debug/examples/frames")
 
 
-def compare(program, file, expected, what):
+def compare(program, file, expected, what, guesses_radius=False):
     """Reads a file with pinhole, and ends this script at the first column that differs."""
     run = subprocess.run([program, file], capture_output=True, text=True, check=False)
     if run.returncode:
@@ -39,6 +40,8 @@ def compare(program, file, expected, what):
     lines = [line.split("\t") for line in run.stdout.splitlines()]
     names = next(line[1:] for line in lines if line[0] == "columns")
     rows = [line for line in lines if line[0] not in ("frame", "cell", "note", "columns")]
+    if guesses_radius:
+        expected = {**expected, "radius": np.array([row[names.index("radius")] for row in rows])}
     if sorted(names) != sorted(expected):
         sys.exit(f"{what}: the columns are {names}, not {sorted(expected)}")
     for index, name in enumerate(names):
@@ -133,10 +136,38 @@ def vtk_files(program, folder):
         compare(program, file, columns, what)
 
 
+def las_files(program, folder):
+    """Writes LAS files with laspy, in all versions and point formats that it writes."""
+    for form, version in [(0, "1.2"), (1, "1.2"), (2, "1.2"), (3, "1.3"), (6, "1.4"), (7, "1.4"), (8, "1.4")]:
+        header = laspy.LasHeader(point_format=form, version=version)
+        header.scales, header.offsets = [0.001, 0.01, 0.1], [4e5, -7e6, 0]
+        header.add_extra_dim(laspy.ExtraBytesParams(name="more", type="u2"))
+        las = laspy.LasData(header)
+        las.x, las.y, las.z = (POSITIONS * 100 + [4e5, -7e6, 0]).T
+        las.intensity = RANDOM.integers(0, 65536, N)
+        las.return_number = RANDOM.integers(1, 4, N)
+        las.number_of_returns = RANDOM.integers(4, 7, N)
+        las.classification = RANDOM.integers(0, 32, N)
+        names = ["x", "y", "z", "intensity", "return_number", "number_of_returns", "classification"]
+        columns = {}
+        if form not in (0, 2):
+            las.gps_time = RANDOM.normal(size=N)
+            names.append("gps_time")
+        if form in (2, 3, 7, 8):
+            las.red, las.green, las.blue = COLORS.T.astype("u2") * 257
+            columns["color"] = expected()["color"]
+        file = os.path.join(folder, "a.las")
+        las.write(file)
+        las = laspy.read(file)
+        columns |= {name: np.array(las[name]) for name in names}
+        compare(program, file, columns, f"las {version}, point format {form}", guesses_radius=True)
+
+
 def main():
     """Compares all files."""
     program = build()
     with tempfile.TemporaryDirectory() as folder:
+        las_files(program, folder)
         ply_files(program, folder)
         vtk_files(program, folder)
     print("all agree")

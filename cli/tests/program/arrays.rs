@@ -186,7 +186,7 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "water.xyz --radius 1",
             2,
-            "--radius applies only to data without radii (.npy, .npz, .ply, .vtp, .vtu); remove it",
+            "--radius applies only to data without radii (.las, .npy, .npz, .ply, .vtp, .vtu); remove it",
         ),
         (
             "water.xyz --color red",

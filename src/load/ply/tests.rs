@@ -65,7 +65,7 @@ fn without_lists_vertices_are_read_column_by_column() {
     }
     let loaded = read(&bytes, &Options::default().with_radius(2.0)).unwrap();
     let SphereArray::F64(spheres) = &loaded.spheres else { panic!("{:?}", loaded.spheres) };
-    assert_eq!(spheres[2], [2.0, 2.0, -4.0, 2.0]);
+    assert_eq!(spheres[2].to_vec(), [2.0, 2.0, -4.0, 2.0]);
     assert_eq!(
         loaded.column("id"),
         Some(&ColumnValues::Numbers(vec![70_000.0, 70_001.0, 70_002.0]))

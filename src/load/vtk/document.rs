@@ -75,7 +75,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Document<'_>, VtkError> {
     Ok(parser.document)
 }
 
-/// Finds the data of the element AppendedData, which start after an underscore.
+/// Finds the data of the element `AppendedData`, which start after an underscore.
 fn appended(bytes: &[u8], start: usize) -> Result<(&[u8], bool), VtkError> {
     let cut_off = || VtkError::CutOff { element: "AppendedData".to_owned() };
     let rest = &bytes[start..];

@@ -35,6 +35,7 @@ const SEEDS: &[(&str, Maker)] = &[
     ("xyz", |_| text::xyz()),
     ("extxyz", |_| text::extxyz()),
     ("pdb", |_| text::pdb()),
+    ("las", |_| points::las()),
     ("npy", |_| arrays::npy()),
     ("npz", |_| arrays::npz()),
     ("ply", |_| points::ply()),

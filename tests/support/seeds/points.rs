@@ -8,6 +8,30 @@ use flate2::write::ZlibEncoder;
 
 use super::Seed;
 
+pub(super) fn las() -> Vec<Seed> {
+    let file = |format: u8, minor: u8, length: u16| {
+        let header: u16 = if minor >= 4 { 375 } else { 227 };
+        let mut bytes = vec![0; usize::from(header)];
+        let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
+        put(0, b"LASF");
+        put(24, &[1, minor]);
+        put(94, &header.to_le_bytes());
+        put(96, &u32::from(header).to_le_bytes());
+        put(104, &[format]);
+        put(105, &length.to_le_bytes());
+        put(107, &2_u32.to_le_bytes());
+        if minor >= 4 {
+            put(247, &2_u64.to_le_bytes());
+        }
+        for axis in 0..3 {
+            put(131 + 8 * axis, &0.01_f64.to_le_bytes());
+        }
+        bytes.extend((0..2 * length).map(|byte| byte as u8));
+        Seed::new(bytes)
+    };
+    vec![file(2, 2, 26), file(7, 4, 40)]
+}
+
 pub(super) fn ply() -> Vec<Seed> {
     let header = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 2\nproperty float x\nproperty double y\n\
                   property short z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";

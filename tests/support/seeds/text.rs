@@ -20,7 +20,7 @@ pub(super) fn pdb() -> Vec<Seed> {
     let atoms = "ATOM      1  N   VAL A   1       6.204  16.869   4.854  1.00 49.05           N\n\
                  ATOM      2  CA AVAL A   1       6.913  17.759   4.607  0.50 43.14           C\n\
                  ATOM      3  CA BVAL A   1       6.913  17.859   4.607  0.50 43.14           C\n\
-                 HETATM 4430 FE    HEM A 142       8.128   7.371 -15.022  1.00 16.74          FE\n";
+                 HETATM 4430 FE   HEM A 142       8.128   7.371 -15.022  1.00 16.74          FE\n";
     let cell = "HEADER    OXYGEN TRANSPORT\n\
                 CRYST1   63.150   83.590   53.800  90.00  99.34  90.00 P 1 21 1      4\n";
     let models =
