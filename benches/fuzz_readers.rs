@@ -22,8 +22,10 @@ use peak_alloc::PeakAlloc;
 use pinhole::load::{FORMATS, Format};
 use tempfile::TempDir;
 
-#[path = "../tests/support/fuzz.rs"]
-mod fuzz;
+#[path = "../tests/support/arrays.rs"]
+mod arrays;
+#[path = "../tests/support/damage.rs"]
+mod damage;
 #[path = "../tests/support/seeds/mod.rs"]
 mod seeds;
 
@@ -68,16 +70,16 @@ fn run(format: &'static Format, count: u64, first: u64) -> u64 {
         let mut random = Rng::with_seed((first << 40) + number);
         let seed = &seeds[number as usize % seeds.len()];
         let other = &seeds[random.usize(0..seeds.len())].bytes;
-        let bytes = fuzz::damaged(&seed.bytes, other, &mut random);
+        let bytes = damage::damaged(&seed.bytes, other, &mut random);
         MEMORY.reset_peak_usage();
         let before = MEMORY.current_usage();
         let read = catch_unwind(AssertUnwindSafe(|| {
-            fuzz::read_all(format, &bytes, &seed.options, &file, &mut random)
+            damage::read_all(format, &bytes, &seed.options, &file, &mut random)
         }));
         let memory = MEMORY.peak_usage().saturating_sub(before);
         let is_much = memory > BYTES_PER_BYTE * bytes.len() + MORE_BYTES;
         let (taken, problem) = match read {
-            Ok(Ok(taken)) if taken > fuzz::SLOW => (taken, Some(format!("it takes {taken:?}"))),
+            Ok(Ok(taken)) if taken > damage::SLOW => (taken, Some(format!("it takes {taken:?}"))),
             Ok(Ok(taken)) if is_much => {
                 (taken, Some(format!("{} bytes take {memory} bytes of memory", bytes.len())))
             }

@@ -5,8 +5,8 @@ use fastrand::Rng;
 use pinhole::load::{self, FORMATS};
 use tempfile::TempDir;
 
-use crate::support::fuzz::{SLOW, damaged, read_all};
-use crate::support::seeds;
+use crate::damage::{SLOW, damaged, read_all};
+use crate::seeds;
 
 #[test]
 fn every_format_has_good_files() {

@@ -13,6 +13,10 @@ mod accel_trees;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
+#[path = "../support/damage.rs"]
+mod damage;
+#[path = "../support/seeds/mod.rs"]
+mod seeds;
 
 mod basis;
 mod camera;

@@ -3,15 +3,11 @@
 #[allow(dead_code, reason = "each test program uses some of it")]
 pub(crate) mod appearances;
 pub(crate) mod compare;
-#[allow(dead_code, reason = "each test program uses some of it")]
-pub(crate) mod fuzz;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod maps;
 #[cfg(feature = "gpu")]
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod random_light;
-#[allow(dead_code, reason = "each test program uses some of them")]
-pub(crate) mod seeds;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod spheres;
 mod view;

@@ -1,11 +1,9 @@
 //! Good files of arrays.
 
-#[path = "../arrays.rs"]
-mod files;
-
 use pinhole::load::Options;
 
 use super::Seed;
+use crate::arrays as files;
 
 /// Two spheres: x, y, z, radius.
 const NUMBERS: [f32; 8] = [-2.0, 0.0, 0.5, 1.0, 2.0, -1.0, 0.0, 0.5];

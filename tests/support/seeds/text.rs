@@ -1,11 +1,18 @@
-//! Good files of formats that are text with one atom on each line.
+//! Good files of formats that are text with one atom on each line, one of them compressed.
+
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
 
 use super::Seed;
 
 pub(super) fn xyz() -> Vec<Seed> {
     let two =
         "3\nwater\nO 0 0 0.1\nH 0.76 0 -0.5\nH -0.76 0 -0.5\n2\n\nFe 1e1 2.5D0 -3\nXx 0 0 0\n";
-    vec![Seed::new(two), Seed::new(two.replace('\n', "\r\n"))]
+    let mut gz = GzEncoder::new(Vec::new(), Compression::fast());
+    gz.write_all(two.as_bytes()).unwrap();
+    vec![Seed::new(two), Seed::new(two.replace('\n', "\r\n")), Seed::new(gz.finish().unwrap())]
 }
 
 pub(super) fn extxyz() -> Vec<Seed> {
