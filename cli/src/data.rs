@@ -7,7 +7,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{
+    FORMATS, Format, LoadError, Loaded, Options, TableError, TopologyError, Trajectory,
+};
 
 use super::failure::Failure;
 use super::{input, memory};
@@ -110,8 +112,18 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     format.read(bytes, &options.to_read()).with_context(file_name)
 }
 
-/// Turns an error into a failure. An array without a radius, or with two, is wrong usage, because a flag corrects it.
+/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, an array without a
+/// radius, or with two.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
+    match error.downcast_ref::<LoadError>() {
+        Some(LoadError::Topology(TopologyError::Missing { .. })) => {
+            return Failure::usage(format!("{error:#} (add --topology FILE)"));
+        }
+        Some(LoadError::Table(TableError::TwoRadii { .. })) => {
+            return Failure::usage(format!("{error:#}"));
+        }
+        _ => {}
+    }
     let of_array = match error.downcast_ref::<LoadError>() {
         Some(LoadError::Npy(error) | LoadError::Npz(NpzError::Spheres { error, .. })) => {
             Some(error)

@@ -47,6 +47,14 @@ pub enum LoadError {
     /// An option does not apply to the format.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// A binary trajectory cannot be read.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Binary(#[from] super::binary::BinaryError),
+    /// A trajectory does not go with its topology.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Topology(#[from] super::topology::TopologyError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]

@@ -97,6 +97,62 @@ pub static FORMATS: &[Format] = &[
         reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "gsd")]
+    Format {
+        name: "gsd",
+        extensions: &["gsd"],
+        about: "Particles of HOOMD-blue (GSD)",
+        frames: Some(super::gsd::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::gsd::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::gsd::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "dcd")]
+    Format {
+        name: "dcd",
+        extensions: &["dcd"],
+        about: "Positions of atoms by CHARMM, NAMD, OpenMM or LAMMPS, with a topology",
+        frames: Some(super::dcd::FRAMES),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::dcd::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::dcd::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "gromacs")]
+    Format {
+        name: "trr",
+        extensions: &["trr"],
+        about: "Positions and velocities of atoms by GROMACS, with a topology",
+        frames: Some(super::gromacs::TRR),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::gromacs::starts_trr,
+        reader: |bytes, options| read_from_memory(bytes, super::gromacs::TRR, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "gromacs")]
+    Format {
+        name: "xtc",
+        extensions: &["xtc"],
+        about: "Compressed positions of atoms by GROMACS, with a topology",
+        frames: Some(super::gromacs::XTC),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::gromacs::starts_xtc,
+        reader: |bytes, options| read_from_memory(bytes, super::gromacs::XTC, options),
+        extra_bytes: no_extra_bytes,
+    },
     #[cfg(feature = "npy")]
     Format {
         name: "npy",
@@ -224,7 +280,7 @@ impl Format {
         }
         if options.radius.is_some() && !self.may_lack_radii {
             let files = Self::extensions_of(|format| format.may_lack_radii);
-            let what = format!("arrays of shape (n, 3) ({files})");
+            let what = format!("files without radii ({files})");
             return Err(OptionError { option: "radius", what });
         }
         if options.topology.is_some() && !self.needs_topology {

@@ -15,12 +15,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every format has every kind of number")]
+mod binary;
+#[cfg(feature = "dcd")]
+mod dcd;
 #[cfg(feature = "table")]
 mod elements;
 #[cfg(any(feature = "exr", feature = "hdr"))]
 pub mod environment;
 mod error;
 mod format;
+#[cfg(feature = "gromacs")]
+mod gromacs;
+#[cfg(feature = "gsd")]
+mod gsd;
 #[cfg(feature = "gzip")]
 mod gzip;
 mod loaded;
@@ -38,14 +47,21 @@ mod spacing;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has named columns")]
 mod table;
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every binary format needs one")]
+mod topology;
 mod trajectory;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
+#[cfg(feature = "binary")]
+pub use binary::BinaryError;
 pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
 #[cfg(feature = "table")]
 pub use table::TableError;
+#[cfg(feature = "binary")]
+pub use topology::TopologyError;
 pub use trajectory::Trajectory;
