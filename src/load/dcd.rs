@@ -8,8 +8,6 @@
 
 mod cell;
 mod header;
-#[cfg(test)]
-mod tests;
 
 use std::ops::Range;
 

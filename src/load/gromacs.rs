@@ -74,6 +74,3 @@ fn cell_of(
     let [a, b, c, d, e, f, g, h, i] = edges.map(|edge| edge * ANGSTROMS);
     Ok(edges.iter().any(|edge| *edge != 0.0).then_some([[a, b, c], [d, e, f], [g, h, i]]))
 }
-
-#[cfg(test)]
-mod tests;

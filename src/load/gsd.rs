@@ -4,8 +4,6 @@
 //! schema's default. Lengths are taken as they are. <https://gsd.readthedocs.io/en/stable/schema-hoomd.html>
 
 mod index;
-#[cfg(test)]
-mod tests;
 
 use std::collections::BTreeSet;
 

@@ -15,6 +15,7 @@ mod appearance;
 mod arrays;
 
 mod basis;
+mod binary;
 mod camera;
 mod camera_tables;
 mod comparator;

@@ -133,8 +133,8 @@ def of_few_atoms():
 
 
 def of_water():
-    """Molecules in a large box: runs of small differences, and ranges beyond 24 bits."""
-    for file, size in [("water.xtc", 100), ("far.xtc", 300_000)]:
+    """Molecules in large boxes: runs of small differences, numbers of up to 72 bits, and ranges beyond 24 bits."""
+    for file, size in [("water.xtc", 100), ("wide.xtc", 100_000), ("far.xtc", 300_000)]:
         count = 3 * 4000
         random = np.random.default_rng(7)
         oxygen = random.uniform(0, size, (count // 3, 1, 3))

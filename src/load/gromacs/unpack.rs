@@ -183,3 +183,41 @@ impl Bits<'_> {
         Ok([x, y, z].map(|number| number as i64))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_as_one() {
+        let ranges = [16_000_000_u64, 15_999_999, 7];
+        for numbers in
+            [[0, 0, 0], [15_999_999, 15_999_998, 6], [1, 0, 5], [12_345_678, 7_654_321, 3]]
+        {
+            for (scale, count) in [(1, 51), (2_000_000, 69)] {
+                let ranges = [ranges[0], ranges[1], ranges[2] * scale];
+                let number = numbers.iter().zip(ranges).fold(0, |all: u128, (number, range)| {
+                    all * u128::from(range) + *number as u128
+                });
+                assert_eq!(
+                    bit_length(ranges.iter().map(|range| u128::from(*range)).product()),
+                    count
+                );
+                // After three bits: the lowest byte first, and the rest in as many bits as it has.
+                let mut bits = vec![1, 0, 1];
+                for byte in 0..count.div_ceil(8) {
+                    let width = (count - 8 * byte).min(8);
+                    bits.extend((0..width).rev().map(|bit| (number >> (8 * byte + bit) & 1) as u8));
+                }
+                bits.resize(bits.len().next_multiple_of(8), 0);
+                let bytes =
+                    bits.chunks(8).map(|bits| bits.iter().fold(0, |all, bit| all << 1 | bit));
+                let bytes: Vec<u8> = bytes.collect();
+                let mut reader = Bits { bytes: &bytes, position: 0 };
+                assert_eq!(reader.take(3).unwrap(), 5);
+                assert_eq!(reader.mixed(count, ranges).unwrap(), numbers);
+                assert!(reader.take(9).is_err());
+            }
+        }
+    }
+}
