@@ -364,7 +364,7 @@ pub(super) struct BenchArgs {
     /// Format of the data files, whatever their extensions are
     #[arg(long, value_parser = format_parser())]
     pub(super) format: Option<&'static Format>,
-    /// Radius of all spheres, for data without radii: arrays of shape (n, 3)
+    /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R")]
     pub(super) radius: Option<f64>,
     /// Measure only these acceleration structures, separated by commas

@@ -78,6 +78,9 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     } else {
         read_whole(path, format, options)?
     };
+    if options.color.is_some() && loaded.colors.is_some() {
+        loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
+    }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }
@@ -112,8 +115,7 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     format.read(bytes, &options.to_read()).with_context(file_name)
 }
 
-/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, an array without a
-/// radius, or with two.
+/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
     match error.downcast_ref::<LoadError>() {
         Some(LoadError::Topology(TopologyError::Missing { .. })) => {
@@ -131,10 +133,9 @@ pub(super) fn as_usage(error: anyhow::Error) -> Failure {
         _ => None,
     };
     match of_array {
-        Some(SpheresError::NoRadius { .. }) => {
-            Failure::usage(format!("{error:#} (add --radius R)"))
+        Some(SpheresError::TwoRadii { .. } | SpheresError::Table(TableError::TwoRadii { .. })) => {
+            Failure::usage(format!("{error:#}"))
         }
-        Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }
 }

@@ -19,7 +19,7 @@ fn folder() -> Folder {
         ("wide.npy", npy(">f8", false, "(2, 4)", &wide)),
         ("xyz.npy", npy("<f4", false, "(2, 3)", &bytes(3))),
         ("none.npy", npy("<f4", false, "(0, 4)", b"")),
-        ("int.npy", npy("<i4", false, "(2, 4)", &bytes(4))),
+        ("complex.npy", npy("<c8", false, "(1, 4)", &bytes(4))),
         ("cut.npy", whole[..whole.len() - 3].to_vec()),
         ("huge.npy", npy("<f4", false, "(1000000000000000000, 4)", b"")),
         ("bad.npy", npy("<f4", false, "(1, 4)", &[0; 16])),
@@ -112,11 +112,6 @@ fn arrays_that_are_refused() {
     let folder = folder();
     let refused = |arguments: &str, code, line: &str| refused(&folder, arguments, code, line);
     refused(
-        "xyz.npy",
-        2,
-        "xyz.npy: the array has the shape (2, 3) without radii; give one radius for all spheres (add --radius R)",
-    );
-    refused(
         "a.npy --radius 1",
         2,
         "a.npy: the array has the shape (2, 4) with radii; remove the radius that is given for all spheres",
@@ -126,9 +121,10 @@ fn arrays_that_are_refused() {
         refused(&format!("xyz.npy --radius {radius}"), 2, &line);
     }
     refused(
-        "int.npy",
+        "complex.npy",
         1,
-        "int.npy: the array has the type <i4, but it must be float32 or float64; save it as a.astype('float32')",
+        "complex.npy: the array has the type <c8, but it must be of floating-point numbers or integers; save it as \
+         a.astype('float32')",
     );
     refused(
         "cut.npy",
@@ -145,7 +141,8 @@ fn arrays_that_are_refused() {
     refused(
         "two.npz",
         1,
-        "two.npz: the archive has the arrays `a`, `b`; name the one to read `spheres` or `positions`, or save it alone",
+        "two.npz: the archive has the arrays `a`, `b`; name the one with the centers `positions`, or `spheres` if it \
+         has radii as well",
     );
     refused(
         "a.bin",
@@ -181,12 +178,12 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "a.npy --frame 0",
             2,
-            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
+            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .gsd, .dcd, .trr, .xtc); remove it",
         ),
         (
             "water.xyz --radius 1",
             2,
-            "--radius applies only to arrays of shape (n, 3) (.npy, .npz); remove it",
+            "--radius applies only to files without radii (.gsd, .npy, .npz); remove it",
         ),
         (
             "water.xyz --color red",

@@ -194,7 +194,7 @@ mod tests {
         for numbers in
             [[0, 0, 0], [15_999_999, 15_999_998, 6], [1, 0, 5], [12_345_678, 7_654_321, 3]]
         {
-            for (scale, count) in [(1, 51), (2_000_000, 69)] {
+            for (scale, count) in [(1, 51), (2_000_000, 72)] {
                 let ranges = [ranges[0], ranges[1], ranges[2] * scale];
                 let number = numbers.iter().zip(ranges).fold(0, |all: u128, (number, range)| {
                     all * u128::from(range) + *number as u128
