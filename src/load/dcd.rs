@@ -1,4 +1,5 @@
-//! Reads trajectories in the format of CHARMM and X-PLOR (`.dcd`), which NAMD, OpenMM, LAMMPS and others write as well.
+//! Reads trajectories in the format of CHARMM and X-PLOR (`.dcd`), which NAMD, `OpenMM`, LAMMPS and others write as
+//! well.
 //!
 //! The file is a sequence of Fortran records: the number of bytes before and after each, in 32 or 64 bits. The first
 //! three are a header of 84 bytes, a title and the number of atoms; if atoms are fixed, the list of those that are not

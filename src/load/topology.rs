@@ -1,6 +1,6 @@
 //! Joins positions from a trajectory with what another file, the topology, says about the spheres.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::error::LoadError;
 use super::format::Options;
@@ -67,10 +67,12 @@ impl Topology {
     /// Reads the first frame of the file that the options name.
     pub(super) fn open(options: &Options, format: &'static str) -> Result<Self, LoadError> {
         let path = options.topology.as_deref().ok_or(TopologyError::Missing { format })?;
-        let read = |path: &Path| open(path, &Options::default());
-        let loaded = read(path).map_err(|error| match error {
-            error @ LoadError::File { .. } => error,
-            error => TopologyError::Unreadable { path: path.into(), error: error.into() }.into(),
+        let loaded = open(path, &Options::default()).map_err(|error| {
+            let error = match error {
+                LoadError::File { error, .. } => LoadError::Io(error),
+                other => other,
+            };
+            TopologyError::Unreadable { path: path.to_path_buf(), error: error.into() }
         })?;
         Ok(Self { path: path.to_path_buf(), loaded })
     }

@@ -200,6 +200,47 @@ def of_gsd():
                 assert any("bonds" in note for note in found["notes"])
 
 
+def of_arrays():
+    random = np.random.default_rng(5)
+    positions = random.normal(size=(N, 3))
+    radii, energy = random.uniform(0.5, 1, N), random.normal(size=N)
+    colors = random.integers(0, 256, (N, 3), dtype=np.uint8)
+    hexes = [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in colors]
+    kinds = np.array(["O", "H", "Na", "C"] * (N // 4))
+    spheres = np.column_stack([positions, radii])
+    for dtype in ["<f4", ">f8", "<f2", "<i2", ">i8"]:
+        for order in "CF":
+            numbers = np.asarray(np.abs(spheres) * 90 + 1, dtype, order=order)
+            np.save("a.npy", numbers)
+            (found,) = read("a.npy")
+            what = f"{dtype} {order}"
+            same(f"{what} positions", vectors(found, "positions"), numbers[:, :3])
+            same(f"{what} radii", found["radius"], numbers[:, 3])
+    np.save("a.npy", np.column_stack([spheres, energy]).astype("f4"))
+    same("a value", read("a.npy")[0]["value"], energy)
+    np.save("a.npy", np.column_stack([spheres, colors]))
+    assert read("a.npy")[0]["color"] == hexes
+    fields = [("id", "u8"), ("pos", "f4", (3,)), ("radius", "f8"), ("rgb", "u1", (3,)), ("kind", "U2"), ("c", "c8")]
+    table = np.zeros(N, np.dtype(fields, align=True))
+    table["id"], table["pos"], table["radius"] = np.arange(N), positions, radii
+    table["rgb"], table["kind"] = colors, kinds
+    np.save("a.npy", table)
+    (found,) = read("a.npy")
+    same("fields positions", vectors(found, "positions"), positions)
+    same("fields radii", found["radius"], radii)
+    same("fields id", found["id"], np.arange(N))
+    assert found["color"] == hexes and found["kind"] == list(kinds)
+    assert any(note.endswith(": c") for note in found["notes"])
+    for save in [np.savez, np.savez_compressed]:
+        save("a.npz", positions=positions, radii=radii, colors=colors, energy=energy, kind=kinds, box=np.eye(3))
+        (found,) = read("a.npz")
+        same("archive positions", vectors(found, "positions"), positions)
+        same("archive radii", found["radius"], radii)
+        same("archive energy", found["energy"], energy)
+        assert found["color"] == hexes and found["kind"] == list(kinds)
+        assert any("`box` has the shape (3, 3)" in note for note in found["notes"])
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         build()
@@ -208,4 +249,5 @@ if __name__ == "__main__":
         of_few_atoms()
         of_water()
         of_gsd()
+        of_arrays()
     print("all agree")

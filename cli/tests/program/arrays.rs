@@ -203,7 +203,8 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "data.toml",
             1,
-            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent); remove it",
+            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .gsd, .dcd, .trr, .xtc); \
+             remove it",
         ),
     ] {
         refused(&folder, arguments, code, line);

@@ -158,7 +158,7 @@ mod tests {
             (0x3555, 0.333_251_953_125),
             (0xfc00, f64::NEG_INFINITY),
         ] {
-            assert_eq!(half(bits), number, "{bits:x}");
+            assert_eq!(half(bits).to_bits(), number.to_bits(), "{bits:x}");
         }
         assert!(half(0x7e00).is_nan());
     }

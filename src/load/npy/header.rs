@@ -115,7 +115,7 @@ fn add_fields(
                     offset = offset.checked_add(size).ok_or_else(bad)?;
                 }
                 Value::List(list) => {
-                    offset = add_fields(list, &format!("{full}."), offset, steps, fields)?
+                    offset = add_fields(list, &format!("{full}."), offset, steps, fields)?;
                 }
                 _ => return Err(bad()),
             }

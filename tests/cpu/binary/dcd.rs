@@ -197,7 +197,7 @@ fn a_topology_must_be_there_and_fit() {
     assert!(message.contains("top.xyz has 3; use a file of the same system"), "{message}");
     let nowhere =
         refused(super::read("dcd", &file(PLAIN), &Options::default().with_topology("no.pdb")));
-    assert!(nowhere.starts_with("no.pdb: cannot be read: "), "{nowhere}");
+    assert!(nowhere.starts_with("the topology no.pdb: the file cannot be read: "), "{nowhere}");
 }
 
 /// From a file, a cut trajectory has the frames that are complete.
