@@ -9,7 +9,15 @@ use super::gzip;
 use super::loaded::Loaded;
 use super::raw;
 use super::source::{Source, without_gz};
-use super::trajectory::{Frames, read_from_memory};
+use super::trajectory::Frames;
+#[cfg(any(
+    feature = "dcd",
+    feature = "gromacs",
+    feature = "gsd",
+    feature = "pdb",
+    feature = "xyz"
+))]
+use super::trajectory::read_from_memory;
 
 /// A file format for spheres.
 #[derive(Debug)]

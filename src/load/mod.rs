@@ -43,6 +43,7 @@ mod open;
 pub mod pdb;
 pub mod raw;
 mod source;
+#[cfg(feature = "table")]
 mod spacing;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has named columns")]

@@ -6,7 +6,9 @@ use std::path::Path;
 use super::error::LoadError;
 use super::format::{Format, Options};
 use super::loaded::Loaded;
-use super::source::{Source, without_gz};
+use super::source::Source;
+#[cfg(feature = "gzip")]
+use super::source::without_gz;
 use super::trajectory::Trajectory;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
