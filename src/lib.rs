@@ -149,6 +149,8 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+#[cfg(feature = "scene-file")]
+pub mod style;
 mod text;
 pub mod verify;
 pub mod write;

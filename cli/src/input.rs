@@ -8,13 +8,15 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
+use super::camera::CameraFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
-use super::light::{self, LightFlags};
+use super::light::LightFlags;
 use super::memory;
 use super::progress;
+use super::report::Report;
 use pinhole::camera::film::Film;
-use pinhole::camera::{Camera, CameraError, CameraParameters, View};
+use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
@@ -22,6 +24,7 @@ use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene_file::{DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::style::Style;
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -40,6 +43,8 @@ pub(super) struct Input {
     pub(super) notes: Vec<String>,
     /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
+    /// What the program says about the picture.
+    pub(super) report: Report,
 }
 
 impl Input {
@@ -103,8 +108,10 @@ pub(super) struct Source {
     format: Format,
     size: Option<(u32, u32)>,
     options: DataOptions,
-    camera: Option<CameraParameters>,
+    camera: CameraFlags,
     light: LightFlags,
+    /// The style of data files.
+    style: Style,
 }
 
 impl Source {
@@ -127,14 +134,14 @@ impl Source {
             format,
             size: args.size.as_deref().map(parse_size).transpose()?,
             options,
-            camera: args.camera.parameters()?,
-            light: LightFlags::default(),
+            camera: args.camera.flags()?,
+            ..Self::of_scene(path)
         })
     }
 
-    /// Returns this source with light flags.
+    /// Returns this source with light flags. Without them, data files have one ray for each pixel.
     pub(super) fn with_light(self, light: LightFlags) -> Self {
-        Self { light, ..self }
+        Self { light, style: light.style_of_data(), ..self }
     }
 
     /// Makes a source from a scene file without flags.
@@ -145,8 +152,9 @@ impl Source {
             format: Format::Scene,
             size: None,
             options,
-            camera: None,
+            camera: CameraFlags::default(),
             light: LightFlags::default(),
+            style: Style::Fast,
         }
     }
 
@@ -178,8 +186,8 @@ impl Source {
         };
         let mut loaded = data::read(path, format, &self.options).map_err(as_usage)?;
         let mut notes = std::mem::take(&mut loaded.notes);
+        let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
-        let (film, size_from) = self.film(Film::default())?;
         let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
         let scene = scene.with_context(file_name)?;
         if scene.is_empty() {
@@ -188,44 +196,74 @@ impl Source {
                 path.display()
             ));
         }
-        let parameters = self.camera.unwrap_or_default();
-        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
-        let settings = self.light.apply_to(light::plain(self.light.integrator(None)))?;
-        let encoding = Encoding::default();
+        let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
+        let facing = scene.subject().flat_axis().map(Viewpoint::on_axis);
         let files = vec![path.clone()];
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        let facing = Some(facing.unwrap_or(Viewpoint::OBLIQUE));
+        self.input(file, scene, Found { notes, files, sky: None, has_atoms, facing })
     }
 
     /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
     /// other paths.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
-        let file = SceneFile::parse(text).with_context(file_name)?;
-        let (data, color, notes) = self.data_of(&file)?;
+        let file = SceneFile::parse_in_style(text, self.light.style()).with_context(file_name)?;
+        let (data, color, notes, has_atoms) = self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator());
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_file = sky_file.map(|file| self.resolve(file));
-        let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
+        let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.resolve(&data.file));
         let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
-        let (film, size_from) = self.film(file.film)?;
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
         };
         let scene = scene.with_context(file_name)?;
-        let (camera, eyes) = match &self.camera {
-            Some(parameters) => cameras(parameters, &film, &scene).with_context(file_name)?,
-            None => (
-                file.camera(&film, &scene).with_context(file_name)?,
-                file.stereo_pair(&film, &scene).with_context(file_name)?,
-            ),
+        self.input(file, scene, Found { notes, files, sky, has_atoms, facing: None })
+    }
+
+    /// Makes the film, the camera and the settings of a scene.
+    fn input(&self, mut file: SceneFile, scene: Scene, found: Found) -> Result<Input, Failure> {
+        let file_name = || self.path.display().to_string();
+        let (film, size_from) = self.film(file.film)?;
+        file.film = film;
+        file.background = self.light.background().unwrap_or(file.background);
+        let has_flags = self.camera.is_given || matches!(self.format, Format::Data(_));
+        let parameters = if has_flags {
+            self.camera.parameters(found.facing).map_err(Failure::usage)?
+        } else {
+            file.camera_parameters()
         };
-        let settings =
-            file.settings(kind, &scene, camera.as_ref(), image).with_context(file_name)?;
-        let settings = self.light.apply_to(settings)?;
+        let (aspect, subject) = (film.aspect(), scene.subject());
+        let placed = parameters.placed(aspect, &subject);
+        let made = |parameters: CameraParameters| {
+            let camera = parameters.camera(aspect, &subject)?;
+            Ok((camera, parameters.stereo_pair(aspect, &subject)?))
+        };
+        let cameras = placed.and_then(|placed| Ok((placed, made(placed)?)));
+        let (placed, (camera, eyes)) = match cameras {
+            Ok(cameras) => cameras,
+            // The scene file knows the place of the error.
+            Err(error) if has_flags => return Err(Error::new(error).context(file_name()).into()),
+            Err(error) => {
+                return Err(Error::new(file.at_camera(&error)).context(file_name()).into());
+            }
+        };
+        let kind = self.light.integrator(file.integrator());
+        let settings = file.settings(kind, &scene, camera.as_ref(), found.sky);
+        let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
+        let report = Report {
+            path: self.path.display().to_string(),
+            spheres: scene.len(),
+            has_atoms: found.has_atoms,
+            style: file.style(),
+            view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
+            camera: placed,
+        };
         let encoding = file.encoding;
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        let Found { notes, files, .. } = found;
+        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files, report })
     }
 
     /// Reads the image of the sky.
@@ -242,8 +280,12 @@ impl Source {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
-    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, and notes.
-    fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
+    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, notes, and whether
+    /// the spheres are atoms.
+    fn data_of(
+        &self,
+        file: &SceneFile,
+    ) -> Result<(DataSpheres, LinearRgb, Vec<String>, bool), Failure> {
         let flags = self.options;
         let Some(data) = file.data() else {
             let given = [
@@ -256,7 +298,7 @@ impl Source {
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
+                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new(), false)),
             };
         };
         let path = self.resolve(&data.file);
@@ -280,8 +322,9 @@ impl Source {
         let options = flags.or(keys);
         let loaded =
             data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        let has_atoms = loaded.labels("species").is_some();
         let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
-        Ok((spheres, options.color.unwrap_or_else(default_color), notes))
+        Ok((spheres, options.color.unwrap_or_else(default_color), notes, has_atoms))
     }
 
     /// Returns the film, and where its size comes from.
@@ -296,16 +339,15 @@ impl Source {
     }
 }
 
-/// The camera, and its eyes if it has two.
-type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);
-
-fn cameras(
-    parameters: &CameraParameters,
-    film: &Film,
-    scene: &Scene,
-) -> Result<Cameras, CameraError> {
-    let (aspect, bounds) = (film.aspect(), scene.bounds_to_frame());
-    Ok((parameters.camera(aspect, &bounds)?, parameters.stereo_pair(aspect, &bounds)?))
+/// What was found beside the spheres.
+struct Found {
+    notes: Vec<String>,
+    files: Vec<PathBuf>,
+    /// The image of the sky.
+    sky: Option<Environment>,
+    has_atoms: bool,
+    /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
+    facing: Option<Viewpoint>,
 }
 
 fn default_color() -> LinearRgb {

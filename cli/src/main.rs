@@ -42,6 +42,7 @@ mod plan;
 mod process;
 mod progress;
 mod render;
+mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;

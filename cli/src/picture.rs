@@ -79,8 +79,14 @@ impl Outputs {
 
     /// Returns the layers to render.
     pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
-        let alpha = encoding.transparent().then_some(Layer::Alpha);
-        self.layers.iter().map(|(layer, _)| *layer).chain(self.inside.iter()).chain(alpha).collect()
+        // The exposure and the tone curve of a PNG need what tells the background from the rest.
+        let encoded = if self.format == PictureFormat::Png || encoding.transparent() {
+            encoding.layers()
+        } else {
+            LayerSet::COLOR
+        };
+        let asked = self.layers.iter().map(|(layer, _)| *layer);
+        asked.chain(self.inside.iter()).chain(encoded.iter()).collect()
     }
 
     /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them

@@ -1,5 +1,8 @@
 //! `pinhole render`: renders a scene file or a data file.
 
+use std::path::PathBuf;
+use std::time::Instant;
+
 use anyhow::Context;
 
 use super::args::{RenderArgs, Stereo};
@@ -43,7 +46,9 @@ struct Job {
 
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
-        let outputs = Outputs::new(&args.output, &args.layers)?;
+        let standard_output = PathBuf::from("-");
+        let output = args.output.as_ref().unwrap_or(&standard_output);
+        let outputs = Outputs::new(output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         Ok(Self {
@@ -58,22 +63,29 @@ impl Job {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let started = Instant::now();
+    let quiet = args.report.quiet;
     let job = Job::new(args)?;
+    if quiet {
+        progress::close();
+    }
+    let note = |note: &dyn std::fmt::Display| {
+        if !quiet {
+            tell(format_args!("note: {note}"));
+        }
+    };
     threads::start()?;
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
+    input.notes.iter().for_each(|text| note(text));
     let encoding = job.encoding.apply_to(input.encoding);
+    let encoding = encoding.with_background(input.settings.visible_background());
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
         job.stop_rule.check_without_light()?;
     }
-    for note in input.settings.notes(&input.scene) {
-        tell(format_args!("note: {note}"));
-    }
+    input.settings.notes(&input.scene).iter().for_each(|text| note(text));
     let layers = job.outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
@@ -86,14 +98,25 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let outputs = job.outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
         let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
-        return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
+        Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
+        said(quiet, &input, started);
+        return Ok(());
     }
     let image = match render_views(&input, &job.stop_rule, &views, layers, &opened)? {
         Views::One(image) => image,
         Views::Two([left, right]) => Image::side_by_side([&left, &right])
             .context("the pictures of both eyes cannot be joined")?,
     };
-    Ok(job.outputs.write(&image, &encoding, adapter, None)?)
+    job.outputs.write(&image, &encoding, adapter, None)?;
+    said(quiet, &input, started);
+    Ok(())
+}
+
+/// Says in one line what was rendered, with which look, and how long it took.
+fn said(quiet: bool, input: &Input, started: Instant) {
+    if !quiet {
+        tell(input.report.line(started.elapsed()));
+    }
 }
 
 /// Renders the view of the camera, or of the middle between two eyes.

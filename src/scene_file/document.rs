@@ -14,6 +14,7 @@ use super::materials::{MaterialTable, Materials};
 use super::output::OutputTable;
 use super::span::{Lines, Number, SceneFileError, WithSpan};
 use super::value::ColorValue;
+use super::words::explain;
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
@@ -25,6 +26,7 @@ use crate::scene::sphere::Sphere;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
+    pub(super) style: Option<Spanned<String>>,
     #[serde(default = "default_film")]
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
@@ -56,6 +58,50 @@ pub(super) struct Document {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+}
+
+impl Document {
+    /// Parses the text of a scene file.
+    pub(super) fn parse(text: &str, lines: &Lines<'_>) -> Result<Self, SceneFileError> {
+        toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            lines.span(start).error(explain(error.message()))
+        })
+    }
+}
+
+impl Default for Document {
+    /// The document of an empty file.
+    fn default() -> Self {
+        Self {
+            style: None,
+            film: default_film(),
+            camera: default_camera(),
+            output: Table::default(),
+            background: None,
+            shading: None,
+            integrator: None,
+            studio: None,
+            path: None,
+            sampling: None,
+            lights: None,
+            sky: None,
+            sun: None,
+            ground: None,
+            materials: BTreeMap::new(),
+            spheres: Vec::new(),
+            data: None,
+            frame: None,
+            radius: None,
+            radius_scale: None,
+            color: None,
+            material: None,
+            opacity: None,
+            elements: BTreeMap::new(),
+            elements_by: None,
+            leave_out: None,
+        }
+    }
 }
 
 fn default_film() -> Spanned<Table<FilmTable>> {

@@ -20,6 +20,7 @@ mod camera_tables;
 mod comparator;
 mod environment;
 mod environment_files;
+mod framing;
 mod generate;
 mod grid_check;
 mod hostile_rays;

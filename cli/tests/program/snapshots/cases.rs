@@ -105,7 +105,7 @@ pub(super) fn arguments() -> Vec<Case> {
          render spheres.npy -o out.png --eye 0,0,5
          render spheres.npy -o out.png --eye 1,2
          render spheres.npy -o out.png --eye 1,1,1 --look-at 1,1,1
-         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0
+         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0 --up 0,1,0
          render spheres.npy -o out.png --eye nan,0,0 --direction 0,0,1
          render spheres.npy -o out.png --camera periscope
          render spheres.npy -o out.png --camera orthographic --fov 30
