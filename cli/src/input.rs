@@ -23,7 +23,8 @@ use pinhole::light::environment::Environment;
 use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::{DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene::sphere::Sphere;
+use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
 use pinhole::style::Style;
 
 /// Everything that a render needs from its input.
@@ -45,6 +46,14 @@ pub(super) struct Input {
     pub(super) files: Vec<PathBuf>,
     /// What the program says about the picture.
     pub(super) report: Report,
+    /// The camera, with its position.
+    pub(super) parameters: CameraParameters,
+    /// The data with its keys and the flags about it; its path is as the program found it.
+    pub(super) data: Option<Data>,
+    /// The spheres of a scene file itself.
+    pub(super) own_spheres: Vec<Sphere>,
+    /// Path of the image of the sky.
+    pub(super) sky_image: Option<PathBuf>,
 }
 
 impl Input {
@@ -200,7 +209,11 @@ impl Source {
         let facing = scene.subject().flat_axis().map(Viewpoint::on_axis);
         let files = vec![path.clone()];
         let facing = Some(facing.unwrap_or(Viewpoint::OBLIQUE));
-        self.input(file, scene, Found { notes, files, sky: None, has_atoms, facing })
+        self.input(
+            file,
+            scene,
+            Found { notes, files, sky: None, sky_image: None, has_atoms, facing },
+        )
     }
 
     /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
@@ -214,13 +227,18 @@ impl Source {
         let sky_file = sky_file.map(|file| self.resolve(file));
         let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.resolve(&data.file));
-        let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
+        let files =
+            [Some(self.path.clone()), data_file, sky_file.clone()].into_iter().flatten().collect();
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
         };
         let scene = scene.with_context(file_name)?;
-        self.input(file, scene, Found { notes, files, sky, has_atoms, facing: None })
+        self.input(
+            file,
+            scene,
+            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None },
+        )
     }
 
     /// Makes the film, the camera and the settings of a scene.
@@ -259,11 +277,47 @@ impl Source {
             has_atoms: found.has_atoms,
             style: file.style(),
             view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
-            camera: placed,
         };
         let encoding = file.encoding;
-        let Found { notes, files, .. } = found;
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files, report })
+        let data = self.data(&file);
+        let own_spheres = file.spheres().collect();
+        let parameters = placed;
+        let Found { notes, files, sky_image, .. } = found;
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            size_from,
+            notes,
+            files,
+            report,
+            parameters,
+            data,
+            own_spheres,
+            sky_image,
+        })
+    }
+
+    /// Returns the data with its keys, over which flags take precedence.
+    fn data(&self, file: &SceneFile) -> Option<Data> {
+        let flags = self.options;
+        let mut data = match self.format {
+            Format::Data(format) => Data {
+                format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
+                ..Data::of_file(self.path.to_string_lossy())
+            },
+            Format::Scene => {
+                let data = file.data()?.clone();
+                Data { file: self.resolve(&data.file).to_string_lossy().into_owned(), ..data }
+            }
+        };
+        data.frame = flags.frame.or(data.frame);
+        data.radius = flags.radius.or(data.radius);
+        data.color = flags.color.or(data.color);
+        Some(data)
     }
 
     /// Reads the image of the sky.
@@ -304,7 +358,8 @@ impl Source {
         let path = self.resolve(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let extension = extension(&path);
-        let Some(format) = data_format(&path) else {
+        let named = data.format.as_deref().and_then(load::Format::of_name);
+        let Some(format) = named.or_else(|| data_format(&path)) else {
             let problem = if extension.as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else {
@@ -343,8 +398,9 @@ impl Source {
 struct Found {
     notes: Vec<String>,
     files: Vec<PathBuf>,
-    /// The image of the sky.
+    /// The image of the sky, and its path.
     sky: Option<Environment>,
+    sky_image: Option<PathBuf>,
     has_atoms: bool,
     /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
     facing: Option<Viewpoint>,

@@ -39,6 +39,7 @@ mod output;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
+mod print_scene;
 mod process;
 mod progress;
 mod render;

@@ -17,6 +17,7 @@ use super::interrupt;
 use super::light::LightFlags;
 use super::memory;
 use super::picture::Outputs;
+use super::print_scene;
 use super::progress;
 use super::speak::tell;
 use super::stop_rule::StopRule;
@@ -75,6 +76,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         }
     };
     threads::start()?;
+    if args.report.print_scene {
+        let input = job.source.load()?;
+        input.notes.iter().for_each(|text| note(text));
+        return Ok(print_scene::print(&input, job.encoding.apply_to(input.encoding))?);
+    }
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use clap::Args;
 
-use pinhole::camera::CameraParameters;
 use pinhole::style::Style;
 
 /// Flags for what the program says.
@@ -29,8 +28,6 @@ pub(super) struct Report {
     pub(super) style: Option<Style>,
     /// The flags for the view, if there are such.
     pub(super) view: Option<String>,
-    /// The camera, with its position.
-    pub(super) camera: CameraParameters,
 }
 
 impl Report {

@@ -8,8 +8,10 @@ use toml::Spanned;
 use super::materials::Materials;
 use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
+use super::words::unknown;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
+use crate::load::FORMATS;
 use crate::scene::material::SurfaceProperties;
 
 /// A reference to a data file, and the keys of the scene file that concern its spheres.
@@ -17,6 +19,8 @@ use crate::scene::material::SurfaceProperties;
 pub struct Data {
     /// Path of the data file, relative to the scene file.
     pub file: String,
+    /// Name of the data's format, if the file's extension does not show it.
+    pub format: Option<String>,
     /// Frame of a trajectory, counted from 0.
     pub frame: Option<usize>,
     /// Radius of all spheres, for data without radii.
@@ -62,6 +66,7 @@ pub(super) struct ElementTable {
 /// The keys at the top of the file that concern its data.
 pub(super) struct DataKeys {
     pub(super) file: Option<Spanned<String>>,
+    pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
@@ -81,6 +86,7 @@ impl DataKeys {
     ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
         let Some(file) = self.file else {
             let orphans = [
+                ("format", range_of(&self.format)),
                 ("frame", range_of(&self.frame)),
                 ("radius", range_of(&self.radius)),
                 ("radius_scale", range_of(&self.radius_scale)),
@@ -114,6 +120,7 @@ impl DataKeys {
             span: lines.span(file.span().start),
             value: Data {
                 file: file.into_inner(),
+                format: self.format.map(|name| format_name(&name, lines)).transpose()?,
                 frame: self.frame.map(Spanned::into_inner),
                 radius: positive("radius", self.radius, lines)?,
                 radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
@@ -124,6 +131,37 @@ impl DataKeys {
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
             },
         }))
+    }
+}
+
+/// Checks that a format has this name.
+fn format_name(name: &Spanned<String>, lines: &Lines<'_>) -> Result<String, SceneFileError> {
+    let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    match known.contains(&name.get_ref().as_str()) {
+        true => Ok(name.get_ref().clone()),
+        false => {
+            let span = lines.span(name.span().start);
+            Err(span.error(unknown("format", name.get_ref(), &known)))
+        }
+    }
+}
+
+impl Data {
+    /// A reference to a data file, without any other key.
+    #[must_use]
+    pub fn of_file(file: impl Into<String>) -> Self {
+        Self {
+            file: file.into(),
+            format: None,
+            frame: None,
+            radius: None,
+            radius_scale: 1.0,
+            color: None,
+            surface: SurfaceProperties::default(),
+            elements: Vec::new(),
+            elements_by: Vec::new(),
+            leave_out: Vec::new(),
+        }
     }
 }
 

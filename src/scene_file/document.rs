@@ -48,6 +48,7 @@ pub(super) struct Document {
     #[serde(default)]
     pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
     pub(super) data: Option<Spanned<String>>,
+    pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
@@ -91,6 +92,7 @@ impl Default for Document {
             materials: BTreeMap::new(),
             spheres: Vec::new(),
             data: None,
+            format: None,
             frame: None,
             radius: None,
             radius_scale: None,

@@ -12,12 +12,14 @@ mod output;
 mod span;
 mod value;
 mod words;
+mod write;
 
 pub use data::{Data, Element};
 pub use data_spheres::{DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
+pub use write::{Contents, write};
 
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
@@ -81,6 +83,7 @@ impl SceneFile {
         let has_lighting = document.material.is_some() || document.opacity.is_some();
         let data = DataKeys {
             file: document.data,
+            format: document.format,
             frame: document.frame,
             radius: document.radius,
             radius_scale: document.radius_scale,
