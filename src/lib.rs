@@ -25,7 +25,7 @@
 //! let loaded = load::open("4hhb.pdb", &load::Options::default())?;
 //! let scene = loaded.scene(LinearRgb::WHITE)?; // white where the file gives no colours
 //! let film = Film::new(800, 600)?;
-//! let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
 //! let headless = Headless::open(&HeadlessOptions::default())?;
 //! let view = View::new(&camera, film);
 //! let image = headless.render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
@@ -61,7 +61,7 @@
 //!
 //! # let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]], LinearRgb::WHITE)?;
 //! # let film = Film::new(16, 12)?;
-//! # let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! # let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
 //! # let view = View::new(&camera, film);
 //! let sampling = Sampling { samples: 4, ..Sampling::default() }; // rays for each pixel
 //! let studio = RenderSettings { sampling: sampling.clone(), ..RenderSettings::studio() };

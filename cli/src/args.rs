@@ -124,6 +124,9 @@ pub(super) struct ViewArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct DemoArgs {
+    /// Width and height of the picture in pixels, such as 800x600 [default: the scene's]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<String>,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
 }

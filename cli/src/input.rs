@@ -1,6 +1,5 @@
 //! Reads the input: from a path to a scene with its camera and settings.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result, anyhow, bail};
@@ -12,8 +11,8 @@ use super::camera::CameraFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
 use super::light::LightFlags;
-use super::memory;
 use super::progress;
+pub(super) use super::read_file::read;
 use super::report::Report;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
@@ -165,6 +164,11 @@ impl Source {
             light: LightFlags::default(),
             style: Style::Fast,
         }
+    }
+
+    /// Returns this source with the size of a picture, such as `800x600`.
+    pub(super) fn with_size(self, size: Option<&str>) -> Result<Self, Failure> {
+        Ok(Self { size: size.map(parse_size).transpose()?, ..self })
     }
 
     /// Makes a source from a file that `bench` measures.
@@ -422,33 +426,4 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
 fn data_format(path: &Path) -> Option<&'static load::Format> {
     let is_scene = extension(path).as_deref() == Some("toml");
     load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
-}
-
-/// Bytes that are read first from a file whose size is not known, such as a pipe.
-const FIRST_PIECE: u64 = 1 << 20;
-
-/// Reads a whole file. A regular file is read into memory of exactly its size.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        bail!("{}: this is a folder; name a file", path.display());
-    }
-    let cannot_read = || format!("{}: cannot be read", path.display());
-    let mut file = std::fs::File::open(path).with_context(cannot_read)?;
-    let size = file.metadata().map_or(0, |metadata| metadata.len());
-    let what = format!("{}: reading {size} bytes needs", path.display());
-    memory::check_reading(&what, size).map_err(Error::msg)?;
-    let mut bytes = Vec::new();
-    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
-        || format!("{}: there is not enough memory for {size} bytes", path.display()),
-    )?;
-    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
-    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
-    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
-        == piece
-    {
-        piece = bytes.len() as u64;
-        let what = format!("{}: reading more than {piece} bytes needs", path.display());
-        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
-    }
-    Ok(bytes)
 }

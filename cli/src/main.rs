@@ -42,6 +42,7 @@ mod plan;
 mod print_scene;
 mod process;
 mod progress;
+mod read_file;
 mod render;
 mod report;
 #[cfg(feature = "gpu")]

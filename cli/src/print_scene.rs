@@ -1,6 +1,6 @@
 //! `pinhole render --print-scene`: writes the scene file that a command means.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 
@@ -17,7 +17,7 @@ pub(super) fn print(input: &Input, encoding: Encoding) -> Result<()> {
         encoding,
         camera: input.parameters,
         settings: &input.settings,
-        sky_image: input.sky_image.as_ref().map(named).transpose()?,
+        sky_image: input.sky_image.as_deref().map(named).transpose()?,
         data: input.data.clone(),
         spheres: input.own_spheres.clone(),
     };
@@ -32,7 +32,7 @@ pub(super) fn print(input: &Input, encoding: Encoding) -> Result<()> {
 }
 
 /// Returns a path as text, which is all that a scene file can name.
-fn named(path: &PathBuf) -> Result<String> {
+fn named(path: &Path) -> Result<String> {
     let text = path.to_str().ok_or_else(|| {
         anyhow!(
             "{}: a scene file cannot name this path, because it is not UTF-8; rename it",

@@ -193,6 +193,7 @@ impl SceneFile {
     }
 
     /// Adds the position of the camera's table to an error.
+    #[must_use]
     pub fn at_camera(&self, error: &CameraError) -> SceneFileError {
         self.camera.span.error(error)
     }

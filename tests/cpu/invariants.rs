@@ -129,7 +129,7 @@ fn readers_and_writers_touch_no_files() {
         "src/lib.rs",
     ];
     assert_absent("src", &["std::fs", "fs::File"], &but);
-    let program = ["input.rs", "output.rs", "demo.rs", "interrupt.rs", "process.rs"];
+    let program = ["read_file.rs", "output.rs", "demo.rs", "interrupt.rs", "process.rs"];
     assert_absent("cli/src", &["std::fs"], &program);
 }
 

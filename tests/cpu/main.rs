@@ -43,6 +43,7 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod scene_file_write;
 mod settings;
 mod soundness;
 mod stereo;

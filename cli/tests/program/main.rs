@@ -12,6 +12,7 @@ mod generate;
 mod good_input;
 mod interrupt;
 mod light;
+mod looks;
 mod pictures;
 #[cfg(feature = "gpu")]
 mod shaders;

@@ -24,7 +24,7 @@ pub(super) fn folder() -> Folder {
         ("trajectory.toml", "data = 'water.xyz'\nframe = 5\n"),
         ("array.toml", "data = 'spheres.npy'\nframe = 2\n"),
         ("bright.toml", "data = 'spheres.npy'\ncolor = [2, 2, 2]\n[studio]\n"),
-        ("three-spheres.toml", "# mine\n"),
+        ("demo.toml", "# mine\n"),
     ]);
     std::fs::create_dir(folder.path("folder.toml")).unwrap();
     let bytes = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
@@ -119,7 +119,7 @@ pub(super) fn arguments() -> Vec<Case> {
          verify
          verify scene.toml --replay run
          verify --replay run --size 8x6
-         demo --backend cpu --size 8x6
+         demo --backend cpu --size 8
          render scene.toml -o out.png --backend tpu
          render scene.toml -o out.png --backend cpu --adapter x
          render scene.toml -o out.png --backend cpu --accel grid
