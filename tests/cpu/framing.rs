@@ -30,13 +30,13 @@ fn cloud(random: &mut fastrand::Rng, count: usize) -> Scene {
 /// with the line to its centre.
 fn silhouettes(camera: &dyn Camera, scene: &Scene) -> [DVec2; 2] {
     let v = camera.vectors();
-    let ahead = v.forward.normalize();
+    let ahead = v.forward / v.forward.length();
     let mut extremes = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     for sphere in scene.spheres() {
         let [x, y, z, r] = sphere.map(f64::from);
         let offset = scene.origin() + DVec3::new(x, y, z) - v.origin;
         let side = |axis: DVec3, sign: f64| {
-            let aside = offset.dot(axis.normalize());
+            let aside = offset.dot(axis) / axis.length();
             if camera.kind() == CameraKind::Orthographic {
                 return (aside + sign * r) / axis.length();
             }
