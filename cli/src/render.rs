@@ -1,5 +1,7 @@
 //! `pinhole render`: renders a scene file or a data file.
 
+use std::ops::ControlFlow;
+
 use anyhow::Context;
 
 use super::args::{RenderArgs, Stereo};
@@ -26,7 +28,7 @@ use super::with_scene::with_structures;
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::camera::View;
-use pinhole::cpu;
+use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
@@ -151,9 +153,19 @@ fn on_cpu(
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
     check_on_cpu(input, stop_rule, views, layers)?;
-    progress::stage("rendering on the CPU reference");
     let Input { scene, settings, .. } = input;
-    let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
+    let bytes = SearchTree::BYTES_PER_SPHERE * scene.len() as u64;
+    let what = format!("a search tree of {} spheres needs", scene.len());
+    memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
+    progress::stage("building the search tree");
+    let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
+    let images = views.try_each(|view| {
+        let watch = |part| {
+            progress::tracing(part);
+            ControlFlow::Continue(())
+        };
+        cpu::render_watched(&tree, view, settings, layers, &watch)
+    });
     Ok(images.context("the CPU reference cannot render this picture")?)
 }
 

@@ -35,6 +35,7 @@ pub(crate) mod wide_node;
 pub(crate) mod wide_tree;
 mod wide_tree_build;
 mod wide_tree_trace;
+pub(crate) mod wide_tree_visit;
 
 pub use brick::{Accel, Brick, Index, Structure};
 pub use grid::ListLayout;

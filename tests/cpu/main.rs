@@ -42,6 +42,7 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod search;
 mod settings;
 mod soundness;
 mod stereo;
