@@ -30,7 +30,7 @@ use pinhole::accel::AccelChoice;
 use pinhole::camera::View;
 use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, RenderPlan};
+use pinhole::gpu::{GpuError, Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
 
 /// A render job, checked as far as is possible before the input is read.
@@ -119,10 +119,10 @@ fn render_views(
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             check_on_cpu(input, stop_rule, views, layers)?;
-            tell(
-                "note: no Vulkan, Metal or DX12 adapter was found; \
-                 rendering on the CPU reference, which is slower; `pinhole info` says what to install",
-            );
+            tell(format_args!(
+                "note: rendering on the CPU reference, which is slower: {}",
+                GpuError::NoAdapter
+            ));
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]

@@ -2,7 +2,7 @@
 //!
 //! Every structure refers to the same spheres, and every traversal calls the same sphere test in f32, so that the
 //! result, distance and id, is that of testing every sphere, to the bit. The kernels in `shaders/` walk the same data
-//! in the same order.
+//! in the same order. One walk of the 8-wide tree is in f64 and calls the tests of the CPU reference (`wide_tree_visit`).
 
 pub(crate) mod binary_tree;
 mod binary_tree_trace;

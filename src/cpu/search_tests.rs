@@ -48,7 +48,7 @@ fn direction(random: &mut Rng) -> DVec3 {
     let axis = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
     match random.u32(0..6) {
         0 => axis[random.usize(0..6)],
-        1 => (axis[random.usize(0..6)] + 1e-9 * axis[random.usize(0..6)]).normalize(),
+        1 => (axis[random.usize(0..3)] + 1e-9 * axis[random.usize(0..6)]).normalize_or(DVec3::X),
         _ => DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X),
     }
 }
@@ -92,6 +92,7 @@ fn the_tree_has_the_answers_of_testing_every_sphere() {
         let scene = scene(&spheres);
         let tree = SearchTree::new(&scene).unwrap();
         assert!(tree.corners.is_some(), "{name}");
+        tree.tree.validate(scene.spheres()).unwrap();
         let searches = [Search::from(&scene), Search::from(&tree)];
         let mut hits = 0;
         for _ in 0..1500 {
@@ -161,7 +162,7 @@ fn lost(part: f64) -> f64 {
 #[test]
 fn without_the_margin_spheres_are_lost() {
     assert!(lost(0.0) > 1e-3, "{}", lost(0.0));
-    assert_eq!(lost(0.25), 0.0);
+    assert!(lost(0.25) <= 0.0, "{}", lost(0.25));
 }
 
 #[test]

@@ -69,11 +69,8 @@ fn paths() {
 }
 
 fn studio(random: &mut Rng, size: f64) -> RenderSettings {
-    let occlusion = Occlusion {
-        radius: random.bool().then(|| size * random.f64()),
-        samples: random.u32(1..4),
-        ..Occlusion::default()
-    };
+    let occlusion =
+        Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
     let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
     let studio = Studio {
         occlusion: random.bool().then_some(occlusion),

@@ -113,7 +113,9 @@ impl<'a> SampledPicture<'a> {
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
         for_each_pixel(&mut image, watch, |pixel, i, row| {
-            row.set(i, &self.data(pixel));
+            if row.has_data() {
+                row.set(i, &self.data(pixel));
+            }
             row.set_averages(i, &self.averages(pixel));
         })?;
         if settings.is_denoised {

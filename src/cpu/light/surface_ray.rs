@@ -1,6 +1,6 @@
 //! Rays that know on which surface they start, so that they need no offset and no smallest distance.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 use super::context::LightingContext;
 use crate::cpu::sphere::intersect;
@@ -135,10 +135,15 @@ pub(super) fn is_occluded(
     ground(context, surface_ray).is_some_and(|t| t < t_max)
         || context.search.any(ray, t_max, |id, sphere| {
             hit_of(ray, start, sphere).is_some_and(|hit| hit.distance < t_max)
-                && exempt != Some(sphere)
+                && !exempt.is_some_and(|own| is_same(own, sphere))
                 && is_there(id, sphere)
                 && hides(id)
         })
+}
+
+/// Whether two spheres have the same centre and radius.
+fn is_same(one: [f32; 4], other: [f32; 4]) -> bool {
+    Vec4::from(one) == Vec4::from(other)
 }
 
 /// The sphere on which a ray starts.
@@ -163,7 +168,7 @@ impl StartSphere {
 
     /// Whether it has the centre and radius of another sphere.
     fn is_same(self, sphere: [f32; 4]) -> bool {
-        matches!(self, Self::Outside(own) | Self::Inside(own) if own == sphere)
+        matches!(self, Self::Outside(own) | Self::Inside(own) if is_same(own, sphere))
     }
 }
 
@@ -183,8 +188,8 @@ fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> 
     let center = DVec3::new(x, y, z);
     let from_center = ray.origin - center;
     match start {
-        StartSphere::Outside(own) if own == sphere => None,
-        StartSphere::Inside(own) if own == sphere => {
+        StartSphere::Outside(own) if is_same(own, sphere) => None,
+        StartSphere::Inside(own) if is_same(own, sphere) => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
             Some(SphereHit { distance, outward, is_outside: false })
