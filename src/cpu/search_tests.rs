@@ -162,7 +162,7 @@ fn lost(part: f64) -> f64 {
 #[test]
 fn without_the_margin_spheres_are_lost() {
     assert!(lost(0.0) > 1e-3, "{}", lost(0.0));
-    assert!(lost(0.25) <= 0.0, "{}", lost(0.25));
+    assert!(lost(1.0 / 64.0) <= 0.0, "{}", lost(1.0 / 64.0));
 }
 
 #[test]
