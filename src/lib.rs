@@ -130,7 +130,11 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
+#[cfg(feature = "annotate")]
+pub mod annotate;
 pub mod camera;
+#[cfg(feature = "color-by")]
+pub mod color_by;
 pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;

@@ -17,6 +17,7 @@ mod arrays;
 mod basis;
 mod camera;
 mod camera_tables;
+mod color_by;
 mod comparator;
 mod environment;
 mod environment_files;

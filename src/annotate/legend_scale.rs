@@ -1,0 +1,170 @@
+//! The bar of a scale, with ticks.
+
+use super::font::{self, HALF_CAPITAL};
+use super::legend::{MISSING, line_width};
+use super::shape::{Block, LINE, Paint, Shape};
+use super::ticks::{Ticks, raised};
+use crate::color_by::ColorScale;
+
+/// A bar that stands, with its high end on top, ticks to its right and the title above.
+pub(super) fn vertical(
+    scale: &ColorScale,
+    title: &str,
+    missing: Option<[u8; 3]>,
+    em: f32,
+    [_, height]: [f32; 2],
+) -> Block {
+    let line = line_width(em);
+    let bar_width = (1.1 * em).round();
+    let bar_height = (0.45 * height).max(7.0 * em).min(0.8 * height).round().max(1.0);
+    let ticks = Ticks::of(scale.scale(), ((bar_height / (2.3 * em)) as usize).clamp(2, 8));
+    let mut block = head(title, ticks.exponent, em);
+    let top = block.height.round() + line;
+    let (left, right) = (line, line + bar_width);
+    let rows = bar_height as usize;
+    // Row 0 is the top.
+    let row_of = |value: f64| {
+        let position = scale.scale().position(value).unwrap_or(0.0);
+        rows - 1 - pixel_of(position, rows)
+    };
+    let mut colors = bar_colors(scale, rows, &ticks);
+    colors.reverse();
+    block.shapes.push(Shape::Rows {
+        left: left as i64,
+        top: top as i64,
+        width: bar_width as i64,
+        colors,
+    });
+    block.frame([left, top, right, top + bar_height], line);
+    block.width = block.width.max(right + line);
+    let tick = |block: &mut Block, value: f64, length: f32| {
+        let middle = top + row_of(value) as f32 + 0.5;
+        let start = (middle - 0.5 * line).round();
+        block.rect([right, start, right + line + length, start + line], Paint::Ink);
+        middle
+    };
+    for value in &ticks.minor {
+        tick(&mut block, *value, (0.22 * em).round());
+    }
+    for (value, text) in &ticks.labeled {
+        let length = (0.38 * em).round();
+        let middle = tick(&mut block, *value, length);
+        let x = right + line + length + 0.35 * em;
+        block.text(text, [x, middle + HALF_CAPITAL * em], em);
+    }
+    block.height = top + bar_height + line;
+    if let Some(color) = missing {
+        let top = (block.height + 0.9 * em).round();
+        let bottom = top + em.round();
+        block.rect([left, top, right, bottom], Paint::Color(color));
+        block.frame([left, top, right, bottom], line);
+        let baseline = 0.5 * (top + bottom) + HALF_CAPITAL * em;
+        block.text(MISSING, [right + line + (0.38 * em).round() + 0.35 * em, baseline], em);
+        block.height = bottom + line;
+    }
+    block
+}
+
+/// A bar that lies, with its high end at the right, ticks below and the title above.
+pub(super) fn horizontal(
+    scale: &ColorScale,
+    title: &str,
+    missing: Option<[u8; 3]>,
+    em: f32,
+    [width, _]: [f32; 2],
+) -> Block {
+    let line = line_width(em);
+    let bar_height = (1.1 * em).round();
+    let bar_width = (0.4 * width).max(12.0 * em).min(0.75 * width).round().max(1.0);
+    // As many ticks as have room for their texts.
+    let fits = |ticks: &Ticks| {
+        let widths = ticks.labeled.iter().map(|(_, text)| font::width(text, em) + em);
+        widths.sum::<f32>() <= bar_width
+    };
+    let choices = (2..=9).rev().map(|most| Ticks::of(scale.scale(), most));
+    let ticks = choices.into_iter().find(fits).unwrap_or_else(|| Ticks::of(scale.scale(), 2));
+    let columns = bar_width as usize;
+    let column_of =
+        |value: f64| pixel_of(scale.scale().position(value).unwrap_or(0.0), columns) as f32;
+    // The first and the last text may reach beyond the bar.
+    let overhang = |(value, text): &(f64, String)| {
+        let half = 0.5 * font::width(text, em);
+        (half - column_of(*value)).max(half - (bar_width - column_of(*value))).max(0.0)
+    };
+    let over = ticks.labeled.iter().map(overhang).fold(line, f32::max).ceil();
+    let mut block = Block::default();
+    let mut title_block = head(title, ticks.exponent, em);
+    for shape in &mut title_block.shapes {
+        if let Shape::Text { text, at, em } = shape {
+            at[0] = over + 0.5 * (bar_width - font::width(text, *em));
+        }
+    }
+    block.shapes.append(&mut title_block.shapes);
+    let top = title_block.height.round() + line;
+    let (left, right, bottom) = (over, over + bar_width, top + bar_height);
+    block.shapes.push(Shape::Columns {
+        left: left as i64,
+        top: top as i64,
+        height: bar_height as i64,
+        colors: bar_colors(scale, columns, &ticks),
+    });
+    block.frame([left, top, right, bottom], line);
+    block.width = right + over;
+    let tick = |block: &mut Block, value: f64, length: f32| {
+        let middle = left + column_of(value) + 0.5;
+        let start = (middle - 0.5 * line).round();
+        block.rect([start, bottom, start + line, bottom + line + length], Paint::Ink);
+        middle
+    };
+    for value in &ticks.minor {
+        tick(&mut block, *value, (0.22 * em).round());
+    }
+    let baseline = bottom + line + (0.38 * em).round() + 1.05 * em;
+    for (value, text) in &ticks.labeled {
+        let middle = tick(&mut block, *value, (0.38 * em).round());
+        block.text(text, [middle - 0.5 * font::width(text, em), baseline], em);
+    }
+    block.height = baseline + 0.1 * em;
+    if let Some(color) = missing {
+        let left = (block.width + 1.2 * em).round();
+        let right = left + (1.1 * em).round();
+        block.rect([left, top, right, bottom], Paint::Color(color));
+        block.frame([left, top, right, bottom], line);
+        let half = 0.5 * font::width(MISSING, em);
+        let start = (0.5 * (left + right) - half).max(block.width + 0.4 * em);
+        block.text(MISSING, [start, baseline], em);
+    }
+    block
+}
+
+/// The title, and the power of ten of the numbers below.
+fn head(title: &str, exponent: i32, em: f32) -> Block {
+    let mut block = Block::default();
+    block.lines(title, em);
+    if exponent != 0 {
+        block.lines(&format!("×10{}", raised(exponent)), em);
+    }
+    if block.height > 0.0 {
+        block.height += 0.25 * LINE * em;
+    }
+    block
+}
+
+/// The pixel of a bar that contains a position, counted from the low end.
+fn pixel_of(position: f64, count: usize) -> usize {
+    ((position * count as f64) as usize).min(count - 1)
+}
+
+/// The colours of a bar from its low end. A pixel has the colour of its middle; one with a tick has exactly the colour
+/// of the tick's number.
+fn bar_colors(scale: &ColorScale, count: usize, ticks: &Ticks) -> Vec<[u8; 3]> {
+    let middle = |pixel: usize| (pixel as f64 + 0.5) / count as f64;
+    let mut colors: Vec<[u8; 3]> = (0..count).map(|pixel| scale.color_at(middle(pixel))).collect();
+    for value in ticks.labeled.iter().map(|(value, _)| value).chain(&ticks.minor) {
+        if let (Some(position), Some(color)) = (scale.scale().position(*value), scale.color(*value))
+        {
+            colors[pixel_of(position, count)] = color;
+        }
+    }
+    colors
+}
