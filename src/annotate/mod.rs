@@ -22,6 +22,7 @@ mod legend;
 mod legend_categories;
 mod legend_scale;
 mod place;
+mod plan;
 mod position;
 mod scale_bar;
 mod shape;
@@ -31,6 +32,7 @@ pub use canvas::Canvas;
 pub use font::missing_characters;
 pub use label::Label;
 pub use legend::Legend;
+pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
 pub use position::{Anchor, Position, PositionError};
 pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 

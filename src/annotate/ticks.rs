@@ -62,15 +62,14 @@ fn linear([low, high]: [f64; 2], most: usize) -> Ticks {
     let largest = low.abs().max(high.abs());
     let is_plain = (1e-3..1e5).contains(&largest) || largest / step > 1e5;
     let exponent = if is_plain { 0 } else { exponent_of(largest) };
-    // Steps of 2.5 have one decimal more than their exponent says.
-    let decimals = |digits: i32| (digits - exponent_of(step)).clamp(0, 12) as usize;
-    let is_quarter = (step / 10_f64.powi(exponent_of(step)) - 2.5).abs() < 1e-6;
-    let decimals = decimals(exponent + i32::from(is_quarter));
-    let text = |value: f64| {
-        // In two steps, because a power below the smallest normal number loses digits.
-        let scaled = value / 10_f64.powi(exponent / 2) / 10_f64.powi(exponent - exponent / 2);
-        minus(&format!("{scaled:.decimals$}"))
-    };
+    // In two steps, because a power below the smallest normal number loses digits.
+    let scaled =
+        |value: f64| value / 10_f64.powi(exponent / 2) / 10_f64.powi(exponent - exponent / 2);
+    // The fewest that write the step.
+    let is_whole = |value: f64| (value - value.round()).abs() < 1e-6 * value;
+    let decimals = (0..=12).find(|digits| is_whole(scaled(step) * 10_f64.powi(*digits)));
+    let decimals = decimals.unwrap_or(3) as usize;
+    let text = |value: f64| minus(&format!("{:.decimals$}", scaled(value)));
     Ticks {
         labeled: values.iter().map(|value| (*value, text(*value))).collect(),
         minor: Vec::new(),

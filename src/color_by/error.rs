@@ -3,6 +3,7 @@
 use super::column::ColumnError;
 use super::number::short;
 use super::scale::ScaleError;
+use crate::scene::SceneError;
 
 /// Why a column does not give colours, radii, opacities or strengths of light.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -53,6 +54,9 @@ pub enum ColorByError {
         /// The value times the factor.
         value: f64,
     },
+    /// A sphere is out of range.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// A factor is not a positive number.
     #[error("the factor of `{column}` is {}; it must be finite and greater than 0", short(*.value))]
     Factor {

@@ -7,10 +7,10 @@ use super::error::ColorByError;
 use super::surface::{EmissionBy, Strengths, check_factor, opacities, strengths};
 use super::{ColorBy, ColorKey, Coloring, is_kept};
 use crate::image::color::LinearRgb;
-use crate::load::Column;
+use crate::load::{Column, Loaded};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Appearance, Colors};
+use crate::scene::{Appearance, Colors, Scene};
 
 /// What columns decide of spheres: colour, radius, opacity, strength of light, each if it is given.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,6 +96,28 @@ impl Mapping {
     }
 }
 
+impl Mapping {
+    /// Makes a scene of a file's spheres, and returns what its columns gave beside it. Spheres that neither a column nor
+    /// the file gives a colour have `color`.
+    ///
+    /// # Errors
+    /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
+    pub fn scene(
+        &self,
+        mut loaded: Loaded,
+        color: LinearRgb,
+    ) -> Result<(Scene, Mapped), ColorByError> {
+        let mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
+        let base = match loaded.colors {
+            Some(colors) if mapped.coloring.is_none() => Colors::distinct(&colors),
+            _ => Colors::One(color),
+        };
+        let count = loaded.spheres.len();
+        let appearance = mapped.appearance(count, base, SurfaceProperties::default());
+        Ok((Scene::from_parts(loaded.spheres, appearance)?, mapped))
+    }
+}
+
 fn set_radii(
     spheres: &mut SphereArray,
     column: &str,
@@ -170,7 +192,7 @@ impl Mapped {
 
     /// The appearance of `count` spheres that would have the colours and surface properties given here.
     #[must_use]
-    pub fn appearance(self, count: usize, colors: Colors, base: SurfaceProperties) -> Appearance {
+    pub fn appearance(&self, count: usize, colors: Colors, base: SurfaceProperties) -> Appearance {
         let mut surfaces = Vec::new();
         let mut indices = Vec::new();
         if self.opacities.is_some() || self.strengths.is_some() {
@@ -186,7 +208,7 @@ impl Mapped {
                 })
                 .collect();
         }
-        let colors = self.coloring.map_or(colors, Coloring::into_colors);
+        let colors = self.coloring.as_ref().map_or(colors, Coloring::to_colors);
         let appearance = Appearance::new(colors);
         match surfaces.is_empty() {
             true => appearance.with_surface(base),

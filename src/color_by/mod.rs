@@ -123,8 +123,8 @@ impl Coloring {
 
     /// The colours for a scene, 4 bytes for each sphere.
     #[must_use]
-    pub fn into_colors(self) -> Colors {
-        Colors::Palette { palette: self.palette, indices: self.indices }
+    pub fn to_colors(&self) -> Colors {
+        Colors::Palette { palette: self.palette.clone(), indices: self.indices.clone() }
     }
 }
 

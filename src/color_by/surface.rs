@@ -56,7 +56,8 @@ pub(super) fn strengths(
     notes: &mut Vec<String>,
 ) -> Result<Strengths, ColorByError> {
     check_factor(column, by.factor)?;
-    let strength = |value: &f64| (value * by.factor).min(STRONGEST);
+    // NaN is dark.
+    let strength = |value: &f64| (value * by.factor).max(0.0).min(STRONGEST);
     let ends = values
         .iter()
         .map(strength)

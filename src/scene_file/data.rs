@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::mapping::MappingKeys;
 use super::materials::Materials;
 use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
+use crate::color_by::Mapping;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::scene::material::SurfaceProperties;
@@ -38,6 +40,8 @@ pub struct Data {
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
+    /// What columns decide: colours, radii, opacities, strengths of light.
+    pub mapping: Mapping,
 }
 
 /// Appearance of the atoms of one species. It replaces what the data or the table of chemical elements gives.
@@ -77,6 +81,7 @@ pub(super) struct DataKeys {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) mapping: MappingKeys,
 }
 
 impl DataKeys {
@@ -99,7 +104,8 @@ impl DataKeys {
                 ("elements_by", range_of(&self.elements_by)),
                 ("leave_out", range_of(&self.leave_out)),
             ];
-            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            let mut orphans = orphans.into_iter().chain(self.mapping.spans());
+            let orphan = orphans.find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
                 Some((key, start)) => Err(lines.span(start).error(format!(
                     "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
@@ -132,6 +138,7 @@ impl DataKeys {
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
+                mapping: self.mapping.read(lines)?,
             },
         }))
     }

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::data::ElementTable;
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
+use super::mapping::{ByColumn, ColorTable, ColumnTable};
 use super::materials::{MaterialTable, Materials};
 use super::output::OutputTable;
 use super::span::{Lines, Number, SceneFileError, WithSpan};
@@ -58,6 +60,15 @@ pub(super) struct Document {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) color_by: Option<Spanned<ByColumn<ColorTable>>>,
+    pub(super) radius_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) opacity_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) emission_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) legend: Option<Table<LegendTable>>,
+    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
+    #[serde(default)]
+    pub(super) labels: Vec<Table<LabelTable>>,
+    pub(super) text: Option<Table<TextTable>>,
 }
 
 fn default_film() -> Spanned<Table<FilmTable>> {

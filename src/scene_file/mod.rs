@@ -3,10 +3,12 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
+mod annotations;
 mod data;
 mod data_spheres;
 mod document;
 mod lighting;
+mod mapping;
 mod materials;
 mod output;
 mod span;
@@ -19,22 +21,26 @@ pub use lighting::IntegratorKind;
 pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
 
+use annotations::AnnotationTables;
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
+use mapping::MappingKeys;
 use materials::Materials;
 use span::{Lines, Span, WithSpan};
 use toml::Spanned;
 use words::explain;
 
+use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraParameters};
+use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::render::Shading;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Colors, Scene, SceneError};
 
 /// The contents of a scene file.
 #[derive(Debug)]
@@ -43,6 +49,8 @@ pub struct SceneFile {
     pub film: Film,
     /// How the picture is encoded: exposure, tone curve, transparency and bits.
     pub encoding: Encoding,
+    /// What is drawn over the picture.
+    pub annotations: AnnotationPlan,
     background: LinearRgb,
     /// Shading of pictures by primary rays.
     shading: Shading,
@@ -64,7 +72,20 @@ impl SceneFile {
             lines.span(start).error(explain(error.message()))
         })?;
         let materials = Materials::new(document.materials, &lines)?;
-        let has_lighting = document.material.is_some() || document.opacity.is_some();
+        let mapping = MappingKeys {
+            color: document.color_by,
+            radius: document.radius_by,
+            opacity: document.opacity_by,
+            emission: document.emission_by,
+        };
+        let has_lighting =
+            document.material.is_some() || document.opacity.is_some() || mapping.need_light();
+        let annotations = AnnotationTables {
+            legend: document.legend,
+            scale_bar: document.scale_bar,
+            labels: document.labels,
+            text: document.text,
+        };
         let data = DataKeys {
             file: document.data,
             frame: document.frame,
@@ -78,6 +99,7 @@ impl SceneFile {
             elements: document.elements,
             elements_by: document.elements_by,
             leave_out: document.leave_out,
+            mapping,
         }
         .read(&materials, &lines)?;
         let spheres = document.spheres.into_iter();
@@ -102,6 +124,7 @@ impl SceneFile {
             background: document.background.map_or(LinearRgb::WHITE, |color| color.0),
             shading: document.shading.map(Spanned::into_inner).unwrap_or_default(),
             encoding: document.output.0.encoding(&lines)?,
+            annotations: annotations.read(&lines)?,
             lighting,
             data,
             camera: lines.spanned(document.camera),
@@ -136,6 +159,30 @@ impl SceneFile {
         }
         let colored = data.with_color(color).map(|sphere| Sphere { surface, ..sphere });
         self.scene(&colored.collect::<Vec<_>>())
+    }
+
+    /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
+    pub fn scene_with_mapped(
+        &self,
+        data: SphereArray,
+        mapped: &Mapped,
+        color: LinearRgb,
+    ) -> Result<Scene, SceneFileError> {
+        let surface = self.data().map(|data| data.surface).unwrap_or_default();
+        if self.spheres.is_empty() {
+            let appearance = mapped.appearance(data.len(), Colors::One(color), surface);
+            return Scene::from_parts(data, appearance).map_err(|error| self.spanned(&error));
+        }
+        let of_data = |(index, sphere): (usize, Sphere)| Sphere {
+            color: mapped.color(index).unwrap_or(color),
+            surface: mapped.surface(surface, index),
+            ..sphere
+        };
+        let spheres: Vec<Sphere> = data.with_color(color).enumerate().map(of_data).collect();
+        self.scene(&spheres)
     }
 
     /// Adds a position in the file to an error.
