@@ -8,20 +8,23 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
+use super::color_flags::ColorFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
 use super::light::{self, LightFlags};
 use super::memory;
 use super::progress;
+use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraError, CameraParameters, View};
+use pinhole::color_by::{ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
 use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{self, DEFAULT_COLOR, DataSpheres, IntegratorKind, SceneFile};
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -34,6 +37,10 @@ pub(super) struct Input {
     /// The settings for rendering.
     pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
+    /// What colors mean, if a column of the data gives them.
+    pub(super) color_key: Option<ColorKey>,
+    /// What the scene file draws over the picture.
+    pub(super) annotations: AnnotationPlan,
     /// Where the size of the picture comes from, for messages: a flag or a file.
     pub(super) size_from: String,
     /// Notes for the user that are not errors.
@@ -108,6 +115,7 @@ pub(super) struct Source {
     options: DataOptions,
     camera: Option<CameraParameters>,
     light: LightFlags,
+    color: ColorFlags,
 }
 
 impl Source {
@@ -134,12 +142,18 @@ impl Source {
             options,
             camera: args.camera.parameters()?,
             light: LightFlags::default(),
+            color: ColorFlags::default(),
         })
     }
 
     /// Returns this source with light flags.
     pub(super) fn with_light(self, light: LightFlags) -> Self {
         Self { light, ..self }
+    }
+
+    /// Returns this source with flags for colors from data.
+    pub(super) fn with_color(self, color: ColorFlags) -> Self {
+        Self { color, ..self }
     }
 
     /// Makes a source from a scene file without flags.
@@ -152,6 +166,7 @@ impl Source {
             options,
             camera: None,
             light: LightFlags::default(),
+            color: ColorFlags::default(),
         }
     }
 
@@ -185,8 +200,11 @@ impl Source {
         let mut notes = std::mem::take(&mut loaded.notes);
         let file_name = || path.display().to_string();
         let (film, size_from) = self.film(Film::default())?;
-        let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
-        let scene = scene.with_context(file_name)?;
+        let mapping = self.color.apply_to(&Mapping::default())?;
+        let color = self.options.color.unwrap_or_else(default_color);
+        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
+        notes.extend_from_slice(mapped.notes());
+        let (color_key, annotations) = (mapped.key().cloned(), AnnotationPlan::default());
         if scene.is_empty() {
             notes.push(format!(
                 "{}: the file has no spheres, so the picture shows only the background",
@@ -195,10 +213,23 @@ impl Source {
         }
         let parameters = self.camera.unwrap_or_default();
         let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
-        let settings = self.light.apply_to(light::plain(self.light.integrator(None)))?;
+        let kind = self.light.integrator(self.color.integrator());
+        let settings = self.light.apply_to(light::plain(kind))?;
         let encoding = Encoding::default();
         let files = vec![path.clone()];
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            color_key,
+            annotations,
+            size_from,
+            notes,
+            files,
+        })
     }
 
     /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
@@ -206,8 +237,8 @@ impl Source {
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
         let file = SceneFile::parse(text).with_context(file_name)?;
-        let (data, color, notes) = self.data_of(&file)?;
-        let kind = self.light.integrator(file.integrator());
+        let (data, color_key, color, notes) = self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_file = sky_file.map(|file| self.resolve(file));
         let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
@@ -217,6 +248,7 @@ impl Source {
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
+            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
         };
         let scene = scene.with_context(file_name)?;
         let (camera, eyes) = match &self.camera {
@@ -229,8 +261,20 @@ impl Source {
         let settings =
             file.settings(kind, &scene, camera.as_ref(), image).with_context(file_name)?;
         let settings = self.light.apply_to(settings)?;
-        let encoding = file.encoding;
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        let (encoding, annotations) = (file.encoding, file.annotations);
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            color_key,
+            annotations,
+            size_from,
+            notes,
+            files,
+        })
     }
 
     /// Reads the image of the sky.
@@ -247,8 +291,9 @@ impl Source {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
-    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, and notes.
-    fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
+    /// Reads the data of a scene file. Returns its spheres, what their colors mean, the color for spheres without
+    /// colors, and notes.
+    fn data_of(&self, file: &SceneFile) -> Result<Data, Failure> {
         let flags = self.options.clone();
         let Some(data) = file.data() else {
             let given = [
@@ -258,12 +303,13 @@ impl Source {
                 ("--topology", flags.topology.is_some()),
                 ("--columns", !flags.columns.is_empty()),
             ];
-            return match given.into_iter().find(|(_, is_given)| *is_given) {
-                Some((flag, _)) => Err(Failure::usage(format!(
+            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
+            return match given.or(self.color.given()) {
+                Some(flag) => Err(Failure::usage(format!(
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
+                None => Ok((DataSpheres::Spheres(Vec::new()), None, default_color(), Vec::new())),
             };
         };
         let path = self.resolve(&data.file);
@@ -293,9 +339,10 @@ impl Source {
         let options = flags.or(keys);
         let loaded =
             data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
-        let data = Data { color: options.color, ..data.clone() };
-        let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
-        Ok((spheres, options.color.unwrap_or_else(default_color), notes))
+        let mapping = self.color.apply_to(&data.mapping)?;
+        let data = scene_file::Data { mapping, color: options.color, ..data.clone() };
+        let (spheres, key, notes) = data.apply(loaded).with_context(in_scene)?;
+        Ok((spheres, key, options.color.unwrap_or_else(default_color), notes))
     }
 
     /// Returns the film, and where its size comes from.
@@ -309,6 +356,9 @@ impl Source {
         Ok((film, "--size".to_owned()))
     }
 }
+
+/// The spheres of data, what their colors mean, the color of spheres without one, and notes.
+type Data = (DataSpheres, Option<ColorKey>, LinearRgb, Vec<String>);
 
 /// The camera, and its eyes if it has two.
 type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);

@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 
 use anyhow::Context;
 
+use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
+use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
@@ -38,6 +40,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
+    annotation: AnnotationFlags,
     stop_rule: StopRule,
     device: Device,
     stereo: Option<Stereo>,
@@ -49,9 +52,12 @@ impl Job {
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         Ok(Self {
-            source: Source::new(&args.input)?.with_light(light),
+            source: Source::new(&args.input)?
+                .with_light(light)
+                .with_color(ColorFlags::new(&args.color)?),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            annotation: AnnotationFlags::new(&args.annotation, outputs.format())?,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
@@ -76,7 +82,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     for note in input.settings.notes(&input.scene) {
         tell(format_args!("note: {note}"));
     }
-    let layers = job.outputs.layers(&encoding);
+    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input)?);
+    let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
         return Err(Failure::usage(
@@ -85,7 +92,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let adapter = opened.adapter();
     if job.stereo == Some(Stereo::TwoFiles) {
-        let outputs = job.outputs.of_eyes()?;
+        let outputs = outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
         let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
         return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
@@ -95,7 +102,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         Views::Two([left, right]) => Image::side_by_side([&left, &right])
             .context("the pictures of both eyes cannot be joined")?,
     };
-    Ok(job.outputs.write(&image, &encoding, adapter, None)?)
+    Ok(outputs.write(&image, &encoding, adapter, None)?)
 }
 
 /// Renders the view of the camera, or of the middle between two eyes.
