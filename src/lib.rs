@@ -6,6 +6,7 @@
 //! | render a file of atoms or points | [`load::open`], [below](#render-a-file) |
 //! | render arrays that I have in memory | [`Scene::from_f32`], [below](#render-from-arrays) |
 //! | have light, shadows and soft edges | [`RenderSettings::studio`], [`RenderSettings::path`], [below](#light-it) |
+//! | color spheres by numbers, with a legend | `color_by::ColorBy`, `annotate::Annotations` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
 //! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchTree`], not so slowly |
@@ -110,7 +111,7 @@
 //! # Features
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, array readers and the CPU
 //! reference on all cores. `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
-//! writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
+//! writers. `color-by` turns columns into colours, and `annotate` draws legends, scale bars and labels. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
 //! # Stability
@@ -179,4 +180,7 @@ mod pages {
     #[cfg(feature = "gpu")]
     #[doc = include_str!("../docs/verify.md")]
     struct Verify;
+    #[cfg(all(feature = "annotate", feature = "pdb", feature = "png"))]
+    #[doc = include_str!("../docs/color.md")]
+    struct Color;
 }

@@ -10,6 +10,7 @@ use pinhole::LinearRgb;
 use pinhole::annotate::{
     AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
 };
+use pinhole::image::encoding::Encoding;
 
 const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
 
@@ -52,13 +53,18 @@ pub(super) struct AnnotationArgs {
     /// Whether a translucent panel lies behind annotations [default: auto]
     #[arg(long, help_heading = HEADING, value_enum)]
     panel: Option<PanelArg>,
+    /// Pixels per inch at which a PNG is to be printed; changes no pixel [default: the scene's, or none]
+    #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
+    dpi: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum PanelArg {
     /// Where the picture behind is mixed
     Auto,
+    /// Everywhere
     Always,
+    /// Nowhere
     Never,
 }
 
@@ -76,11 +82,18 @@ impl From<PanelArg> for Panel {
 #[derive(Clone, Debug, Default)]
 pub(super) struct AnnotationFlags {
     plan: AnnotationPlan,
+    dots_per_inch: Option<f32>,
     format: Option<PictureFormat>,
+    /// Whether a flag names the column, so that the title in a scene file is that of another one.
+    has_new_column: bool,
 }
 
 impl AnnotationFlags {
-    pub(super) fn new(args: &AnnotationArgs, format: PictureFormat) -> Result<Self, Failure> {
+    pub(super) fn new(
+        args: &AnnotationArgs,
+        format: PictureFormat,
+        has_new_column: bool,
+    ) -> Result<Self, Failure> {
         let refused = |flag: &str, error: &dyn std::fmt::Display| {
             Failure::usage(format!("--{flag}: {error}"))
         };
@@ -116,12 +129,27 @@ impl AnnotationFlags {
                  remove them or give -o a name that ends with .png",
             ));
         }
-        Ok(Self { plan, format: Some(format) })
+        let checked = Encoding::default().with_dots_per_inch(args.dpi);
+        checked.map_err(|error| refused("dpi", &error))?;
+        if format == PictureFormat::Exr && args.dpi.is_some() {
+            return Err(Failure::usage("--dpi applies only to PNG; remove --dpi"));
+        }
+        Ok(Self { plan, dots_per_inch: args.dpi, format: Some(format), has_new_column })
+    }
+
+    /// Applies the flags to the encoding of a scene. Flags take precedence.
+    pub(super) fn apply_to(&self, scene: Encoding) -> Encoding {
+        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
+        // Both were checked, so this does not fail.
+        scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
     }
 
     /// The annotations of a picture. Notes are told to the user.
     pub(super) fn for_input(&self, input: &Input) -> Result<Annotations, Failure> {
-        let (file, flags) = (input.annotations.clone(), self.plan.clone());
+        let (mut file, flags) = (input.annotations.clone(), self.plan.clone());
+        if let Some(legend) = file.legend.as_mut().filter(|_| self.has_new_column) {
+            legend.title = None;
+        }
         let legend = match (flags.legend, file.legend) {
             (Some(flag), Some(key)) => Some(LegendPlan {
                 title: flag.title.or(key.title),

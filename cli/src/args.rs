@@ -4,9 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::annotation::AnnotationArgs;
 use super::camera::CameraArgs;
-use super::color_flags::ColorArgs;
 use super::data::format_parser;
 use super::generate::GenerateArgs;
 use super::light::LightArgs;
@@ -57,9 +55,7 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]
-    pub(super) color: ColorArgs,
-    #[command(flatten)]
-    pub(super) annotation: AnnotationArgs,
+    pub(super) color: super::color_flags::ColorArgs,
     #[command(flatten)]
     pub(super) light: LightArgs,
     #[command(flatten)]
@@ -103,9 +99,6 @@ pub(super) struct EncodingArgs {
     /// Exposure of a PNG in stops from -32 to 32; each stop doubles the brightness [default: the scene's, or 0]
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub(super) exposure: Option<f32>,
-    /// Pixels per inch at which a PNG is to be printed; changes no pixel [default: the scene's, or none]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(super) dpi: Option<f32>,
     /// Tone curve of a PNG, which brings light that is brighter than white into range [default: the scene's, or none]
     #[arg(long, value_enum)]
     pub(super) tone: Option<Tone>,

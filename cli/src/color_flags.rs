@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::annotation::AnnotationArgs;
 use super::failure::Failure;
 use pinhole::LinearRgb;
 use pinhole::color_by::{ColorBy, EmissionBy, Limits, MapName, Mapping, RadiusBy};
@@ -9,7 +10,7 @@ use pinhole::scene_file::IntegratorKind;
 
 const HEADING: &str = "Colors, radii and opacities from data";
 
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Args)]
 pub(super) struct ColorArgs {
     /// Color the spheres by a column of the data: its name, or index, radius, x, y or z, or "|v|" for the length of a
     /// vector with the columns v.x, v.y and v.z
@@ -41,6 +42,8 @@ pub(super) struct ColorArgs {
     /// Let spheres emit light of the strength that a column of the data has, which may be followed by a factor
     #[arg(long, help_heading = HEADING, value_name = "COLUMN[*F]")]
     emission_by: Option<String>,
+    #[command(flatten)]
+    pub(super) annotation: AnnotationArgs,
 }
 
 /// The flags that were given, checked.
@@ -94,6 +97,11 @@ impl ColorFlags {
             ("--emission-by", self.mapping.emission.is_some()),
         ];
         given.into_iter().chain(self.for_map()).find(|(_, is_given)| *is_given).map(|(f, _)| f)
+    }
+
+    /// Whether a flag names the column that colors the spheres.
+    pub(super) fn names_column(&self) -> bool {
+        self.mapping.color.is_some()
     }
 
     /// The flags that say how a column becomes colors.

@@ -13,17 +13,15 @@ pub(super) struct EncodingFlags {
     transparent: Option<bool>,
     exposure: Option<f32>,
     tone: Option<ToneCurve>,
-    dots_per_inch: Option<f32>,
 }
 
 impl EncodingFlags {
     pub(super) fn new(args: &EncodingArgs, format: PictureFormat) -> Result<Self, Failure> {
-        let EncodingArgs { bits, transparent, exposure, dpi, tone } = *args;
+        let EncodingArgs { bits, transparent, exposure, tone } = *args;
         let given = [
             ("--bits", bits.is_some()),
             ("--exposure", exposure.is_some()),
             ("--tone", tone.is_some()),
-            ("--dpi", dpi.is_some()),
         ];
         let given = given.into_iter().find(|(_, is_given)| *is_given);
         if let (PictureFormat::Exr, Some((flag, _))) = (format, given) {
@@ -35,15 +33,12 @@ impl EncodingFlags {
             let checked = Encoding::default().with_exposure(stops);
             checked.map_err(|error| Failure::usage(format!("--exposure: {error}")))?;
         }
-        let checked = Encoding::default().with_dots_per_inch(dpi);
-        checked.map_err(|error| Failure::usage(format!("--dpi: {error}")))?;
         let bits = bits.map(Bits::new).transpose();
         Ok(Self {
             bits: bits.map_err(|error| Failure::usage(format!("--bits: {error}")))?,
             transparent,
             exposure,
             tone: tone.map(Tone::into),
-            dots_per_inch: dpi,
         })
     }
 
@@ -53,8 +48,6 @@ impl EncodingFlags {
             .with_bits(self.bits.unwrap_or(scene.bits()))
             .with_transparent(self.transparent.unwrap_or(scene.transparent()))
             .with_tone(self.tone.unwrap_or(scene.tone()));
-        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
-        let encoding = encoding.with_dots_per_inch(dots_per_inch).unwrap_or(encoding);
         // Both exposures were checked, so this does not fail.
         encoding.with_exposure(self.exposure.unwrap_or(scene.exposure())).unwrap_or(encoding)
     }

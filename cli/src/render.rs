@@ -51,13 +51,14 @@ impl Job {
         let outputs = Outputs::new(&args.output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
+        let color = ColorFlags::new(&args.color)?;
+        let annotation =
+            AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
         Ok(Self {
-            source: Source::new(&args.input)?
-                .with_light(light)
-                .with_color(ColorFlags::new(&args.color)?),
+            source: Source::new(&args.input)?.with_light(light).with_color(color),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
-            annotation: AnnotationFlags::new(&args.annotation, outputs.format())?,
+            annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
@@ -74,7 +75,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
-    let encoding = job.encoding.apply_to(input.encoding);
+    let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
         job.stop_rule.check_without_light()?;

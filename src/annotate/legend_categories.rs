@@ -71,9 +71,10 @@ pub(super) fn categories(
 ) -> Block {
     let mut block = head(title, em);
     let rows = ((0.8 * height - block.height) / (ROW * em)).max(2.0) as usize;
-    let names = || list.iter().map(|category| category.name.as_str());
-    let widest = names().take(rows * MOST_COLUMNS).map(|name| font::width(name, em));
-    let column = widest.fold(font::width(MISSING, em), f32::max) + (INDENT + 1.0) * em;
+    let names = list.iter().map(|category| category.name.as_str()).take(rows * MOST_COLUMNS);
+    let names = names.chain(missing.map(|_| MISSING));
+    let widest = names.map(|name| font::width(name, em)).fold(0.0, f32::max);
+    let column = widest + (INDENT + 1.2) * em;
     let columns = ((0.5 * width / column) as usize).clamp(1, MOST_COLUMNS);
     let (shown, _) = shown(list, missing, rows * columns);
     let columns = shown.len().div_ceil(rows);

@@ -168,3 +168,83 @@ fn bar_colors(scale: &ColorScale, count: usize, ticks: &Ticks) -> Vec<[u8; 3]> {
     }
     colors
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::annotate::Canvas;
+    use crate::color_by::{MapName, Scale};
+    use crate::image::encoding::Bits;
+
+    const SIZE: [u32; 2] = [700, 500];
+
+    fn scales() -> Vec<ColorScale> {
+        let ranges = [([-3.0, 17.5], false), ([0.0, 1.0], false), ([0.02, 400.0], true)];
+        let maps = ["viridis", "vik_r", "okabe-ito"].map(|map| map.parse::<MapName>().unwrap());
+        let of = |(range, is_log), map: &MapName| {
+            ColorScale::new(Scale::new(range, is_log).unwrap(), map.colors())
+        };
+        ranges.into_iter().flat_map(|range| maps.iter().map(move |map| of(range, map))).collect()
+    }
+
+    /// Draws a block on white with its corner at (20, 10), and returns a function that gives its pixels.
+    fn drawn(block: &Block) -> impl Fn(i64, i64) -> [u8; 3] {
+        let mut samples = vec![255; (3 * SIZE[0] * SIZE[1]) as usize];
+        let mut canvas = Canvas::new(SIZE, 3, Bits::Eight, &mut samples).unwrap();
+        block.draw([20, 10], [0; 3], &mut canvas);
+        move |x, y| {
+            let start = 3 * ((y + 10) * i64::from(SIZE[0]) + x + 20) as usize;
+            [samples[start], samples[start + 1], samples[start + 2]]
+        }
+    }
+
+    /// At every tick, the pixels of the bar have exactly the colour that the map gives for the tick's number, and the
+    /// tick is drawn beside them.
+    #[test]
+    fn at_each_tick_the_bar_has_the_color_of_its_number() {
+        let em = 14.0;
+        for scale in scales() {
+            let block = vertical(&scale, "title", Some([9; 3]), em, SIZE.map(|side| side as f32));
+            let pixel = drawn(&block);
+            let bar = block.shapes.iter().find_map(|shape| match shape {
+                Shape::Rows { left, top, width, colors } => Some((*left, *top, *width, colors)),
+                _ => None,
+            });
+            let (left, top, width, colors) = bar.unwrap();
+            let rows = colors.len();
+            assert!((200..400).contains(&rows));
+            let ticks = Ticks::of(scale.scale(), (rows as f32 / (2.3 * em)) as usize);
+            assert!(ticks.labeled.len() >= 3, "{ticks:?}");
+            for (value, _) in &ticks.labeled {
+                let position = scale.scale().position(*value).unwrap();
+                let row = top + (rows - 1 - pixel_of(position, rows)) as i64;
+                let color = scale.color(*value).unwrap();
+                assert_eq!(pixel(left, row), color, "{value}");
+                assert_eq!(pixel(left + width - 1, row), color, "{value}");
+                assert_eq!(pixel(left + width + 2, row), [0; 3], "no tick at {value}");
+            }
+            assert_eq!(pixel(left, top), scale.color_at(1.0));
+            assert_eq!(pixel(left, top + rows as i64 - 1), scale.color_at(0.0));
+        }
+    }
+
+    #[test]
+    fn a_bar_that_lies_has_the_colors_too() {
+        for scale in scales() {
+            let block = horizontal(&scale, "", None, 14.0, SIZE.map(|side| side as f32));
+            let pixel = drawn(&block);
+            let bar = block.shapes.iter().find_map(|shape| match shape {
+                Shape::Columns { left, top, colors, .. } => Some((*left, *top, colors)),
+                _ => None,
+            });
+            let (left, top, colors) = bar.unwrap();
+            let columns = colors.len();
+            assert_eq!(pixel(left, top), scale.color_at(0.0));
+            assert_eq!(pixel(left + columns as i64 - 1, top), scale.color_at(1.0));
+            let middle = scale.scale().value_at(0.5);
+            let near = pixel(left + columns as i64 / 2, top);
+            assert!(near == scale.color(middle).unwrap() || columns % 2 == 0);
+            assert!(block.width <= SIZE[0] as f32, "{}", block.width);
+        }
+    }
+}

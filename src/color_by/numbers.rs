@@ -69,8 +69,9 @@ impl ColorBy {
             let outside = kept().filter(|v| is_shown(*v, self.is_log) && (*v < low || *v > high));
             let outside = outside.count();
             if outside > 0 {
+                let spheres = if outside == 1 { "sphere" } else { "spheres" };
                 notes.push(format!(
-                    "{outside} values of `{column}` lie outside the range {} to {}; they have the colors of its ends",
+                    "`{column}` of {outside} {spheres} lies outside the range {} to {} and has the color of its end",
                     short(low),
                     short(high)
                 ));

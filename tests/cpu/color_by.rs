@@ -61,7 +61,7 @@ fn numbers_have_the_color_of_their_place_in_the_range() {
     assert_eq!(found, [0, 51, 255]);
     assert_eq!(
         notes,
-        ["2 values of `t` lie outside the range 0 to 1; they have the colors of its ends"]
+        ["`t` of 2 spheres lies outside the range 0 to 1 and has the color of its end"]
     );
 }
 

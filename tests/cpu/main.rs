@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
