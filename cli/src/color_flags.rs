@@ -16,7 +16,7 @@ pub(super) struct ColorArgs {
     /// vector with the columns v.x, v.y and v.z
     #[arg(long, help_heading = HEADING, value_name = "COLUMN")]
     color_by: Option<String>,
-    /// Color map or palette, such as viridis, turbo, RdBu, batlow, vik, okabe-ito or tol-muted; the ending _r reverses it
+    /// Color map or palette, such as viridis, turbo, batlow, vik, okabe-ito or tol-muted; the ending _r reverses it
     /// [default: viridis; okabe-ito for text and few whole numbers]
     #[arg(long, help_heading = HEADING, value_name = "NAME")]
     cmap: Option<String>,

@@ -40,8 +40,7 @@ impl<'a> Canvas<'a> {
     /// out.
     pub(super) fn blend(&mut self, x: i64, y: i64, color: [u8; 3], coverage: f32) {
         let Some(start) = self.start(x, y) else { return };
-        // The comparison is false for NaN as well.
-        if !(coverage > 0.0) {
+        if coverage.is_nan() || coverage <= 0.0 {
             return;
         }
         let over = coverage.min(1.0);
@@ -97,6 +96,7 @@ fn sample_bytes(bits: Bits) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "what is compared is exact")]
 mod tests {
     use super::*;
 

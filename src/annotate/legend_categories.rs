@@ -17,12 +17,11 @@ const RADIUS: f32 = 0.46;
 /// Where a name begins after the left edge of its disk, relative to the size of text.
 const INDENT: f32 = 1.5;
 
-/// The names and colours that are shown, of which there are at most `room`, and how many are not.
-fn shown(
-    list: &[Category],
-    missing: Option<[u8; 3]>,
-    room: usize,
-) -> (Vec<(String, Option<[u8; 3]>)>, usize) {
+/// A name, and its colour in 8-bit sRGB unless it has none.
+type Entry = (String, Option<[u8; 3]>);
+
+/// The names and colours that are shown, of which there are at most `room`.
+fn shown(list: &[Category], missing: Option<[u8; 3]>, room: usize) -> Vec<Entry> {
     let last = missing.map(|color| (MISSING.to_owned(), Some(color)));
     let room = room.max(2);
     let all = list.len() + usize::from(last.is_some());
@@ -37,11 +36,11 @@ fn shown(
         rows.push((format!("and {hidden} more"), None));
     }
     rows.extend(last);
-    (rows, hidden)
+    rows
 }
 
 /// Adds a disk with a name; `y` is the middle of its row.
-fn row(block: &mut Block, (name, color): &(String, Option<[u8; 3]>), [x, y]: [f32; 2], em: f32) {
+fn row(block: &mut Block, (name, color): &Entry, [x, y]: [f32; 2], em: f32) {
     let baseline = y + HALF_CAPITAL * em;
     match color {
         Some(color) => {
@@ -76,7 +75,7 @@ pub(super) fn categories(
     let widest = names.map(|name| font::width(name, em)).fold(0.0, f32::max);
     let column = widest + (INDENT + 1.2) * em;
     let columns = ((0.5 * width / column) as usize).clamp(1, MOST_COLUMNS);
-    let (shown, _) = shown(list, missing, rows * columns);
+    let shown = shown(list, missing, rows * columns);
     let columns = shown.len().div_ceil(rows);
     let rows = shown.len().div_ceil(columns.max(1));
     let top = block.height;
@@ -100,15 +99,15 @@ pub(super) fn in_lines(
     let mut block = head(title, em);
     let (top, room) = (block.height, 0.85 * width);
     let most_rows = (0.3 * height / (ROW * em)).max(1.0) as usize;
-    let item_width = |(name, color): &(String, Option<[u8; 3]>)| {
+    let item_width = |(name, color): &Entry| {
         font::width(name, em) + if color.is_some() { (INDENT + 1.2) * em } else { 1.2 * em }
     };
     // As many as fit into the rows.
     let mut count = list.len() + usize::from(missing.is_some());
     let lines = loop {
-        let mut lines: Vec<Vec<(String, Option<[u8; 3]>)>> = vec![Vec::new()];
+        let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
         let mut used = 0.0;
-        for item in shown(list, missing, count).0 {
+        for item in shown(list, missing, count) {
             let width = item_width(&item);
             if used > 0.0 && used + width > room {
                 lines.push(Vec::new());

@@ -17,12 +17,9 @@ impl Ticks {
     /// Chooses at most `most` labelled ticks, but at least 2.
     pub(super) fn of(scale: &Scale, most: usize) -> Self {
         let most = most.max(2);
-        if scale.is_log() {
-            if let Some(ticks) = logarithmic(scale.range(), most) {
-                return ticks;
-            }
-        }
-        linear(scale.range(), most)
+        let range = scale.range();
+        let log = if scale.is_log() { logarithmic(range, most) } else { None };
+        log.unwrap_or_else(|| linear(range, most))
     }
 }
 
@@ -194,7 +191,7 @@ mod tests {
             let Ok(scale) = Scale::new([low, high], is_log) else { continue };
             let most = random.usize(2..12);
             let Ticks { labeled, minor, .. } = Ticks::of(&scale, most);
-            assert!(labeled.len() <= most.max(2) && labeled.len() >= 1, "{scale:?} {labeled:?}");
+            assert!(labeled.len() <= most.max(2) && !labeled.is_empty(), "{scale:?} {labeled:?}");
             assert!(labeled.is_sorted_by(|a, b| a.0 < b.0), "{scale:?} {labeled:?}");
             let all = labeled.iter().map(|(value, _)| *value).chain(minor);
             for value in all {

@@ -104,12 +104,22 @@ impl ColorBy {
         if self.limits.are_values() {
             return Ok(Scale::new([low, high], self.is_log)?);
         }
-        if low == high {
-            let [low, high] = around(low, self.is_log);
-            notes.push(format!(
-                "`{column}` is {} for all spheres, so they all have one color; choose a range to place it on the map",
-                short(0.5 * low + 0.5 * high)
-            ));
+        if high - low == 0.0 {
+            let value = low;
+            let [low, high] = around(value, self.is_log);
+            notes.push(if self.limits == super::Limits::default() {
+                format!(
+                    "`{column}` is {} for all spheres, so they all have one color; choose a range to place it on the map",
+                    short(value)
+                )
+            } else {
+                format!(
+                    "both ends of the range of `{column}` are {}, so colors show {} to {}; choose another range",
+                    short(value),
+                    short(low),
+                    short(high)
+                )
+            });
             return Ok(Scale::new([low, high], self.is_log)?);
         }
         let scale = Scale::new([low, high], self.is_log)?;

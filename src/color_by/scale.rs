@@ -112,6 +112,7 @@ pub(super) fn entry(position: f64, count: usize) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "what is compared is exact")]
 mod tests {
     use super::*;
 

@@ -57,7 +57,9 @@ pub(super) fn strengths(
 ) -> Result<Strengths, ColorByError> {
     check_factor(column, by.factor)?;
     // NaN is dark.
-    let strength = |value: &f64| (value * by.factor).max(0.0).min(STRONGEST);
+    let strength = |value: &f64| {
+        if *value > 0.0 { (value * by.factor).min(STRONGEST) } else { 0.0 }
+    };
     let ends = values
         .iter()
         .map(strength)
@@ -65,7 +67,7 @@ pub(super) fn strengths(
         .fold(None, |ends: Option<[f64; 2]>, s| {
             Some(ends.map_or([s; 2], |[a, b]| [a.min(s), b.max(s)]))
         });
-    let dark = values.iter().filter(|value| !(**value > 0.0)).count();
+    let dark = values.iter().filter(|value| strength(value) <= 0.0).count();
     if dark > 0 {
         notes.push(format!(
             "{dark} spheres emit no light, because `{column}` is not a number greater than 0"
@@ -83,7 +85,7 @@ pub(super) fn strengths(
     };
     let ratio = (high / low).ln();
     let level = |value: &f64| match strength(value) {
-        s if !(s > 0.0) => 0,
+        s if s <= 0.0 => 0,
         _ if ratio <= 0.0 => 255,
         s => 1 + ((s / low).ln() / ratio * 254.0).round().clamp(0.0, 254.0) as u8,
     };
@@ -106,6 +108,7 @@ pub(super) fn check_factor(column: &str, value: f64) -> Result<(), ColorByError>
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "what is compared is exact")]
 mod tests {
     use super::*;
 

@@ -114,6 +114,19 @@ fn a_constant_column_has_the_middle_of_the_map() {
 }
 
 #[test]
+fn a_range_of_equal_percentiles_is_widened() {
+    let by = ColorBy { limits: "2%,98%".parse().unwrap(), ..gray("t") };
+    let mut values = [1.0; 400];
+    values[7] = 1e6;
+    let (found, notes) = levels(&by, &values);
+    assert_eq!([found[0], found[7]], [128, 255]);
+    assert!(notes[0].starts_with("both ends of the range of `t` are 1, so colors show 0.9 to 1.1"));
+    let by = ColorBy { limits: "5,".parse().unwrap(), ..gray("t") };
+    let error = by.apply(&spheres(2), &[numbers("t", &[1.0, 2.0])], &[]).unwrap_err();
+    assert!(error.to_string().contains("it is 5 to 2; its ends must be finite"), "{error}");
+}
+
+#[test]
 fn texts_have_colors_in_their_order() {
     let columns = [labels("chain", &["B", "A", "B", " ", "C"])];
     let coloring = ColorBy::column("CHAIN").apply(&spheres(5), &columns, &[]).unwrap();
