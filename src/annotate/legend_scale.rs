@@ -150,16 +150,18 @@ fn head(title: &str, exponent: i32, em: f32) -> Block {
     block
 }
 
-/// The pixel of a bar that contains a position, counted from the low end.
+/// The pixel of a bar that is nearest to a position, counted from the low end. The first is at 0, the last at 1.
 fn pixel_of(position: f64, count: usize) -> usize {
-    ((position * count as f64) as usize).min(count - 1)
+    let last = count.saturating_sub(1);
+    ((position * last as f64).round() as usize).min(last)
 }
 
-/// The colours of a bar from its low end. A pixel has the colour of its middle; one with a tick has exactly the colour
-/// of the tick's number.
+/// The colours of a bar from its low end. The first and the last pixel have the colours of the ends, and one with a tick
+/// has exactly the colour of the tick's number.
 fn bar_colors(scale: &ColorScale, count: usize, ticks: &Ticks) -> Vec<[u8; 3]> {
-    let middle = |pixel: usize| (pixel as f64 + 0.5) / count as f64;
-    let mut colors: Vec<[u8; 3]> = (0..count).map(|pixel| scale.color_at(middle(pixel))).collect();
+    let position = |pixel: usize| pixel as f64 / count.saturating_sub(1).max(1) as f64;
+    let mut colors: Vec<[u8; 3]> =
+        (0..count).map(|pixel| scale.color_at(position(pixel))).collect();
     for value in ticks.labeled.iter().map(|(value, _)| value).chain(&ticks.minor) {
         if let (Some(position), Some(color)) = (scale.scale().position(*value), scale.color(*value))
         {

@@ -119,7 +119,8 @@ fn a_range_of_equal_percentiles_is_widened() {
     let mut values = [1.0; 400];
     values[7] = 1e6;
     let (found, notes) = levels(&by, &values);
-    assert_eq!([found[0], found[7]], [128, 255]);
+    // The middle lies between two levels.
+    assert!(matches!([found[0], found[7]], [127 | 128, 255]), "{found:?}");
     assert!(notes[0].starts_with("both ends of the range of `t` are 1, so colors show 0.9 to 1.1"));
     let by = ColorBy { limits: "5,".parse().unwrap(), ..gray("t") };
     let error = by.apply(&spheres(2), &[numbers("t", &[1.0, 2.0])], &[]).unwrap_err();
