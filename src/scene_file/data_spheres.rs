@@ -84,10 +84,9 @@ impl Data {
         } else {
             &self.elements_by
         };
-        let columns: Vec<&Labels> = by
-            .iter()
-            .map(|column| self.labels(&loaded, "elements_by", column))
-            .collect::<Result<_, _>>()?;
+        let key = if self.elements_by.is_empty() { "elements" } else { "elements_by" };
+        let columns: Vec<&Labels> =
+            by.iter().map(|column| self.labels(&loaded, key, column)).collect::<Result<_, _>>()?;
         let element_of = |name: &String| self.elements.iter().find(|element| element.name == *name);
         let elements: Vec<Vec<Option<&Element>>> =
             columns.iter().map(|labels| labels.names.iter().map(element_of).collect()).collect();
