@@ -6,9 +6,10 @@
 //! | render a file of atoms or points | [`load::open`], [below](#render-a-file) |
 //! | render arrays that I have in memory | [`Scene::from_f32`], [below](#render-from-arrays) |
 //! | have light, shadows and soft edges | [`RenderSettings::studio`], [`RenderSettings::path`], [below](#light-it) |
+//! | color spheres by numbers, with a legend | `color_by::ColorBy`, `annotate::Annotations` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
-//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly |
+//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchTree`], not so slowly |
 //!
 //! A picture needs three things. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which
 //! says which ray belongs to a location in the picture, with a [`Film`], which is the picture's size.
@@ -110,7 +111,7 @@
 //! # Features
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, array readers and the CPU
 //! reference on all cores. `npy`, `pdb`, `png` and `xyz` (default), `exr`, `hdr` and `scene-file` are readers and
-//! writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
+//! writers. `color-by` turns columns into colours, and `annotate` draws legends, scale bars and labels. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
 //! # Stability
@@ -130,7 +131,11 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
+#[cfg(feature = "annotate")]
+pub mod annotate;
 pub mod camera;
+#[cfg(feature = "color-by")]
+pub mod color_by;
 pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;
@@ -177,4 +182,7 @@ mod pages {
     #[cfg(feature = "gpu")]
     #[doc = include_str!("../docs/verify.md")]
     struct Verify;
+    #[cfg(all(feature = "annotate", feature = "pdb", feature = "png"))]
+    #[doc = include_str!("../docs/color.md")]
+    struct Color;
 }

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::camera::CameraArgs;
 use super::data::format_parser;
 use super::encoding::EncodingArgs;
-use super::generate::kinds;
+use super::generate::GenerateArgs;
 use super::light::LightArgs;
 use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
@@ -56,6 +56,8 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]
+    pub(super) color: super::color_flags::ColorArgs,
+    #[command(flatten)]
     pub(super) light: LightArgs,
     #[command(flatten)]
     pub(super) stop_rule: StopArgs,
@@ -95,7 +97,7 @@ pub(super) struct InputArgs {
 fn input_help() -> String {
     format!(
         "File to render: a scene file (.toml), or a data file ({}; .bin with --format), which the camera frames \
-         automatically",
+         automatically and which may be compressed (.gz); `-` for standard input, with --format",
         Format::extensions_of(|_| true)
     )
 }
@@ -106,7 +108,13 @@ pub(super) struct ViewArgs {
     /// Format of the data file, whatever its extension is
     #[arg(long, value_parser = format_parser())]
     pub(super) format: Option<&'static Format>,
-    /// Radius of all spheres, for data without radii: an array of shape (n, 3)
+    /// File that says what the spheres of a trajectory are, for formats that have positions alone
+    #[arg(long, value_name = "FILE")]
+    pub(super) topology: Option<PathBuf>,
+    /// Names of the columns of a table without a header, such as x,y,z,radius
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(super) columns: Vec<String>,
+    /// Radius of all spheres, for data without radii
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(super) radius: Option<f64>,
     /// CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]
@@ -129,22 +137,6 @@ pub(super) struct DemoArgs {
     pub(super) size: Option<String>,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct GenerateArgs {
-    /// Arrangement of the spheres
-    #[arg(value_name = "KIND", value_parser = kinds())]
-    pub(super) kind: String,
-    /// Number of spheres
-    #[arg(short = 'n', value_name = "N")]
-    pub(super) count: u64,
-    /// File for the spheres: a NumPy array (.npy) or raw little-endian f32 (.bin) of x, y, z, radius
-    #[arg(short, long, value_name = "OUT.npy")]
-    pub(super) output: PathBuf,
-    /// Seed of the random numbers: the same kind, number and seed give the same file on every machine
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    pub(super) seed: u64,
 }
 
 #[derive(Debug, Args)]
@@ -210,12 +202,14 @@ impl From<Structure> for AccelChoice {
 
 /// Arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay` excludes
 /// them.
-const RENDERING: [&str; 31] = [
+const RENDERING: [&str; 33] = [
     "path",
     "format",
     "radius",
     "color",
     "frame",
+    "topology",
+    "columns",
     "size",
     "camera",
     "eye",

@@ -1,6 +1,6 @@
 //! Reads data files, and checks the flags and keys that apply to them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::{input, memory};
 
 /// The options for a data file, from flags or from a scene file.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct DataOptions {
     /// Frame of a trajectory, from 0.
     pub(super) frame: Option<usize>,
@@ -21,6 +21,10 @@ pub(super) struct DataOptions {
     pub(super) radius: Option<f64>,
     /// Colour of all spheres.
     pub(super) color: Option<LinearRgb>,
+    /// File that says what the spheres of a trajectory are.
+    pub(super) topology: Option<PathBuf>,
+    /// Names of the columns of a table.
+    pub(super) columns: Vec<String>,
 }
 
 /// Parses the name of a format on the command line.
@@ -32,9 +36,10 @@ pub(super) fn format_parser() -> impl TypedValueParser<Value = &'static Format> 
 
 impl DataOptions {
     /// Returns the options for the library's reader.
-    fn to_read(self) -> Options {
+    fn to_read(&self) -> Options {
         let mut options = Options::default();
         (options.frame, options.radius) = (self.frame, self.radius);
+        (options.topology, options.columns) = (self.topology.clone(), self.columns.clone());
         options
     }
 
@@ -57,6 +62,8 @@ impl DataOptions {
             frame: self.frame.or(file.frame),
             radius: self.radius.or(file.radius),
             color: self.color.or(file.color),
+            topology: self.topology.or(file.topology),
+            columns: if self.columns.is_empty() { file.columns } else { self.columns },
         }
     }
 }

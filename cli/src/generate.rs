@@ -1,10 +1,10 @@
 //! `pinhole generate`: writes a file of generated spheres.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::args::GenerateArgs;
 use super::failure::Failure;
 use super::memory;
 use super::output::{self, SpheresFormat};
@@ -12,6 +12,22 @@ use super::progress;
 use super::speak::tell;
 use super::threads;
 use pinhole::generate::{BYTES_PER_SPHERE, GenerateError, Kind, MAX_COUNT};
+
+#[derive(Debug, Args)]
+pub(super) struct GenerateArgs {
+    /// Arrangement of the spheres
+    #[arg(value_name = "KIND", value_parser = kinds())]
+    pub(super) kind: String,
+    /// Number of spheres
+    #[arg(short = 'n', value_name = "N")]
+    pub(super) count: u64,
+    /// File for the spheres: a NumPy array (.npy) or raw little-endian f32 (.bin) of x, y, z, radius
+    #[arg(short, long, value_name = "OUT.npy")]
+    pub(super) output: PathBuf,
+    /// Seed of the random numbers: the same kind, number and seed give the same file on every machine
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(super) seed: u64,
+}
 
 pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
     let Some(kind) = Kind::ALL.iter().copied().find(|kind| kind.name() == args.kind) else {
@@ -35,6 +51,6 @@ pub(super) fn run(args: &GenerateArgs) -> Result<(), Failure> {
 }
 
 /// Returns a parser that accepts the names of the kinds.
-pub(super) fn kinds() -> PossibleValuesParser {
+fn kinds() -> PossibleValuesParser {
     PossibleValuesParser::new(Kind::ALL.iter().map(|kind| kind.name()))
 }

@@ -8,14 +8,18 @@ use anyhow::{Context, Error, Result, anyhow, bail};
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
 use super::camera::CameraFlags;
+use super::color_flags::ColorFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
 use super::light::LightFlags;
 use super::progress;
+use super::read_file::is_standard_input;
 pub(super) use super::read_file::read;
 use super::report::Report;
+use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
+use pinhole::color_by::{ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
@@ -37,6 +41,10 @@ pub(super) struct Input {
     /// The settings for rendering.
     pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
+    /// What colors mean, if a column of the data gives them.
+    pub(super) color_key: Option<ColorKey>,
+    /// What the scene file draws over the picture.
+    pub(super) annotations: AnnotationPlan,
     /// Where the size of the picture comes from, for messages: a flag or a file.
     pub(super) size_from: String,
     /// Notes for the user that are not errors.
@@ -76,6 +84,9 @@ impl Format {
         match (data_format(path), extension.as_deref()) {
             (Some(format), _) => Ok(Self::Data(format)),
             (None, Some("toml")) => Ok(Self::Scene),
+            _ if is_standard_input(path) => {
+                bail!("-: name the format of the data on standard input with --format")
+            }
             (None, Some("bin")) => bail!(
                 "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
                  little-endian f32, add --format raw-f32x4",
@@ -120,6 +131,7 @@ pub(super) struct Source {
     light: LightFlags,
     /// The style of data files.
     style: Style,
+    color: ColorFlags,
 }
 
 impl Source {
@@ -135,7 +147,9 @@ impl Source {
         };
         let color = args.color.as_deref().map(LinearRgb::from_css).transpose();
         let color = color.map_err(|error| Failure::usage(format!("--color: {error}")))?;
-        let options = DataOptions { frame: args.frame, radius: args.radius, color };
+        let (topology, columns) = (args.topology.clone(), args.columns.clone());
+        let options =
+            DataOptions { frame: args.frame, radius: args.radius, color, topology, columns };
         check_flags(format, &options)?;
         Ok(Self {
             path: path.to_path_buf(),
@@ -152,6 +166,11 @@ impl Source {
         Self { light, style: light.style_of_data(), ..self }
     }
 
+    /// Returns this source with flags for colors from data.
+    pub(super) fn with_color(self, color: ColorFlags) -> Self {
+        Self { color, ..self }
+    }
+
     /// Makes a source from a scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
@@ -163,6 +182,7 @@ impl Source {
             camera: CameraFlags::default(),
             light: LightFlags::default(),
             style: Style::Fast,
+            color: ColorFlags::default(),
         }
     }
 
@@ -201,8 +221,11 @@ impl Source {
         let mut notes = std::mem::take(&mut loaded.notes);
         let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
-        let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
-        let scene = scene.with_context(file_name)?;
+        let mapping = self.color.apply_to(&Mapping::default())?;
+        let color = self.options.color.unwrap_or_else(default_color);
+        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
+        notes.extend_from_slice(mapped.notes());
+        let color_key = mapped.key().cloned();
         if scene.is_empty() {
             notes.push(format!(
                 "{}: the file has no spheres, so the picture shows only the background",
@@ -216,7 +239,7 @@ impl Source {
         self.input(
             file,
             scene,
-            Found { notes, files, sky: None, sky_image: None, has_atoms, facing },
+            Found { notes, files, sky: None, sky_image: None, has_atoms, facing, color_key },
         )
     }
 
@@ -225,8 +248,9 @@ impl Source {
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
         let file = SceneFile::parse_in_style(text, self.light.style()).with_context(file_name)?;
-        let (data, color, notes, has_atoms) = self.data_of(&file)?;
-        let kind = self.light.integrator(file.integrator());
+        let FoundData { spheres: data, color_key, color, notes, has_atoms } =
+            self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_file = sky_file.map(|file| self.resolve(file));
         let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
@@ -236,12 +260,13 @@ impl Source {
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
+            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
         };
         let scene = scene.with_context(file_name)?;
         self.input(
             file,
             scene,
-            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None },
+            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None, color_key },
         )
     }
 
@@ -282,11 +307,11 @@ impl Source {
             style: file.style(),
             view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
         };
-        let encoding = file.encoding;
-        let data = self.data(&file);
+        let (encoding, annotations) = (file.encoding, file.annotations.clone());
+        let data = self.data(&file)?;
         let own_spheres = file.spheres().collect();
         let parameters = placed;
-        let Found { notes, files, sky_image, .. } = found;
+        let Found { notes, files, sky_image, color_key, .. } = found;
         Ok(Input {
             scene,
             camera,
@@ -294,6 +319,8 @@ impl Source {
             film,
             settings,
             encoding,
+            color_key,
+            annotations,
             size_from,
             notes,
             files,
@@ -306,22 +333,33 @@ impl Source {
     }
 
     /// Returns the data with its keys, over which flags take precedence.
-    fn data(&self, file: &SceneFile) -> Option<Data> {
-        let flags = self.options;
+    fn data(&self, file: &SceneFile) -> Result<Option<Data>, Failure> {
+        let flags = self.options.clone();
         let mut data = match self.format {
             Format::Data(format) => Data {
                 format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
                 ..Data::of_file(self.path.to_string_lossy())
             },
             Format::Scene => {
-                let data = file.data()?.clone();
-                Data { file: self.resolve(&data.file).to_string_lossy().into_owned(), ..data }
+                let Some(data) = file.data().cloned() else { return Ok(None) };
+                let resolved = |file: &String| self.resolve(file).to_string_lossy().into_owned();
+                Data {
+                    file: resolved(&data.file),
+                    topology: data.topology.as_ref().map(resolved),
+                    ..data
+                }
             }
         };
         data.frame = flags.frame.or(data.frame);
         data.radius = flags.radius.or(data.radius);
         data.color = flags.color.or(data.color);
-        Some(data)
+        let topology = flags.topology.map(|file| file.to_string_lossy().into_owned());
+        data.topology = topology.or(data.topology);
+        if !flags.columns.is_empty() {
+            data.columns = flags.columns;
+        }
+        data.mapping = self.color.apply_to(&data.mapping)?;
+        Ok(Some(data))
     }
 
     /// Reads the image of the sky.
@@ -338,25 +376,30 @@ impl Source {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
-    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, notes, and whether
-    /// the spheres are atoms.
-    fn data_of(
-        &self,
-        file: &SceneFile,
-    ) -> Result<(DataSpheres, LinearRgb, Vec<String>, bool), Failure> {
-        let flags = self.options;
+    /// Reads the data of a scene file.
+    fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
+        let flags = self.options.clone();
         let Some(data) = file.data() else {
             let given = [
                 ("--frame", flags.frame.is_some()),
                 ("--radius", flags.radius.is_some()),
                 ("--color", flags.color.is_some()),
+                ("--topology", flags.topology.is_some()),
+                ("--columns", !flags.columns.is_empty()),
             ];
-            return match given.into_iter().find(|(_, is_given)| *is_given) {
-                Some((flag, _)) => Err(Failure::usage(format!(
+            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
+            return match given.or(self.color.given()) {
+                Some(flag) => Err(Failure::usage(format!(
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new(), false)),
+                None => Ok(FoundData {
+                    spheres: DataSpheres::Spheres(Vec::new()),
+                    color_key: None,
+                    color: default_color(),
+                    notes: Vec::new(),
+                    has_atoms: false,
+                }),
             };
         };
         let path = self.resolve(&data.file);
@@ -375,15 +418,24 @@ impl Source {
             };
             return Err(problem.context(in_scene()).into());
         };
-        let keys = DataOptions { frame: data.frame, radius: data.radius, color: data.color };
+        let keys = DataOptions {
+            frame: data.frame,
+            radius: data.radius,
+            color: data.color,
+            topology: data.topology.as_ref().map(|file| self.resolve(file)),
+            columns: data.columns.clone(),
+        };
         flags.check(format, "--").map_err(Failure::usage)?;
         keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
         let options = flags.or(keys);
         let loaded =
             data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
         let has_atoms = loaded.labels("species").is_some();
-        let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
-        Ok((spheres, options.color.unwrap_or_else(default_color), notes, has_atoms))
+        let mapping = self.color.apply_to(&data.mapping)?;
+        let data = Data { mapping, color: options.color, ..data.clone() };
+        let (spheres, color_key, notes) = data.apply(loaded).with_context(in_scene)?;
+        let color = options.color.unwrap_or_else(default_color);
+        Ok(FoundData { spheres, color_key, color, notes, has_atoms })
     }
 
     /// Returns the film, and where its size comes from.
@@ -398,6 +450,17 @@ impl Source {
     }
 }
 
+/// The data of a scene file.
+struct FoundData {
+    spheres: DataSpheres,
+    /// What colors mean, if a column gives them.
+    color_key: Option<ColorKey>,
+    /// The color of spheres without one.
+    color: LinearRgb,
+    notes: Vec<String>,
+    has_atoms: bool,
+}
+
 /// What was found beside the spheres.
 struct Found {
     notes: Vec<String>,
@@ -408,6 +471,7 @@ struct Found {
     has_atoms: bool,
     /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
     facing: Option<Viewpoint>,
+    color_key: Option<ColorKey>,
 }
 
 fn default_color() -> LinearRgb {

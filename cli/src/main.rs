@@ -14,6 +14,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 mod adapter;
+mod annotation;
 mod args;
 #[cfg(feature = "gpu")]
 mod bench;
@@ -22,6 +23,7 @@ mod bench_report;
 #[cfg(feature = "gpu")]
 mod bench_scene;
 mod camera;
+mod color_flags;
 mod data;
 mod demo;
 mod device;

@@ -7,6 +7,11 @@ use anyhow::{Context, Error, Result, bail};
 
 use super::memory;
 
+/// Whether a path means standard input.
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
 /// Bytes that are read first from a file whose size is not known, such as a pipe.
 const FIRST_PIECE: u64 = 1 << 20;
 
@@ -16,8 +21,13 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
         bail!("{}: this is a folder; name a file", path.display());
     }
     let cannot_read = || format!("{}: cannot be read", path.display());
-    let mut file = std::fs::File::open(path).with_context(cannot_read)?;
-    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
+        (Box::new(std::io::stdin().lock()), 0)
+    } else {
+        let file = std::fs::File::open(path).with_context(cannot_read)?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        (Box::new(file), size)
+    };
     let what = format!("{}: reading {size} bytes needs", path.display());
     memory::check_reading(&what, size).map_err(Error::msg)?;
     let mut bytes = Vec::new();

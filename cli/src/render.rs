@@ -1,11 +1,14 @@
 //! `pinhole render`: renders a scene file or a data file.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context;
 
+use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
+use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
@@ -30,9 +33,9 @@ use super::with_scene::with_structures;
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::camera::View;
-use pinhole::cpu;
+use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, RenderPlan};
+use pinhole::gpu::{GpuError, Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
 
 /// A render job, checked as far as is possible before the input is read.
@@ -40,6 +43,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
+    annotation: AnnotationFlags,
     stop_rule: StopRule,
     device: Device,
     stereo: Option<Stereo>,
@@ -52,10 +56,14 @@ impl Job {
         let outputs = Outputs::new(output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
+        let color = ColorFlags::new(&args.color)?;
+        let annotation =
+            AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
         Ok(Self {
-            source: Source::new(&args.input)?.with_light(light),
+            source: Source::new(&args.input)?.with_light(light).with_color(color),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
@@ -85,14 +93,15 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
-    let encoding = job.encoding.apply_to(input.encoding);
+    let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
     let encoding = encoding.with_background(input.settings.visible_background());
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
         job.stop_rule.check_without_light()?;
     }
     input.settings.notes(&input.scene).iter().for_each(|text| note(text));
-    let layers = job.outputs.layers(&encoding);
+    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input)?);
+    let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
         return Err(Failure::usage(
@@ -101,7 +110,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let adapter = opened.adapter();
     if job.stereo == Some(Stereo::TwoFiles) {
-        let outputs = job.outputs.of_eyes()?;
+        let outputs = outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
         let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
         Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
@@ -113,7 +122,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         Views::Two([left, right]) => Image::side_by_side([&left, &right])
             .context("the pictures of both eyes cannot be joined")?,
     };
-    job.outputs.write(&image, &encoding, adapter, None)?;
+    outputs.write(&image, &encoding, adapter, None)?;
     said(quiet, &input, started);
     Ok(())
 }
@@ -146,10 +155,10 @@ fn render_views(
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             check_on_cpu(input, stop_rule, views, layers)?;
-            tell(
-                "note: no Vulkan, Metal or DX12 adapter was found; \
-                 rendering on the CPU reference, which is slower; `pinhole info` says what to install",
-            );
+            tell(format_args!(
+                "note: rendering on the CPU reference, which is slower: {}",
+                GpuError::NoAdapter
+            ));
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
@@ -180,9 +189,19 @@ fn on_cpu(
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
     check_on_cpu(input, stop_rule, views, layers)?;
-    progress::stage("rendering on the CPU reference");
     let Input { scene, settings, .. } = input;
-    let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
+    let bytes = SearchTree::BYTES_PER_SPHERE * scene.len() as u64;
+    let what = format!("a search tree of {} spheres needs", scene.len());
+    memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
+    progress::stage("building the search tree");
+    let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
+    let images = views.try_each(|view| {
+        let watch = |part| {
+            progress::tracing(part);
+            ControlFlow::Continue(())
+        };
+        cpu::render_watched(&tree, view, settings, layers, &watch)
+    });
     Ok(images.context("the CPU reference cannot render this picture")?)
 }
 

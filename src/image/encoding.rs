@@ -37,6 +37,7 @@ pub struct Encoding {
     exposure: f32,
     tone: ToneCurve,
     background: Option<LinearRgb>,
+    dots_per_inch: Option<f32>,
 }
 
 /// Why parameters do not make an encoding.
@@ -52,6 +53,12 @@ pub enum EncodingError {
     Exposure {
         /// The exposure as given, in stops.
         stops: f32,
+    },
+    /// The resolution is out of range.
+    #[error("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch")]
+    DotsPerInch {
+        /// The resolution as given.
+        dots_per_inch: f32,
     },
     /// The number of bits is neither 8 nor 16.
     #[error("`bits` is {bits}; it must be 8 or 16")]
@@ -137,6 +144,26 @@ impl Encoding {
         let in_front = std::array::from_fn(|i| ((linear[i] - behind[i]) / alpha).max(0.0));
         let shown = self.display(in_front);
         std::array::from_fn(|i| alpha * shown[i].clamp(0.0, 1.0) + behind[i])
+    }
+
+    /// The same encoding with the number of pixels per inch at which the picture is to be printed, which is written to
+    /// PNG files and changes no pixel.
+    ///
+    /// # Errors
+    /// Returns an error if it does not lie between 1 and 100,000.
+    pub fn with_dots_per_inch(self, dots_per_inch: Option<f32>) -> Result<Self, EncodingError> {
+        match dots_per_inch {
+            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => {
+                Err(EncodingError::DotsPerInch { dots_per_inch })
+            }
+            dots_per_inch => Ok(Self { dots_per_inch, ..self }),
+        }
+    }
+
+    /// The number of pixels per inch at which the picture is to be printed, if it was chosen.
+    #[must_use]
+    pub fn dots_per_inch(&self) -> Option<f32> {
+        self.dots_per_inch
     }
 
     /// The number of bits of each sample.

@@ -16,6 +16,9 @@ pub enum LoadError {
         /// The error of the operating system.
         error: io::Error,
     },
+    /// The bytes of a file cannot be read; [`LoadError::File`] has its path as well.
+    #[error("the file cannot be read: {0}")]
+    Io(#[from] io::Error),
     /// Neither the name nor the content of the file shows its format.
     #[error(
         "neither the name nor the content of this file shows its format; choose one of {formats}"
@@ -59,6 +62,10 @@ pub enum LoadError {
     /// Raw numbers cannot be read.
     #[error(transparent)]
     Raw(#[from] super::raw::RawError),
+    /// A table of points does not make spheres.
+    #[cfg(feature = "table")]
+    #[error(transparent)]
+    Table(#[from] super::table::TableError),
     /// An XYZ file cannot be read.
     #[cfg(feature = "xyz")]
     #[error(transparent)]

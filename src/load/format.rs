@@ -1,13 +1,15 @@
 //! The table of file formats, and reading a file with one of them.
 
-use std::fs::File;
 use std::io::{self, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, OptionError};
+#[cfg(feature = "gzip")]
+use super::gzip;
 use super::loaded::Loaded;
 use super::raw;
-use super::trajectory::Frames;
+use super::source::{Source, without_gz};
+use super::trajectory::{Frames, read_from_memory};
 
 /// A file format for spheres.
 #[derive(Debug)]
@@ -21,6 +23,10 @@ pub struct Format {
     pub about: &'static str,
     /// How the frames of a file are found and read, if a file can have several.
     pub(super) frames: Option<Frames>,
+    /// Whether a file has positions alone, so that [`Options::topology`] names a file that says what the spheres are.
+    pub needs_topology: bool,
+    /// Whether a file can lack names for its columns, so that [`Options::columns`] gives them.
+    pub may_lack_names: bool,
     /// Whether a file can lack radii, so that [`Options::radius`] gives one for all spheres.
     pub may_lack_radii: bool,
     /// Whether a file gives colours, either directly or through the elements of its atoms.
@@ -32,7 +38,7 @@ pub struct Format {
 }
 
 /// Options for reading a file of spheres.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
     /// The format; `None` chooses it by the name or the content of the file.
@@ -41,6 +47,10 @@ pub struct Options {
     pub frame: Option<usize>,
     /// The radius of all spheres, in the file's unit of length, for files without radii.
     pub radius: Option<f64>,
+    /// The file that says what the spheres of a trajectory are, for formats that have positions alone.
+    pub topology: Option<PathBuf>,
+    /// The names of the columns, in the order of the file, for tables without a header; empty if there is one.
+    pub columns: Vec<String>,
 }
 
 /// All formats that this build can read. No two of them share a name or an extension.
@@ -51,10 +61,12 @@ pub static FORMATS: &[Format] = &[
         extensions: &["xyz"],
         about: "Text with one atom on each line (XYZ)",
         frames: Some(super::xyz::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: false,
         has_colors: true,
         starts: super::xyz::starts,
-        reader: super::xyz::load,
+        reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "xyz")]
@@ -63,10 +75,12 @@ pub static FORMATS: &[Format] = &[
         extensions: &["extxyz"],
         about: "Text with one atom on each line and named columns (extended XYZ)",
         frames: Some(super::xyz::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: false,
         has_colors: true,
         starts: never,
-        reader: super::xyz::load,
+        reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "pdb")]
@@ -75,10 +89,12 @@ pub static FORMATS: &[Format] = &[
         extensions: &["pdb", "ent"],
         about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
         frames: Some(super::pdb::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: false,
         has_colors: true,
         starts: super::pdb::starts,
-        reader: |bytes, options| Ok(super::pdb::read(bytes, options.frame.unwrap_or_default())?),
+        reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
         extra_bytes: no_extra_bytes,
     },
     #[cfg(feature = "npy")]
@@ -87,6 +103,8 @@ pub static FORMATS: &[Format] = &[
         extensions: &["npy"],
         about: "A NumPy array of shape (n, 4) or, with a radius, (n, 3)",
         frames: None,
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
@@ -99,6 +117,8 @@ pub static FORMATS: &[Format] = &[
         extensions: &["npz"],
         about: "A NumPy archive with an array of shape (n, 4) or, with a radius, (n, 3)",
         frames: None,
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
@@ -110,6 +130,8 @@ pub static FORMATS: &[Format] = &[
         extensions: &[],
         about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
         frames: None,
+        needs_topology: false,
+        may_lack_names: false,
         may_lack_radii: false,
         has_colors: false,
         starts: never,
@@ -152,27 +174,30 @@ impl Format {
         self.frames.is_some()
     }
 
-    /// Returns the format of a file by its extension or else, of a regular file, by its first bytes. Nothing else is
-    /// opened: a pipe can be read only once.
+    /// Returns the format of a file by its extension or else, of a regular file, by its first bytes, which may be
+    /// compressed with gzip. Nothing else is opened: a pipe can be read only once.
     ///
     /// # Errors
     /// If the first bytes are needed and cannot be read.
     pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
         const FIRST_BYTES: u64 = 1 << 12;
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let format = extension.and_then(Self::of_extension);
+        let format = Self::of_file_name(path);
         if format.is_some() || !path.is_file() {
             return Ok(format);
         }
         let mut first = Vec::new();
-        File::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
+        Source::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
         Ok(Self::of_content(&first))
+    }
+
+    /// Returns the format with the extension of a file's name, before which `.gz` is taken away.
+    fn of_file_name(path: &Path) -> Option<&'static Self> {
+        without_gz(path).extension()?.to_str().and_then(Self::of_extension)
     }
 
     /// Returns the format of a file by its extension or else by its first bytes.
     pub(super) fn of_file(path: &Path, first: &[u8]) -> Result<&'static Self, LoadError> {
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let format = extension.and_then(Self::of_extension).or_else(|| Self::of_content(first));
+        let format = Self::of_file_name(path).or_else(|| Self::of_content(first));
         format.ok_or_else(|| {
             let names = FORMATS.iter().map(|format| format.name);
             LoadError::UnknownFormat { formats: names.collect::<Vec<_>>().join(", ") }
@@ -202,6 +227,17 @@ impl Format {
             let what = format!("arrays of shape (n, 3) ({files})");
             return Err(OptionError { option: "radius", what });
         }
+        if options.topology.is_some() && !self.needs_topology {
+            let what = format!(
+                "trajectories of positions alone ({})",
+                Self::extensions_of(|format| format.needs_topology)
+            );
+            return Err(OptionError { option: "topology", what });
+        }
+        if !options.columns.is_empty() && !self.may_lack_names {
+            let files = Self::extensions_of(|format| format.may_lack_names);
+            return Err(OptionError { option: "columns", what: format!("tables ({files})") });
+        }
         Ok(())
     }
 
@@ -210,15 +246,23 @@ impl Format {
     /// # Errors
     /// If the file cannot be read.
     pub fn extra_bytes(&self, bytes: &[u8]) -> Result<u64, LoadError> {
+        #[cfg(feature = "gzip")]
+        if gzip::starts(bytes) {
+            return Ok(gzip::size_hint(bytes));
+        }
         (self.extra_bytes)(bytes)
     }
 
-    /// Reads a file of this format.
+    /// Reads a file of this format, which may be compressed with gzip.
     ///
     /// # Errors
     /// If the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
         self.check(options)?;
+        #[cfg(feature = "gzip")]
+        if gzip::starts(bytes) {
+            return (self.reader)(&gzip::decompressed(bytes)?, options);
+        }
         (self.reader)(bytes, options)
     }
 }
@@ -242,6 +286,18 @@ impl Options {
     #[must_use]
     pub fn with_frame(self, frame: usize) -> Self {
         Self { frame: Some(frame), ..self }
+    }
+
+    /// Returns these options with the file that says what the spheres of a trajectory are.
+    #[must_use]
+    pub fn with_topology(self, path: impl Into<PathBuf>) -> Self {
+        Self { topology: Some(path.into()), ..self }
+    }
+
+    /// Returns these options with the names of the columns of a table without a header.
+    #[must_use]
+    pub fn with_columns(self, columns: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { columns: columns.into_iter().map(Into::into).collect(), ..self }
     }
 
     /// Returns these options with one radius for all spheres, for files without radii.

@@ -14,6 +14,8 @@ pub struct Loaded {
     pub spheres: SphereArray,
     /// The colour of each sphere, if the file or the elements of its atoms give one.
     pub colors: Option<Vec<LinearRgb>>,
+    /// How opaque each sphere is, from 0 to 1, if the file says so.
+    pub opacities: Option<Vec<f32>>,
     /// Other named values of the spheres. Each column has one value for each sphere, in the order of the file.
     pub columns: Vec<Column>,
     /// The three edge vectors of the periodic cell, if the file has one.
@@ -59,6 +61,7 @@ impl Loaded {
         Self {
             spheres,
             colors: None,
+            opacities: None,
             columns: Vec::new(),
             cell: None,
             frames: None,
@@ -86,8 +89,12 @@ impl Loaded {
         let color_of = move |index: usize| {
             self.colors.as_ref().and_then(|colors| colors.get(index)).copied().unwrap_or(color)
         };
-        let colored =
-            move |(index, sphere): (usize, Sphere)| Sphere { color: color_of(index), ..sphere };
+        let opacity_of = |index: usize| {
+            self.opacities.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(1.0)
+        };
+        let colored = move |(index, sphere): (usize, Sphere)| {
+            Sphere { color: color_of(index), ..sphere }.with_opacity(opacity_of(index))
+        };
         self.spheres.with_color(color).enumerate().map(colored)
     }
 
@@ -96,7 +103,18 @@ impl Loaded {
     /// # Errors
     /// Names the first sphere that is out of range.
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
-        let colors = self.colors.map_or(Colors::One(color), |colors| Colors::distinct(&colors));
+        let colors = match (self.colors, self.opacities) {
+            (colors, Some(opacities)) => {
+                let rgba = |(index, opacity): (usize, &f32)| {
+                    let own = colors.as_ref().and_then(|colors| colors.get(index)).copied();
+                    let [r, g, b] = own.unwrap_or(color).to_srgb8();
+                    [r, g, b, (opacity * 255.0).round() as u8]
+                };
+                Colors::Rgba8(opacities.iter().enumerate().map(rgba).collect())
+            }
+            (Some(colors), None) => Colors::distinct(&colors),
+            (None, None) => Colors::One(color),
+        };
         Scene::from_parts(self.spheres, Appearance::new(colors))
     }
 }

@@ -15,12 +15,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(any(feature = "pdb", feature = "xyz"))]
+#[cfg(feature = "table")]
 mod elements;
 #[cfg(any(feature = "exr", feature = "hdr"))]
 pub mod environment;
 mod error;
 mod format;
+#[cfg(feature = "gzip")]
+mod gzip;
 mod loaded;
 #[cfg(feature = "npy")]
 pub mod npy;
@@ -31,6 +33,11 @@ mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
 pub mod raw;
+mod source;
+mod spacing;
+#[cfg(feature = "table")]
+#[allow(dead_code, reason = "not every format has named columns")]
+mod table;
 mod trajectory;
 #[cfg(feature = "xyz")]
 pub mod xyz;
@@ -39,4 +46,6 @@ pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
+#[cfg(feature = "table")]
+pub use table::TableError;
 pub use trajectory::Trajectory;

@@ -1,10 +1,12 @@
 //! Opens files of spheres, and chooses their format.
 
+use std::io::Read as _;
 use std::path::Path;
 
 use super::error::LoadError;
 use super::format::{Format, Options};
 use super::loaded::Loaded;
+use super::source::{Source, without_gz};
 use super::trajectory::Trajectory;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
@@ -21,11 +23,12 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadErr
     };
     // Frames are found by seeking, which a pipe cannot do.
     if let Some(format) = format.filter(|format| format.has_frames() && path.is_file()) {
-        format.check(options)?;
-        let frames = Trajectory::open_up_to(path, &options.with_format(format))?;
+        let frames = Trajectory::open_up_to(path, &options.clone().with_format(format))?;
         return frames.into_frame(options.frame.unwrap_or_default());
     }
-    from_bytes(&std::fs::read(path).map_err(failed)?, path, options)
+    let mut bytes = Vec::new();
+    Source::open(path).and_then(|mut file| file.read_to_end(&mut bytes)).map_err(failed)?;
+    from_bytes(&bytes, path, options)
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
@@ -40,6 +43,11 @@ pub fn from_bytes(
 ) -> Result<Loaded, LoadError> {
     let format = match options.format {
         Some(format) => format,
+        #[cfg(feature = "gzip")]
+        None if super::gzip::starts(bytes) => {
+            let bytes = super::gzip::decompressed(bytes)?;
+            return from_bytes(&bytes, without_gz(name.as_ref()), options);
+        }
         None => Format::of_file(name.as_ref(), bytes)?,
     };
     format.read(bytes, options)

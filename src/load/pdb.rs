@@ -29,6 +29,7 @@ use record::{Kind, Lines, Record};
 
 use super::Loaded;
 use super::error::LoadError;
+use super::format::Options;
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader};
 use crate::text::without_byte_order_mark;
 
@@ -49,7 +50,7 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Loaded, PdbError> {
 }
 
 /// How frames are found and read one by one.
-pub(super) const FRAMES: Frames = Frames { find, read: read_frame };
+pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
 /// Finds frames by their MODEL records, and checks the order of all of them. The lines before the first are read with
 /// every frame.
@@ -87,7 +88,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
     Ok(found)
 }
 
-fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
+fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
     let mut reader = Reader::default();

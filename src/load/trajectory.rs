@@ -4,24 +4,100 @@
     allow(dead_code, reason = "some formats with frames are left out")
 )]
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, Read as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::error::LoadError;
 use super::format::{Format, Options};
 use super::loaded::Loaded;
-
-/// How much of a file is read at a time while its frames are found.
-const PIECE: usize = 1 << 18;
+use super::source::{Bytes, Source};
 
 /// How a format with several frames finds and reads them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frames {
-    /// Finds all frames, or those up to one that is wanted.
-    pub(super) find: fn(&mut LineReader<'_>, Option<usize>) -> io::Result<FrameIndex>,
-    pub(super) read: fn(&FrameText<'_>) -> Result<Loaded, LoadError>,
+pub(super) enum Frames {
+    /// Text: frames are found line by line, and each is one piece of the file.
+    Lines {
+        /// Finds all frames, or those up to one that is wanted.
+        find: fn(&mut LineReader<'_>, Option<usize>) -> io::Result<FrameIndex>,
+        read: fn(&FrameText<'_>, &Options) -> Result<Loaded, LoadError>,
+    },
+    /// Binary data, where a reader goes to any place.
+    Bytes {
+        /// Finds all frames, or those up to one that is wanted. What is wrong after some frames is the problem of the
+        /// index, not an error.
+        find: fn(&mut dyn Bytes, Option<usize>) -> Result<FrameIndex, LoadError>,
+        /// Reads one frame, counted from 0.
+        read: fn(&mut dyn Bytes, &FrameIndex, usize, &Options) -> Result<Loaded, LoadError>,
+    },
+}
+
+impl Frames {
+    /// Finds frames. An index has at least one.
+    fn find(self, source: &mut dyn Bytes, last: Option<usize>) -> Result<FrameIndex, LoadError> {
+        let mut index = match self {
+            Self::Lines { find, .. } => find(&mut LineReader::new(source), last)?,
+            Self::Bytes { find, .. } => find(source, last)?,
+        };
+        match index.problem.take() {
+            Some(problem) if index.frames.is_empty() => return Err(problem),
+            problem => index.problem = problem,
+        }
+        Ok(index)
+    }
+
+    /// Reads one frame, counted from 0.
+    fn read(
+        self,
+        source: &mut dyn Bytes,
+        index: &FrameIndex,
+        wanted: usize,
+        options: &Options,
+    ) -> Result<Loaded, LoadError> {
+        let frames = index.frames.len();
+        let Some(span) = index.frames.get(wanted) else {
+            return Err(LoadError::NoSuchFrame { wanted, frames });
+        };
+        let mut loaded = match self {
+            Self::Lines { read, .. } => {
+                let head = bytes(source, &index.head)?;
+                let text = bytes(source, &span.bytes)?;
+                let lines_before = span.lines_before;
+                let text = FrameText { head: &head, text: &text, lines_before, index: wanted };
+                read(&text, options)?
+            }
+            Self::Bytes { read, .. } => read(source, index, wanted, options)?,
+        };
+        loaded.frames = index.is_whole.then_some(frames);
+        Ok(loaded)
+    }
+}
+
+/// Reads a range of the bytes of a file.
+pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8>, LoadError> {
+    let mut bytes = Vec::new();
+    let length = range.end - range.start;
+    source.seek(SeekFrom::Start(range.start))?;
+    if source.take(length).read_to_end(&mut bytes)? as u64 != length {
+        return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
+    }
+    Ok(bytes)
+}
+
+/// Reads the frame that the options name, or else the first, of a file that is in memory.
+pub(super) fn read_from_memory(
+    bytes: &[u8],
+    frames: Frames,
+    options: &Options,
+) -> Result<Loaded, LoadError> {
+    let wanted = options.frame.unwrap_or_default();
+    let mut source = io::Cursor::new(bytes);
+    let index = frames.find(&mut source, None)?;
+    let loaded = frames.read(&mut source, &index, wanted, options);
+    match index.problem {
+        Some(problem) if loaded.is_ok() || wanted >= index.frames.len() => Err(problem),
+        _ => loaded,
+    }
 }
 
 /// Where the frames of a file are.
@@ -58,22 +134,24 @@ pub(super) struct FrameText<'a> {
 #[derive(Debug)]
 pub struct Trajectory {
     path: PathBuf,
-    file: File,
+    source: Source,
     frames: Frames,
     index: FrameIndex,
+    options: Options,
 }
 
 impl Trajectory {
     /// Opens a file and finds its frames, in one pass over the file. Its format is the one in the options, or else
-    /// follows from the extension, or else from the content.
+    /// follows from the extension, or else from the content. The other options apply to every frame.
     ///
     /// If the file ends within a frame, as where a program is still writing, the frames before it can be read, and
     /// [`Trajectory::problem`] says what is wrong.
     ///
     /// # Errors
-    /// If the file cannot be read, its format is not known or has no frames, or not even the first frame is complete.
+    /// If the file cannot be read, its format is not known or has no frames, an option does not apply to it, or not even
+    /// the first frame is complete.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
-        Self::find(path.as_ref(), options.format, None)
+        Self::find(path.as_ref(), options, None)
     }
 
     /// Opens a file like [`Trajectory::open`], and finds its frames up to the one in the options or else the first.
@@ -82,7 +160,7 @@ impl Trajectory {
     /// If there is no such frame, or for the reasons of [`Trajectory::open`].
     pub fn open_up_to(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
         let wanted = options.frame.unwrap_or_default();
-        let found = Self::find(path.as_ref(), options.format, Some(wanted))?;
+        let found = Self::find(path.as_ref(), options, Some(wanted))?;
         let frames = found.len();
         if wanted < frames {
             return Ok(found);
@@ -90,25 +168,21 @@ impl Trajectory {
         Err(found.index.problem.unwrap_or(LoadError::NoSuchFrame { wanted, frames }))
     }
 
-    fn find(
-        path: &Path,
-        format: Option<&'static Format>,
-        last: Option<usize>,
-    ) -> Result<Self, LoadError> {
-        let failed = |error| LoadError::File { path: path.to_path_buf(), error };
-        let file = File::open(path).map_err(failed)?;
-        let mut reader = BufReader::with_capacity(PIECE, file);
-        let format = match format {
+    fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
+        let of_file = |error| in_file(path, error);
+        let mut source = Source::open(path).map_err(|error| of_file(error.into()))?;
+        let format = match options.format {
             Some(format) => format,
-            None => Format::of_file(path, reader.fill_buf().map_err(failed)?)?,
+            None => {
+                let first = source.fill_buf().map_err(|error| of_file(error.into()))?;
+                Format::of_file(path, first)?
+            }
         };
+        format.check(options)?;
         let frames = format.frames.ok_or(LoadError::NoFrames { format: format.name })?;
-        let mut index = (frames.find)(&mut LineReader::new(&mut reader), last).map_err(failed)?;
-        match index.problem.take() {
-            Some(problem) if index.frames.is_empty() => return Err(problem),
-            problem => index.problem = problem,
-        }
-        Ok(Self { path: path.to_path_buf(), file: reader.into_inner(), frames, index })
+        let index = frames.find(&mut source, last).map_err(of_file)?;
+        let options = Options { format: Some(format), frame: None, ..options.clone() };
+        Ok(Self { path: path.to_path_buf(), source, frames, index, options })
     }
 
     /// Number of frames that are complete.
@@ -140,29 +214,8 @@ impl Trajectory {
     /// # Errors
     /// If there is no such frame, or it cannot be read. Lines are counted from the start of the file.
     pub fn frame(&mut self, index: usize) -> Result<Loaded, LoadError> {
-        let frames = self.len();
-        let Some(FrameSpan { bytes, lines_before }) = self.index.frames.get(index).cloned() else {
-            return Err(LoadError::NoSuchFrame { wanted: index, frames });
-        };
-        let head = self.bytes(self.index.head.clone())?;
-        let text = self.bytes(bytes)?;
-        let text = FrameText { head: &head, text: &text, lines_before, index };
-        let mut loaded = (self.frames.read)(&text)?;
-        loaded.frames = self.index.is_whole.then_some(frames);
-        Ok(loaded)
-    }
-
-    fn bytes(&mut self, range: Range<u64>) -> Result<Vec<u8>, LoadError> {
-        let mut bytes = Vec::new();
-        let length = range.end - range.start;
-        let seek = self.file.seek(SeekFrom::Start(range.start));
-        let read = seek.and_then(|_| (&mut self.file).take(length).read_to_end(&mut bytes));
-        match read {
-            Ok(read) if read as u64 == length => Ok(bytes),
-            Ok(_) => Err(io::ErrorKind::UnexpectedEof.into()),
-            Err(error) => Err(error),
-        }
-        .map_err(|error| LoadError::File { path: self.path.clone(), error })
+        let Self { path, source, frames, index: found, options } = self;
+        frames.read(source, found, index, options).map_err(|error| in_file(path, error))
     }
 
     /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
@@ -176,9 +229,17 @@ impl Trajectory {
     }
 }
 
+/// Puts the path into an error of reading the file.
+fn in_file(path: &Path, error: LoadError) -> LoadError {
+    match error {
+        LoadError::Io(error) => LoadError::File { path: path.to_path_buf(), error },
+        other => other,
+    }
+}
+
 /// The lines of a file that need not fit into memory.
 pub(super) struct LineReader<'a> {
-    source: &'a mut dyn BufRead,
+    source: &'a mut dyn Bytes,
     /// Bytes so far.
     pub(super) offset: u64,
     /// Lines so far.
@@ -187,7 +248,7 @@ pub(super) struct LineReader<'a> {
 }
 
 impl<'a> LineReader<'a> {
-    pub(super) fn new(source: &'a mut dyn BufRead) -> Self {
+    pub(super) fn new(source: &'a mut dyn Bytes) -> Self {
         Self { source, offset: 0, line: 0, text: Vec::new() }
     }
 

@@ -78,13 +78,8 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     !first.is_empty() && first.iter().all(u8::is_ascii_digit)
 }
 
-/// Reads the frame that the options name, for [`crate::load`].
-pub(super) fn load(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
-    Ok(loaded(read(bytes, options.frame.unwrap_or_default())?))
-}
-
 /// How frames are found and read one by one.
-pub(super) const FRAMES: Frames = Frames { find, read: read_frame };
+pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
 
 /// Finds frames by their numbers of atoms; the lines of atoms are only counted.
 fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameIndex> {
@@ -123,7 +118,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
     Ok(found)
 }
 
-fn read_frame(frame: &FrameText<'_>) -> Result<Loaded, LoadError> {
+fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
     let text = without_byte_order_mark(frame.text);
     let mut lines = Lines { rest: text, line: frame.lines_before };
     let head = next_head(&mut lines, frame.index, None)?.ok_or(XyzError::Empty)?;

@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::mapping::MappingKeys;
 use super::materials::Materials;
 use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
 use super::words::unknown;
+use crate::color_by::Mapping;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::load::FORMATS;
@@ -23,6 +25,10 @@ pub struct Data {
     pub format: Option<String>,
     /// Frame of a trajectory, counted from 0.
     pub frame: Option<usize>,
+    /// Path of the file that says what the spheres of a trajectory are, relative to the scene file.
+    pub topology: Option<String>,
+    /// Names of the columns of a table without a header.
+    pub columns: Vec<String>,
     /// Radius of all spheres, for data without radii.
     pub radius: Option<f64>,
     /// Factor for every radius.
@@ -38,6 +44,8 @@ pub struct Data {
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
+    /// What columns decide: colours, radii, opacities, strengths of light.
+    pub mapping: Mapping,
 }
 
 /// Appearance of the atoms of one species. It replaces what the data or the table of chemical elements gives.
@@ -68,6 +76,8 @@ pub(super) struct DataKeys {
     pub(super) file: Option<Spanned<String>>,
     pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
+    pub(super) topology: Option<Spanned<String>>,
+    pub(super) columns: Option<Spanned<Vec<String>>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
     pub(super) color: Option<Spanned<ColorValue>>,
@@ -76,6 +86,7 @@ pub(super) struct DataKeys {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) mapping: MappingKeys,
 }
 
 impl DataKeys {
@@ -88,6 +99,8 @@ impl DataKeys {
             let orphans = [
                 ("format", range_of(&self.format)),
                 ("frame", range_of(&self.frame)),
+                ("topology", range_of(&self.topology)),
+                ("columns", range_of(&self.columns)),
                 ("radius", range_of(&self.radius)),
                 ("radius_scale", range_of(&self.radius_scale)),
                 ("color", range_of(&self.color)),
@@ -97,7 +110,8 @@ impl DataKeys {
                 ("elements_by", range_of(&self.elements_by)),
                 ("leave_out", range_of(&self.leave_out)),
             ];
-            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            let mut orphans = orphans.into_iter().chain(self.mapping.spans());
+            let orphan = orphans.find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
                 Some((key, start)) => Err(lines.span(start).error(format!(
                     "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
@@ -122,6 +136,8 @@ impl DataKeys {
                 file: file.into_inner(),
                 format: self.format.map(|name| format_name(&name, lines)).transpose()?,
                 frame: self.frame.map(Spanned::into_inner),
+                topology: self.topology.map(Spanned::into_inner),
+                columns: self.columns.map(Spanned::into_inner).unwrap_or_default(),
                 radius: positive("radius", self.radius, lines)?,
                 radius_scale: positive("radius_scale", self.radius_scale, lines)?.unwrap_or(1.0),
                 color: self.color.map(|color| color.into_inner().0),
@@ -129,6 +145,7 @@ impl DataKeys {
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
+                mapping: self.mapping.read(lines)?,
             },
         }))
     }
@@ -154,6 +171,9 @@ impl Data {
             file: file.into(),
             format: None,
             frame: None,
+            topology: None,
+            columns: Vec::new(),
+            mapping: Mapping::default(),
             radius: None,
             radius_scale: 1.0,
             color: None,

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::data::ElementTable;
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
+use super::mapping::{ByColumn, ColorTable, ColumnTable};
 use super::materials::{MaterialTable, Materials};
 use super::output::OutputTable;
 use super::span::{Lines, Number, SceneFileError, WithSpan};
@@ -50,6 +52,8 @@ pub(super) struct Document {
     pub(super) data: Option<Spanned<String>>,
     pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
+    pub(super) topology: Option<Spanned<String>>,
+    pub(super) columns: Option<Spanned<Vec<String>>>,
     pub(super) radius: Option<Number>,
     pub(super) radius_scale: Option<Number>,
     pub(super) color: Option<Spanned<ColorValue>>,
@@ -59,6 +63,15 @@ pub(super) struct Document {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) color_by: Option<Spanned<ByColumn<ColorTable>>>,
+    pub(super) radius_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) opacity_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) emission_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) legend: Option<Table<LegendTable>>,
+    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
+    #[serde(default)]
+    pub(super) labels: Vec<Table<LabelTable>>,
+    pub(super) text: Option<Table<TextTable>>,
 }
 
 impl Document {
@@ -94,6 +107,8 @@ impl Default for Document {
             data: None,
             format: None,
             frame: None,
+            topology: None,
+            columns: None,
             radius: None,
             radius_scale: None,
             color: None,
@@ -102,6 +117,14 @@ impl Default for Document {
             elements: BTreeMap::new(),
             elements_by: None,
             leave_out: None,
+            color_by: None,
+            radius_by: None,
+            opacity_by: None,
+            emission_by: None,
+            legend: None,
+            scale_bar: None,
+            labels: Vec::new(),
+            text: None,
         }
     }
 }

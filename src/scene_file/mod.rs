@@ -3,10 +3,12 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
+mod annotations;
 mod data;
 mod data_spheres;
 mod document;
 mod lighting;
+mod mapping;
 mod materials;
 mod output;
 mod span;
@@ -21,23 +23,27 @@ pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
 pub use write::{Contents, write};
 
+use annotations::AnnotationTables;
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
+use mapping::MappingKeys;
 use materials::Materials;
 use span::{Lines, Span, WithSpan};
 use toml::Spanned;
 use value::ColorValue;
 use words::unknown;
 
+use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraError, CameraParameters};
+use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::render::Shading;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Colors, Scene, SceneError};
 use crate::style::Style;
 
 /// The contents of a scene file.
@@ -47,6 +53,8 @@ pub struct SceneFile {
     pub film: Film,
     /// How the picture is encoded: exposure, tone curve, transparency and bits.
     pub encoding: Encoding,
+    /// What is drawn over the picture.
+    pub annotations: AnnotationPlan,
     /// What is seen where there is nothing.
     pub background: LinearRgb,
     style: Option<Style>,
@@ -80,11 +88,26 @@ impl SceneFile {
         let of_style = style.map(|style| Document::parse(style.text(), &Lines::of(style.text())));
         let of_style = of_style.transpose()?.unwrap_or_default();
         let materials = Materials::new(document.materials, &lines)?;
-        let has_lighting = document.material.is_some() || document.opacity.is_some();
+        let mapping = MappingKeys {
+            color: document.color_by,
+            radius: document.radius_by,
+            opacity: document.opacity_by,
+            emission: document.emission_by,
+        };
+        let has_lighting =
+            document.material.is_some() || document.opacity.is_some() || mapping.need_light();
+        let annotations = AnnotationTables {
+            legend: document.legend,
+            scale_bar: document.scale_bar,
+            labels: document.labels,
+            text: document.text,
+        };
         let data = DataKeys {
             file: document.data,
             format: document.format,
             frame: document.frame,
+            topology: document.topology,
+            columns: document.columns,
             radius: document.radius,
             radius_scale: document.radius_scale,
             color: document.color,
@@ -93,6 +116,7 @@ impl SceneFile {
             elements: document.elements,
             elements_by: document.elements_by,
             leave_out: document.leave_out,
+            mapping,
         }
         .read(&materials, &lines)?;
         let spheres = document.spheres.into_iter();
@@ -141,6 +165,7 @@ impl SceneFile {
                 .map(Spanned::into_inner)
                 .unwrap_or_default(),
             encoding: document.output.0.encoding(&lines)?,
+            annotations: annotations.read(&lines)?,
             lighting,
             data,
             camera: lines.spanned(document.camera),
@@ -175,6 +200,30 @@ impl SceneFile {
         }
         let colored = data.with_color(color).map(|sphere| Sphere { surface, ..sphere });
         self.scene(&colored.collect::<Vec<_>>())
+    }
+
+    /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
+    pub fn scene_with_mapped(
+        &self,
+        data: SphereArray,
+        mapped: &Mapped,
+        color: LinearRgb,
+    ) -> Result<Scene, SceneFileError> {
+        let surface = self.data().map(|data| data.surface).unwrap_or_default();
+        if self.spheres.is_empty() {
+            let appearance = mapped.appearance(data.len(), Colors::One(color), surface);
+            return Scene::from_parts(data, appearance).map_err(|error| self.spanned(&error));
+        }
+        let of_data = |(index, sphere): (usize, Sphere)| Sphere {
+            color: mapped.color(index).unwrap_or(color),
+            surface: mapped.surface(surface, index),
+            ..sphere
+        };
+        let spheres: Vec<Sphere> = data.with_color(color).enumerate().map(of_data).collect();
+        self.scene(&spheres)
     }
 
     /// Adds a position in the file to an error.

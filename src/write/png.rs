@@ -1,7 +1,9 @@
 //! Writes pictures as PNG files in sRGB.
 
-use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
 
+#[cfg(feature = "annotate")]
+use crate::annotate::{Annotations, Canvas};
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
 use crate::image::{Image, Layer};
@@ -21,12 +23,38 @@ const CHUNK: usize = 1 << 14;
 /// If the picture lacks one of [the layers that the encoding needs](Encoding::layers), or if the encoder fails, which does not
 /// happen for sizes that PNG allows.
 pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
+    encode_with(picture, encoding, |_, _, _| {})
+}
+
+/// Encodes a picture as [`encode`] does, and draws annotations over it. Exposure and tone curve do not change them.
+///
+/// # Errors
+/// The same errors as [`encode`].
+#[cfg(feature = "annotate")]
+pub fn encode_annotated(
+    picture: &Image,
+    encoding: &Encoding,
+    annotations: &Annotations,
+) -> Result<Vec<u8>, PngError> {
+    encode_with(picture, encoding, |size, channels, samples| {
+        if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits(), samples) {
+            annotations.draw(&mut canvas);
+        }
+    })
+}
+
+/// Encodes a picture; `draw` may change its samples, and is given its size and the samples for each pixel.
+fn encode_with(
+    picture: &Image,
+    encoding: &Encoding,
+    draw: impl FnOnce([u32; 2], usize, &mut [u8]),
+) -> Result<Vec<u8>, PngError> {
     let alpha = match encoding.layers().contains(Layer::Alpha) {
         true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
         false => None,
     };
     let pixels = Pixels { color: picture.color(), alpha, encoding };
-    let (depth, samples) = match encoding.bits() {
+    let (depth, mut samples) = match encoding.bits() {
         Bits::Eight => {
             let alpha_sample = |alpha| [(255.0 * unit(alpha)).round() as u8];
             (BitDepth::Eight, pixels.samples(to_srgb8, alpha_sample))
@@ -42,7 +70,9 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
         }
     };
     let color_type = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
-    write([picture.width(), picture.height()], color_type, depth, &samples)
+    let size = [picture.width(), picture.height()];
+    draw(size, color_type.samples(), &mut samples);
+    write(size, color_type, depth, encoding.dots_per_inch(), &samples)
 }
 
 /// Encodes sRGB bytes as a PNG file. `size` is the width and height; `rgb` has three bytes per pixel, row by row from
@@ -51,13 +81,14 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
 /// # Errors
 /// If `rgb` does not have three bytes per pixel.
 pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
-    write(size, ColorType::Rgb, BitDepth::Eight, rgb)
+    write(size, ColorType::Rgb, BitDepth::Eight, None, rgb)
 }
 
 fn write(
     [width, height]: [u32; 2],
     color: ColorType,
     depth: BitDepth,
+    dots_per_inch: Option<f32>,
     samples: &[u8],
 ) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
@@ -67,6 +98,11 @@ fn write(
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    // PNG counts pixels per metre; an inch is 0.0254 m.
+    encoder.set_pixel_dims(dots_per_inch.map(|dots| {
+        let per_metre = (f64::from(dots) / 0.0254).round() as u32;
+        PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }
+    }));
     let failed = |error: png::EncodingError| PngError::Encoder { message: error.to_string() };
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(samples).map_err(failed)?;

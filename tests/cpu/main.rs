@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
@@ -17,6 +18,7 @@ mod arrays;
 mod basis;
 mod camera;
 mod camera_tables;
+mod color_by;
 mod comparator;
 mod environment;
 mod environment_files;
@@ -44,6 +46,7 @@ mod scene;
 mod scene_file;
 mod scene_file_light;
 mod scene_file_write;
+mod search;
 mod settings;
 mod soundness;
 mod stereo;

@@ -105,11 +105,7 @@ fn data_that_would_create_light() {
     std::fs::write(folder.path("elements.toml"), text).unwrap();
     let run = folder.run("render elements.toml -o out.png --backend cpu");
     assert_eq!(run.code, 1);
-    assert!(
-        run.stderr.contains("`elements` applies only to atoms (.xyz, .extxyz, .pdb, .ent)"),
-        "{}",
-        run.stderr
-    );
+    assert!(run.stderr.contains("`elements` applies only to data with text"), "{}", run.stderr);
 }
 
 /// An environment map with a given third texel.

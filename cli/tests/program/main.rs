@@ -8,6 +8,7 @@ mod npy_files;
 
 mod arrays;
 mod bad_input;
+mod colors;
 mod generate;
 mod good_input;
 mod interrupt;

@@ -1,0 +1,92 @@
+//! The bytes of a file, whether it is compressed with gzip or not.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+#[cfg(feature = "gzip")]
+use super::gzip::{self, Gunzip};
+
+/// How much of a file is read at a time.
+const PIECE: usize = 1 << 18;
+
+/// Bytes that can be read from any place.
+pub(super) trait Bytes: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Bytes for T {}
+
+/// The bytes of a file. Those of a compressed file are decompressed as they are read: going back starts again from the
+/// beginning.
+#[derive(Debug)]
+pub(super) enum Source {
+    Plain(BufReader<File>),
+    #[cfg(feature = "gzip")]
+    Gzip(BufReader<Gunzip<File>>),
+}
+
+impl Source {
+    /// Opens a file. It is taken as compressed if its first bytes say so.
+    pub(super) fn open(path: &Path) -> io::Result<Self> {
+        #[cfg_attr(not(feature = "gzip"), allow(unused_mut, reason = "nothing is looked at"))]
+        let mut plain = BufReader::with_capacity(PIECE, File::open(path)?);
+        #[cfg(feature = "gzip")]
+        if gzip::starts(plain.fill_buf()?) {
+            plain.rewind()?;
+            let gunzip = Gunzip::new(plain.into_inner());
+            return Ok(Self::Gzip(BufReader::with_capacity(PIECE, gunzip)));
+        }
+        Ok(Self::Plain(plain))
+    }
+
+    fn inner(&mut self) -> &mut dyn Bytes {
+        match self {
+            Self::Plain(plain) => plain,
+            #[cfg(feature = "gzip")]
+            Self::Gzip(gzip) => gzip,
+        }
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.inner().read(buffer)
+    }
+}
+
+impl BufRead for Source {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.inner().fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.inner().consume(count);
+    }
+}
+
+impl Seek for Source {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner().seek(to)
+    }
+}
+
+/// The path without the ending `.gz`, which says nothing about what is compressed.
+pub(super) fn without_gz(path: &Path) -> PathBuf {
+    let is_gz =
+        path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("gz"));
+    if is_gz { path.with_extension("") } else { path.to_path_buf() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_compressed_files() {
+        for (name, inner) in
+            [("a.xyz.gz", "a.xyz"), ("a.xyz", "a.xyz"), ("b/a.GZ", "b/a"), ("gz", "gz")]
+        {
+            assert_eq!(without_gz(Path::new(name)), Path::new(inner), "{name}");
+        }
+    }
+}

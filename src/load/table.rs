@@ -1,0 +1,400 @@
+//! Makes spheres of a table of points: recognises by their names which columns are positions, radii, colours, opacities
+//! and chemical elements. All formats with named columns share these rules, so that a name means the same in each.
+
+use glam::DVec3;
+
+use super::elements::{self, appearance};
+use super::format::Options;
+use super::loaded::{Column, ColumnValues, Labels, Loaded};
+use super::spacing;
+use crate::image::color::LinearRgb;
+use crate::scene::sphere_array::SphereArray;
+use crate::text::shortened;
+
+/// A table of points. All columns have the same number of values.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    pub(super) columns: Vec<TableColumn>,
+}
+
+/// A column of a table.
+#[derive(Debug)]
+pub(super) struct TableColumn {
+    pub(super) name: String,
+    pub(super) values: ColumnValues,
+    /// The largest value of the numbers' type in the file if that is u8 or u16: colours are fractions of it.
+    pub(super) full: Option<f64>,
+}
+
+/// Why a table does not make spheres.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// No columns are positions.
+    #[error("there are no columns x, y and z; the columns are {columns}")]
+    NoPositions {
+        /// Names of the columns.
+        columns: String,
+    },
+    /// A column that must have numbers has text.
+    #[error("the column {column} has text, such as `{found}`, where numbers must be")]
+    Text {
+        /// Name of the column.
+        column: String,
+        /// The first text.
+        found: String,
+    },
+    /// A position is not a finite number.
+    #[error("row {row}: {column} is {found}; a position must be finite")]
+    Position {
+        /// Index of the row, from 0.
+        row: usize,
+        /// Name of the column.
+        column: String,
+        /// The value.
+        found: f64,
+    },
+    /// A radius is not finite or not greater than 0.
+    #[error("row {row}: {column} is {found}; a radius must be finite and greater than 0")]
+    Radius {
+        /// Index of the row, from 0.
+        row: usize,
+        /// Name of the column.
+        column: String,
+        /// The value.
+        found: f64,
+    },
+    /// The table has radii, and a radius was given as well.
+    #[error("the column {column} has radii; remove the radius that is given for all spheres")]
+    TwoRadii {
+        /// Name of the column.
+        column: String,
+    },
+}
+
+/// Names of the components of a position, a colour and so on: any one of these sets.
+type Sets = &'static [[&'static str; 3]];
+
+const POSITIONS: Sets = &[
+    ["x", "y", "z"],
+    ["position.x", "position.y", "position.z"],
+    ["positions.x", "positions.y", "positions.z"],
+    ["pos.x", "pos.y", "pos.z"],
+    ["points.x", "points.y", "points.z"],
+    ["coordinates.x", "coordinates.y", "coordinates.z"],
+    ["center.x", "center.y", "center.z"],
+];
+
+const COLORS: Sets = &[
+    ["red", "green", "blue"],
+    ["r", "g", "b"],
+    ["diffuse.red", "diffuse.green", "diffuse.blue"],
+    ["color.x", "color.y", "color.z"],
+    ["colour.x", "colour.y", "colour.z"],
+    ["colors.x", "colors.y", "colors.z"],
+    ["rgb.x", "rgb.y", "rgb.z"],
+    ["color.r", "color.g", "color.b"],
+    ["colour.r", "colour.g", "colour.b"],
+    ["color.0", "color.1", "color.2"],
+    ["colors.0", "colors.1", "colors.2"],
+    ["rgb.0", "rgb.1", "rgb.2"],
+    ["rgba.0", "rgba.1", "rgba.2"],
+];
+
+const RADII: &[&str] = &["radius", "radii", "particle.radius", "sphere.radius"];
+const DIAMETERS: &[&str] = &["diameter", "diameters", "particle.diameter"];
+const OPACITIES: &[&str] = &["opacity", "alpha", "color.3", "colors.3", "rgba.3", "color.a"];
+const TRANSPARENCIES: &[&str] = &["transparency"];
+const ELEMENTS: &[&str] =
+    &["species", "element", "elements", "symbol", "symbols", "type.symbol", "particle.type"];
+const COLOR_NAMES: &[&str] = &["color", "colour", "colors"];
+
+impl TableColumn {
+    pub(super) fn numbers(name: impl Into<String>, numbers: Vec<f64>) -> Self {
+        Self { name: name.into(), values: ColumnValues::Numbers(numbers), full: None }
+    }
+
+    pub(super) fn labels(name: impl Into<String>, labels: Labels) -> Self {
+        Self { name: name.into(), values: ColumnValues::Labels(labels), full: None }
+    }
+
+    /// The name in lower case, with dots for what separates words.
+    fn plain_name(&self) -> String {
+        let name = self.name.trim().to_lowercase();
+        let dotted = name.replace([' ', '_', '-', '[', '(', ':'], ".");
+        dotted.trim_end_matches([']', ')']).to_owned()
+    }
+}
+
+impl Table {
+    /// Makes spheres of the table. Columns that are not needed for them become columns of the result. Radii are those of
+    /// a column, or the one in the options, or those of chemical elements, or else follow from the spacing of the points.
+    pub(super) fn into_loaded(mut self, options: &Options) -> Result<Loaded, TableError> {
+        let positions = self.take_set(POSITIONS).ok_or_else(|| self.no_positions())?;
+        let names = positions.each_ref().map(|column| column.name.clone());
+        let [x, y, z] = positions.map(numbers_of);
+        let (x, y, z) = (x?, y?, z?);
+        for (name, values) in names.iter().zip([&x, &y, &z]) {
+            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+                return Err(TableError::Position { row, column: name.clone(), found: values[row] });
+            }
+        }
+        let mut notes = Vec::new();
+        let (colors, opacities) = (self.colors(&mut notes), self.opacities(&mut notes));
+        let found_radii = self.radii()?;
+        let species = self.species();
+        let elements = species
+            .as_ref()
+            .map(|labels| labels.names.iter().map(|name| appearance(name)).collect::<Vec<_>>());
+        // Names such as A and B are not elements, and have neither radii nor colours of their own.
+        let elements =
+            elements.filter(|elements| elements.iter().any(|element| element.is_element));
+        let element_of = species
+            .as_ref()
+            .zip(elements.as_ref())
+            .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
+        let radius_of: Box<dyn Fn(usize) -> f64> = match (&found_radii, options.radius, &element_of)
+        {
+            (Some((column, _)), Some(_), _) => {
+                return Err(TableError::TwoRadii { column: column.clone() });
+            }
+            (Some((_, radii)), None, _) => Box::new(|row| radii[row]),
+            (None, Some(radius), _) => Box::new(move |_| radius),
+            (None, None, Some(element_of)) => Box::new(|row| element_of(row).radius),
+            (None, None, None) => {
+                let radius =
+                    guessed_radius(x.len(), |row| DVec3::new(x[row], y[row], z[row]), &mut notes);
+                Box::new(move |_| radius)
+            }
+        };
+        let spheres = (0..x.len()).map(|row| [x[row], y[row], z[row], radius_of(row)]).collect();
+        let by_element = element_of
+            .as_ref()
+            .map(|element_of| (0..x.len()).map(|row| element_of(row).color).collect::<Vec<_>>());
+        let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
+            let named = labels.names.iter().zip(elements);
+            named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
+        });
+        let unknown: Vec<_> = unknown.collect();
+        if colors.is_none() || found_radii.is_none() {
+            notes.extend(elements::unknown_note(&unknown, "the file gives a color or radius or "));
+        }
+        drop(radius_of);
+        let colors = colors.or(by_element);
+        let mut loaded = Loaded::new(SphereArray::F64(spheres));
+        loaded.colors = colors;
+        loaded.opacities = opacities;
+        self.note_what_is_unused(&mut notes);
+        loaded.notes = notes;
+        let species = species.map(|labels| TableColumn::labels("species", labels));
+        let columns = species.into_iter().chain(self.columns);
+        loaded.columns =
+            columns.map(|TableColumn { name, values, .. }| Column { name, values }).collect();
+        Ok(loaded)
+    }
+
+    fn no_positions(&self) -> TableError {
+        let names: Vec<_> =
+            self.columns.iter().take(16).map(|column| shortened(&column.name)).collect();
+        let more = if self.columns.len() > 16 { ", …" } else { "" };
+        TableError::NoPositions { columns: names.join(", ") + more }
+    }
+
+    fn position(&self, names: &[&str]) -> Option<usize> {
+        names
+            .iter()
+            .find_map(|name| self.columns.iter().position(|column| column.plain_name() == *name))
+    }
+
+    /// Takes the first column with one of these names out of the table.
+    fn take(&mut self, names: &[&str]) -> Option<TableColumn> {
+        self.position(names).map(|index| self.columns.remove(index))
+    }
+
+    /// Takes the first set of three columns out of the table that is there as a whole.
+    fn take_set(&mut self, sets: Sets) -> Option<[TableColumn; 3]> {
+        let set =
+            sets.iter().find(|set| set.iter().all(|name| self.position(&[*name]).is_some()))?;
+        let [first, second, third] = set.map(|name| self.take(&[name]));
+        Some([first?, second?, third?])
+    }
+
+    /// Takes the radii, with the name of their column.
+    fn radii(&mut self) -> Result<Option<(String, Vec<f64>)>, TableError> {
+        let (column, factor) = match (self.take(RADII), self.position(DIAMETERS)) {
+            (Some(column), _) => (column, 1.0),
+            (None, Some(diameters)) => (self.columns.remove(diameters), 0.5),
+            (None, None) => return Ok(None),
+        };
+        let name = column.name.clone();
+        let mut radii = numbers_of(column)?;
+        if let Some(row) = radii.iter().position(|radius| !(radius.is_finite() && *radius > 0.0)) {
+            return Err(TableError::Radius { row, column: name, found: radii[row] });
+        }
+        radii.iter_mut().for_each(|radius| *radius *= factor);
+        Ok(Some((name, radii)))
+    }
+
+    /// Takes the colours: three columns of numbers, or one of CSS colours.
+    fn colors(&mut self, notes: &mut Vec<String>) -> Option<Vec<LinearRgb>> {
+        if let Some(index) = self.position(COLOR_NAMES)
+            && let ColumnValues::Labels(labels) = &self.columns[index].values
+            && let Some(colors) = css_colors(labels)
+        {
+            self.columns.remove(index);
+            return Some(colors);
+        }
+        let set = self.take_set(COLORS)?;
+        let full =
+            set.iter().map(|column| column.full).reduce(|a, b| a.zip(b).map(|(a, b)| a.max(b)))?;
+        let numbers = set.each_ref().map(|column| match &column.values {
+            ColumnValues::Numbers(numbers) => numbers.as_slice(),
+            ColumnValues::Labels(_) => &[],
+        });
+        let all = || numbers.iter().copied().flatten().copied();
+        let largest = all().fold(0.0, f64::max);
+        let full = full.unwrap_or(if largest <= 1.0 {
+            1.0
+        } else if largest <= 255.0 {
+            255.0
+        } else {
+            65535.0
+        });
+        let [red, green, blue] = numbers;
+        let is_valid = red.len() == green.len()
+            && green.len() == blue.len()
+            && all().all(|value| (0.0..=full).contains(&value));
+        if !is_valid || (red.is_empty() && !set[0].is_empty()) {
+            let [red, green, blue] = set.each_ref().map(|column| &column.name);
+            notes.push(format!(
+                "the columns {red}, {green}, {blue} are not used as colors, because they have values that are not \
+                 numbers from 0 to 1, 255 or 65535"
+            ));
+            self.columns.extend(set);
+            return None;
+        }
+        let byte = |value: f64| (value / full * 255.0).round() as u8;
+        let rows = red.iter().zip(green).zip(blue);
+        Some(
+            rows.map(|((r, g), b)| LinearRgb::from_srgb8([byte(*r), byte(*g), byte(*b)])).collect(),
+        )
+    }
+
+    fn opacities(&mut self, notes: &mut Vec<String>) -> Option<Vec<f32>> {
+        let (index, is_inverse) = match (self.position(OPACITIES), self.position(TRANSPARENCIES)) {
+            (Some(index), _) => (index, false),
+            (None, Some(index)) => (index, true),
+            (None, None) => return None,
+        };
+        let column = &self.columns[index];
+        let ColumnValues::Numbers(numbers) = &column.values else { return None };
+        let largest = numbers.iter().copied().fold(0.0, f64::max);
+        let full = column.full.unwrap_or(if largest <= 1.0 { 1.0 } else { 255.0 });
+        if !numbers.iter().all(|value| (0.0..=full).contains(value)) {
+            notes.push(format!(
+                "the column {} is not used as opacity, because it has values that are not numbers from 0 to 1 or 255",
+                column.name
+            ));
+            return None;
+        }
+        let opacity = |value: &f64| {
+            let value = (value / full) as f32;
+            if is_inverse { 1.0 - value } else { value }
+        };
+        let opacities = numbers.iter().map(opacity).collect();
+        self.columns.remove(index);
+        Some(opacities)
+    }
+
+    /// Takes the column of chemical elements or other kinds, as text.
+    fn species(&mut self) -> Option<Labels> {
+        let index = self.position(ELEMENTS)?;
+        let ColumnValues::Labels(_) = &self.columns[index].values else { return None };
+        match self.columns.remove(index).values {
+            ColumnValues::Labels(labels) => Some(labels),
+            ColumnValues::Numbers(_) => None,
+        }
+    }
+
+    /// Says which columns look as if they should change the picture, but do not.
+    fn note_what_is_unused(&self, notes: &mut Vec<String>) {
+        const SIGNS: [(&str, &str); 7] = [
+            ("color", "color"),
+            ("colour", "color"),
+            ("rgb", "color"),
+            ("radius", "radius"),
+            ("diameter", "radius"),
+            ("opacity", "opacity"),
+            ("transparen", "opacity"),
+        ];
+        for column in &self.columns {
+            let name = column.plain_name();
+            let sign = SIGNS.iter().find(|(sign, _)| name.contains(sign));
+            // A note that says why a column is not used has said it already.
+            let is_noted = notes.iter().any(|note| note.contains(&column.name));
+            if let Some((_, what)) = sign.filter(|_| !is_noted) {
+                notes.push(format!(
+                    "the column {} is not used; to use it, add --{what}-by {}",
+                    shortened(&column.name),
+                    shortened(&column.name)
+                ));
+            }
+        }
+    }
+}
+
+impl TableColumn {
+    fn is_empty(&self) -> bool {
+        match &self.values {
+            ColumnValues::Numbers(numbers) => numbers.is_empty(),
+            ColumnValues::Labels(labels) => labels.indices.is_empty(),
+        }
+    }
+}
+
+/// The radius of spheres that have none, with a note.
+pub(super) fn guessed_radius(
+    count: usize,
+    center: impl Fn(usize) -> DVec3,
+    notes: &mut Vec<String>,
+) -> f64 {
+    // One sphere, or all in one place, may have any size: the camera comes as near as it must.
+    let radius = spacing::radius(count, center).unwrap_or(1.0);
+    // Three digits are as many as anyone wants to paste.
+    let digits = format!("{radius:.2e}").parse().unwrap_or(radius);
+    if count > 0 {
+        notes.push(format!(
+            "there are no radii; all spheres have the radius {digits}, with which neighbors about touch; --radius sets it"
+        ));
+    }
+    digits
+}
+
+fn numbers_of(column: TableColumn) -> Result<Vec<f64>, TableError> {
+    match column.values {
+        ColumnValues::Numbers(numbers) => Ok(numbers),
+        ColumnValues::Labels(labels) => {
+            let found = labels.names.first().map(|name| shortened(name)).unwrap_or_default();
+            Err(TableError::Text { column: column.name, found })
+        }
+    }
+}
+
+/// The colours of a column of CSS colours, if every text is one.
+fn css_colors(labels: &Labels) -> Option<Vec<LinearRgb>> {
+    #[cfg(feature = "scene-file")]
+    {
+        let colors: Option<Vec<_>> =
+            labels.names.iter().map(|name| LinearRgb::from_css(name).ok()).collect();
+        let colors = colors?;
+        Some(labels.indices.iter().map(|index| colors[*index as usize]).collect())
+    }
+    #[cfg(not(feature = "scene-file"))]
+    {
+        let _ = labels;
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests;
