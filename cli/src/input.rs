@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Error, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow};
 
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
@@ -11,9 +11,11 @@ use super::camera::CameraFlags;
 use super::color_flags::ColorFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
+pub(super) use super::input_format::extension;
+pub(super) use super::input_format::parse_size;
+use super::input_format::{Format, data_format};
 use super::light::LightFlags;
 use super::progress;
-use super::read_file::is_standard_input;
 pub(super) use super::read_file::read;
 use super::report::Report;
 use pinhole::annotate::AnnotationPlan;
@@ -70,38 +72,6 @@ impl Input {
     }
 }
 
-/// The kind of an input file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Scene,
-    Data(&'static load::Format),
-}
-
-impl Format {
-    /// Returns the format for the extension of a path.
-    fn of(path: &Path) -> Result<Self> {
-        let extension = extension(path);
-        match (data_format(path), extension.as_deref()) {
-            (Some(format), _) => Ok(Self::Data(format)),
-            (None, Some("toml")) => Ok(Self::Scene),
-            _ if is_standard_input(path) => {
-                bail!("-: name the format of the data on standard input with --format")
-            }
-            (None, Some("bin")) => bail!(
-                "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
-                 little-endian f32, add --format raw-f32x4",
-                path.display()
-            ),
-            _ => bail!(
-                "{}: this is not the extension of a format that can be read; use .toml (scene), \
-                 {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
-                path.display(),
-                load::Format::extensions_of(|_| true)
-            ),
-        }
-    }
-}
-
 fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
     if let Some(radius) = options.radius
         && !(radius.is_finite() && radius > 0.0)
@@ -114,11 +84,6 @@ fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
         Format::Data(format) => options.check(format, "--").map_err(Failure::usage),
         Format::Scene => Ok(()),
     }
-}
-
-/// Returns the extension of a file name in lower case, without the dot.
-pub(super) fn extension(path: &Path) -> Option<String> {
-    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
 /// An input file with its flags, checked as far as is possible before the file is read.
@@ -476,18 +441,4 @@ struct Found {
 
 fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
-}
-
-/// Parses a size, such as `800x600`.
-pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
-    let sides = text.split_once(['x', 'X']);
-    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
-        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
-    )
-}
-
-/// Returns the format of a data file. What cannot be read is an error later, when it is.
-fn data_format(path: &Path) -> Option<&'static load::Format> {
-    let is_scene = extension(path).as_deref() == Some("toml");
-    load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
 }

@@ -34,6 +34,7 @@ mod failure;
 mod generate;
 mod info;
 mod input;
+mod input_format;
 mod interrupt;
 mod light;
 mod memory;
