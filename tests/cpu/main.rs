@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
@@ -18,9 +19,11 @@ mod basis;
 mod binary;
 mod camera;
 mod camera_tables;
+mod color_by;
 mod comparator;
 mod environment;
 mod environment_files;
+mod framing;
 mod generate;
 mod grid_check;
 mod hostile_rays;
@@ -43,6 +46,8 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod scene_file_write;
+mod search;
 mod settings;
 mod soundness;
 mod stereo;

@@ -24,7 +24,7 @@ pub(super) fn folder() -> Folder {
         ("trajectory.toml", "data = 'water.xyz'\nframe = 5\n"),
         ("array.toml", "data = 'spheres.npy'\nframe = 2\n"),
         ("bright.toml", "data = 'spheres.npy'\ncolor = [2, 2, 2]\n[studio]\n"),
-        ("three-spheres.toml", "# mine\n"),
+        ("demo.toml", "# mine\n"),
     ]);
     std::fs::create_dir(folder.path("folder.toml")).unwrap();
     let bytes = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
@@ -109,7 +109,7 @@ pub(super) fn arguments() -> Vec<Case> {
          render spheres.npy -o out.png --eye 0,0,5
          render spheres.npy -o out.png --eye 1,2
          render spheres.npy -o out.png --eye 1,1,1 --look-at 1,1,1
-         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0
+         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0 --up 0,1,0
          render spheres.npy -o out.png --eye nan,0,0 --direction 0,0,1
          render spheres.npy -o out.png --camera periscope
          render spheres.npy -o out.png --camera orthographic --fov 30
@@ -123,7 +123,7 @@ pub(super) fn arguments() -> Vec<Case> {
          verify
          verify scene.toml --replay run
          verify --replay run --size 8x6
-         demo --backend cpu --size 8x6
+         demo --backend cpu --size 8
          render scene.toml -o out.png --backend tpu
          render scene.toml -o out.png --backend cpu --adapter x
          render scene.toml -o out.png --backend cpu --accel grid
