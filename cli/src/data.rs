@@ -7,7 +7,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, TableError, Trajectory};
+use pinhole::load::{
+    FORMATS, Format, LoadError, Loaded, Options, TableError, TopologyError, Trajectory,
+};
 
 use super::failure::Failure;
 use super::{input, memory};
@@ -77,9 +79,7 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
         read_whole(path, format, options)?
     };
     if options.color.is_some() && loaded.colors.is_some() {
-        loaded
-            .notes
-            .push("the color for all spheres is not used: the file gives colors".to_owned());
+        loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
     }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
@@ -135,8 +135,17 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     format.read(bytes, &options.to_read()).with_context(file_name)
 }
 
-/// Turns an error into a failure. An array without a radius, or with two, is wrong usage, because a flag corrects it.
+/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
+    match error.downcast_ref::<LoadError>() {
+        Some(LoadError::Topology(TopologyError::Missing { .. })) => {
+            return Failure::usage(format!("{error:#} (add --topology FILE)"));
+        }
+        Some(LoadError::Table(TableError::TwoRadii { .. })) => {
+            return Failure::usage(format!("{error:#}"));
+        }
+        _ => {}
+    }
     let of_array = match error.downcast_ref::<LoadError>() {
         Some(LoadError::Npy(error) | LoadError::Npz(NpzError::Spheres { error, .. })) => {
             Some(error)
@@ -146,10 +155,9 @@ pub(super) fn as_usage(error: anyhow::Error) -> Failure {
     let loading = error.downcast_ref::<LoadError>();
     let has_two_radii = matches!(loading, Some(LoadError::Table(TableError::TwoRadii { .. })));
     match of_array {
-        Some(SpheresError::NoRadius { .. }) => {
-            Failure::usage(format!("{error:#} (add --radius R)"))
+        Some(SpheresError::TwoRadii { .. } | SpheresError::Table(TableError::TwoRadii { .. })) => {
+            Failure::usage(format!("{error:#}"))
         }
-        Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}")),
         None if has_two_radii => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }

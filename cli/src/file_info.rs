@@ -10,6 +10,8 @@ use super::data::{self, DataOptions, as_usage, format_parser};
 use super::failure::Failure;
 use super::file_info_text as text;
 use super::input::{self, Source};
+use super::input_format;
+use super::read_file;
 use super::speak::answer;
 use pinhole::LinearRgb;
 use pinhole::load::{Column, ColumnValues, Format, Loaded};
@@ -124,8 +126,8 @@ pub(super) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failur
 
 fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     let format = match args.format {
-        Some(format) => input::Format::Data(format),
-        None => input::Format::of(path).map_err(Failure::Usage)?,
+        Some(format) => input_format::Format::Data(format),
+        None => input_format::Format::of(path).map_err(Failure::Usage)?,
     };
     let options = DataOptions {
         frame: args.frame,
@@ -136,8 +138,8 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     };
     input::check_flags(format, &options)?;
     match format {
-        input::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
-        input::Format::Scene => of_scene(path, args),
+        input_format::Format::Data(format) => of_data(path, format, &options).map_err(as_usage),
+        input_format::Format::Scene => of_scene(path, args),
     }
 }
 
@@ -163,7 +165,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
     let kind = Kind::Data(DataReport {
         format: format.name,
         about: format.about,
-        compressed: is_file.then(|| input::is_gzip(path)),
+        compressed: is_file.then(|| read_file::is_gzip(path)),
         frames,
         frame: has_frames.then(|| options.frame.unwrap_or_default()),
         problem,

@@ -51,6 +51,14 @@ pub enum LoadError {
     #[cfg(feature = "las")]
     #[error(transparent)]
     Las(#[from] super::las::LasError),
+    /// A binary trajectory cannot be read.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Binary(#[from] super::binary::BinaryError),
+    /// A trajectory does not go with its topology.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Topology(#[from] super::topology::TopologyError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]

@@ -9,7 +9,15 @@ use super::gzip;
 use super::loaded::Loaded;
 use super::raw;
 use super::source::{Source, without_gz};
-use super::trajectory::{Frames, read_from_memory};
+use super::trajectory::Frames;
+#[cfg(any(
+    feature = "dcd",
+    feature = "gromacs",
+    feature = "gsd",
+    feature = "pdb",
+    feature = "xyz"
+))]
+use super::trajectory::read_from_memory;
 
 /// A file format for spheres.
 #[derive(Debug)]
@@ -111,32 +119,88 @@ pub static FORMATS: &[Format] = &[
         reader: super::las::read,
         extra_bytes: no_extra_bytes,
     },
+    #[cfg(feature = "gsd")]
+    Format {
+        name: "gsd",
+        extensions: &["gsd"],
+        about: "Particles of HOOMD-blue (GSD)",
+        frames: Some(super::gsd::FRAMES),
+        needs_topology: false,
+        may_lack_names: false,
+        may_lack_radii: true,
+        has_colors: false,
+        starts: super::gsd::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::gsd::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "dcd")]
+    Format {
+        name: "dcd",
+        extensions: &["dcd"],
+        about: "Positions of atoms by CHARMM, NAMD, OpenMM or LAMMPS, with a topology",
+        frames: Some(super::dcd::FRAMES),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::dcd::starts,
+        reader: |bytes, options| read_from_memory(bytes, super::dcd::FRAMES, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "gromacs")]
+    Format {
+        name: "trr",
+        extensions: &["trr"],
+        about: "Positions and velocities of atoms by GROMACS, with a topology",
+        frames: Some(super::gromacs::TRR),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::gromacs::starts_trr,
+        reader: |bytes, options| read_from_memory(bytes, super::gromacs::TRR, options),
+        extra_bytes: no_extra_bytes,
+    },
+    #[cfg(feature = "gromacs")]
+    Format {
+        name: "xtc",
+        extensions: &["xtc"],
+        about: "Compressed positions of atoms by GROMACS, with a topology",
+        frames: Some(super::gromacs::XTC),
+        needs_topology: true,
+        may_lack_names: false,
+        may_lack_radii: false,
+        has_colors: false,
+        starts: super::gromacs::starts_xtc,
+        reader: |bytes, options| read_from_memory(bytes, super::gromacs::XTC, options),
+        extra_bytes: no_extra_bytes,
+    },
     #[cfg(feature = "npy")]
     Format {
         name: "npy",
         extensions: &["npy"],
-        about: "A NumPy array of shape (n, 4) or, with a radius, (n, 3)",
+        about: "A NumPy array of x, y, z, and radius, a value or colors, or of structures",
         frames: None,
         needs_topology: false,
         may_lack_names: false,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
-        reader: |bytes, options| Ok(Loaded::new(super::npy::read_spheres(bytes, options.radius)?)),
-        extra_bytes: no_extra_bytes,
+        reader: |bytes, options| Ok(super::npy::read(bytes, options.radius)?),
+        extra_bytes: |bytes| Ok(super::npy::extra_bytes(bytes)),
     },
     #[cfg(feature = "npy")]
     Format {
         name: "npz",
         extensions: &["npz"],
-        about: "A NumPy archive with an array of shape (n, 4) or, with a radius, (n, 3)",
+        about: "A NumPy archive with arrays of positions, radii, colors and so on",
         frames: None,
         needs_topology: false,
         may_lack_names: false,
         may_lack_radii: true,
         has_colors: false,
         starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
-        reader: |bytes, options| Ok(Loaded::new(super::npz::read_spheres(bytes, options.radius)?)),
+        reader: |bytes, options| Ok(super::npz::read(bytes, options.radius)?),
         extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
     },
     #[cfg(feature = "ply")]

@@ -15,12 +15,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every format has every kind of number")]
+mod binary;
+#[cfg(feature = "dcd")]
+mod dcd;
 #[cfg(feature = "table")]
 mod elements;
 #[cfg(any(feature = "exr", feature = "hdr"))]
 pub mod environment;
 mod error;
 mod format;
+#[cfg(feature = "gromacs")]
+mod gromacs;
+#[cfg(feature = "gsd")]
+mod gsd;
 #[cfg(feature = "gzip")]
 mod gzip;
 #[cfg(feature = "las")]
@@ -38,16 +47,22 @@ pub mod pdb;
 mod ply;
 pub mod raw;
 mod source;
+#[cfg(feature = "table")]
 mod spacing;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has named columns")]
 mod table;
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every binary format needs one")]
+mod topology;
 mod trajectory;
 #[cfg(feature = "vtk")]
 mod vtk;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
+#[cfg(feature = "binary")]
+pub use binary::BinaryError;
 pub use error::{LoadError, OptionError};
 pub use format::{FORMATS, Format, Options};
 #[cfg(feature = "las")]
@@ -58,6 +73,8 @@ pub use open::{from_bytes, open};
 pub use ply::PlyError;
 #[cfg(feature = "table")]
 pub use table::TableError;
+#[cfg(feature = "binary")]
+pub use topology::TopologyError;
 pub use trajectory::Trajectory;
 #[cfg(feature = "vtk")]
 pub use vtk::VtkError;

@@ -6,7 +6,9 @@ use std::path::Path;
 use super::error::LoadError;
 use super::format::{Format, Options};
 use super::loaded::Loaded;
-use super::source::{Source, without_gz};
+use super::source::Source;
+#[cfg(feature = "gzip")]
+use super::source::without_gz;
 use super::trajectory::Trajectory;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
@@ -32,7 +34,7 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadErr
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
-/// choose the format as [`open`] does, and no file is opened.
+/// choose the format as [`open`] does, and no file is opened but the topology in the options.
 ///
 /// # Errors
 /// If the bytes cannot be read, their format is not known, or an option does not apply to it.

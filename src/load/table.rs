@@ -139,9 +139,24 @@ impl Table {
                 return Err(TableError::Position { row, column: name.clone(), found: values[row] });
             }
         }
+        let centers = x.iter().zip(&y).zip(&z);
+        let spheres = centers.map(|((x, y), z)| [*x, *y, *z, 0.0]).collect();
+        drop((x, y, z));
+        self.dress(SphereArray::F64(spheres), false, options)
+    }
+
+    /// Gives the table to spheres, one row to each. If the spheres have no radii, they get them as
+    /// [`Table::into_loaded`] says.
+    pub(super) fn dress(
+        mut self,
+        mut spheres: SphereArray,
+        have_radii: bool,
+        options: &Options,
+    ) -> Result<Loaded, TableError> {
         let mut notes = Vec::new();
         let (colors, opacities) = (self.colors(&mut notes), self.opacities(&mut notes));
-        let found_radii = self.radii()?;
+        let found_radii = if have_radii { None } else { self.radii()? };
+        let gives_radii = have_radii || found_radii.is_some();
         let species = self.species();
         let elements = species
             .as_ref()
@@ -153,35 +168,33 @@ impl Table {
             .as_ref()
             .zip(elements.as_ref())
             .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
-        let radius_of: Box<dyn Fn(usize) -> f64> = match (&found_radii, options.radius, &element_of)
-        {
-            (Some((column, _)), Some(_), _) => {
-                return Err(TableError::TwoRadii { column: column.clone() });
+        match (found_radii, options.radius, &element_of) {
+            (Some((column, _)), Some(_), _) => return Err(TableError::TwoRadii { column }),
+            (Some((_, radii)), None, _) => set_radii(&mut spheres, |row| radii[row]),
+            (None, _, _) if have_radii => {}
+            (None, Some(radius), _) => set_radii(&mut spheres, |_| radius),
+            (None, None, Some(element_of)) => {
+                set_radii(&mut spheres, |row| element_of(row).radius);
             }
-            (Some((_, radii)), None, _) => Box::new(|row| radii[row]),
-            (None, Some(radius), _) => Box::new(move |_| radius),
-            (None, None, Some(element_of)) => Box::new(|row| element_of(row).radius),
             (None, None, None) => {
-                let radius =
-                    guessed_radius(x.len(), |row| DVec3::new(x[row], y[row], z[row]), &mut notes);
-                Box::new(move |_| radius)
+                let center = |row| center(&spheres, row);
+                let radius = guessed_radius(spheres.len(), center, &mut notes);
+                set_radii(&mut spheres, |_| radius);
             }
-        };
-        let spheres = (0..x.len()).map(|row| [x[row], y[row], z[row], radius_of(row)]).collect();
+        }
         let by_element = element_of
             .as_ref()
-            .map(|element_of| (0..x.len()).map(|row| element_of(row).color).collect::<Vec<_>>());
+            .map(|element_of| (0..spheres.len()).map(|row| element_of(row).color).collect());
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
             named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
         });
         let unknown: Vec<_> = unknown.collect();
-        if colors.is_none() || found_radii.is_none() {
+        if colors.is_none() || !gives_radii {
             notes.extend(elements::unknown_note(&unknown, "the file gives a color or radius or "));
         }
-        drop(radius_of);
         let colors = colors.or(by_element);
-        let mut loaded = Loaded::new(SphereArray::F64(spheres));
+        let mut loaded = Loaded::new(spheres);
         loaded.colors = colors;
         loaded.opacities = opacities;
         self.note_what_is_unused(&mut notes);
@@ -358,6 +371,25 @@ impl TableColumn {
             ColumnValues::Labels(labels) => labels.indices.is_empty(),
         }
     }
+}
+
+fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {
+    match spheres {
+        SphereArray::F32(all) => {
+            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row) as f32);
+        }
+        SphereArray::F64(all) => {
+            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row));
+        }
+    }
+}
+
+fn center(spheres: &SphereArray, row: usize) -> DVec3 {
+    let [x, y, z, _] = match spheres {
+        SphereArray::F32(all) => all[row].map(f64::from),
+        SphereArray::F64(all) => all[row],
+    };
+    DVec3::new(x, y, z)
 }
 
 /// The radius of spheres that have none, with a note.

@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
@@ -19,11 +20,14 @@ mod damage;
 mod seeds;
 
 mod basis;
+mod binary;
 mod camera;
 mod camera_tables;
+mod color_by;
 mod comparator;
 mod environment;
 mod environment_files;
+mod framing;
 mod fuzz;
 mod generate;
 mod grid_check;
@@ -47,6 +51,8 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod scene_file_write;
+mod search;
 mod settings;
 mod soundness;
 mod stereo;
