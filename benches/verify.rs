@@ -130,7 +130,7 @@ fn cost(headless: &Headless) {
         let scene = grey(spheres::random(count, 1, |rng| 0.05 + 0.1 * rng.f32()));
         let film = Film::new(side, side).unwrap();
         let camera =
-            PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect()).unwrap();
+            PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
         let recording = record(headless, &scene, &camera, &film);
         let (mut reference, mut check) = (Duration::MAX, Duration::MAX);
         for _ in 0..5 {

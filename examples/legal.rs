@@ -16,7 +16,7 @@ pub(crate) fn this_adapter_renders_legally() -> Result<(), Box<dyn std::error::E
     let headless = Headless::open(&HeadlessOptions::default())?;
     let scene = Scene::from_f32(Kind::Clusters.spheres(20_000, 1)?, LinearRgb::WHITE)?;
     let film = Film::new(512, 512)?;
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+    let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
     let view = View::new(&camera, film);
     let certificate = headless.verify(&scene, &view, &RenderSettings::default())?;
     assert!(certificate.is_legal(), "{certificate}");

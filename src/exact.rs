@@ -57,7 +57,8 @@ pub(crate) fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
 }
 
 /// A value that must be a table in the file.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[serde(transparent)]
 pub(crate) struct Table<T>(pub(crate) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {

@@ -6,9 +6,10 @@
 //! | render a file of atoms or points | [`load::open`], [below](#render-a-file) |
 //! | render arrays that I have in memory | [`Scene::from_f32`], [below](#render-from-arrays) |
 //! | have light, shadows and soft edges | [`RenderSettings::studio`], [`RenderSettings::path`], [below](#light-it) |
+//! | color spheres by numbers, with a legend | `color_by::ColorBy`, `annotate::Annotations` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
-//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly |
+//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchTree`], not so slowly |
 //!
 //! A picture needs three things. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which
 //! says which ray belongs to a location in the picture, with a [`Film`], which is the picture's size.
@@ -25,7 +26,7 @@
 //! let loaded = load::open("4hhb.pdb", &load::Options::default())?;
 //! let scene = loaded.scene(LinearRgb::WHITE)?; // white where the file gives no colours
 //! let film = Film::new(800, 600)?;
-//! let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
 //! let headless = Headless::open(&HeadlessOptions::default())?;
 //! let view = View::new(&camera, film);
 //! let image = headless.render(&scene, &view, &RenderSettings::studio(), LayerSet::COLOR)?;
@@ -61,7 +62,7 @@
 //!
 //! # let scene = Scene::from_f32(vec![[0.0, 0.0, 0.0, 1.0]], LinearRgb::WHITE)?;
 //! # let film = Film::new(16, 12)?;
-//! # let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect())?;
+//! # let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect())?;
 //! # let view = View::new(&camera, film);
 //! let sampling = Sampling { samples: 4, ..Sampling::default() }; // rays for each pixel
 //! let studio = RenderSettings { sampling: sampling.clone(), ..RenderSettings::studio() };
@@ -109,8 +110,10 @@
 //!
 //! # Features
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, readers and the CPU
-//! reference on all cores. `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`, `exr`, `hdr` and
-//! `scene-file` are readers and writers. `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
+//! reference on all cores. `dcd`, `gromacs`, `gsd`, `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`,
+//! `exr`, `hdr`, `las`, `ply`, `scene-file` and `vtk` are readers and writers, and `gzip` (default) reads compressed
+//! files. `color-by` turns columns into colours, and `annotate` draws legends, scale bars and labels.
+//! `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
 //! # Stability
@@ -130,7 +133,11 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
+#[cfg(feature = "annotate")]
+pub mod annotate;
 pub mod camera;
+#[cfg(feature = "color-by")]
+pub mod color_by;
 pub mod cpu;
 #[cfg(feature = "scene-file")]
 mod exact;
@@ -149,6 +156,8 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+#[cfg(feature = "scene-file")]
+pub mod style;
 mod text;
 pub mod verify;
 pub mod write;
@@ -175,4 +184,7 @@ mod pages {
     #[cfg(feature = "gpu")]
     #[doc = include_str!("../docs/verify.md")]
     struct Verify;
+    #[cfg(all(feature = "annotate", feature = "pdb", feature = "png"))]
+    #[doc = include_str!("../docs/color.md")]
+    struct Color;
 }

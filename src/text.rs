@@ -14,18 +14,32 @@ pub fn one_line(text: &str) -> String {
     line
 }
 
-/// The text, shortened to 40 characters and an ellipsis if it is longer.
-#[cfg(any(feature = "scene-file", feature = "table", feature = "npy", feature = "run-file"))]
+/// The text, shortened to 40 characters and an ellipsis if it is longer, with control characters escaped.
+#[cfg(any(
+    feature = "binary",
+    feature = "scene-file",
+    feature = "table",
+    feature = "npy",
+    feature = "run-file"
+))]
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
-    if text.chars().count() <= MOST {
-        return text.to_owned();
+    let mut shown = String::new();
+    for (index, c) in text.chars().enumerate() {
+        match c {
+            _ if index == MOST => {
+                shown.push('…');
+                break;
+            }
+            c if c.is_control() => shown.extend(c.escape_default()),
+            c => shown.push(c),
+        }
     }
-    text.chars().take(MOST).chain(['…']).collect()
+    shown
 }
 
 /// The text without the byte order mark that some editors put before UTF-8.
-#[cfg(feature = "table")]
+#[cfg(any(feature = "table", feature = "vtk"))]
 pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }

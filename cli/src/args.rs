@@ -6,11 +6,13 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::camera::CameraArgs;
 use super::data::format_parser;
+use super::encoding::EncodingArgs;
+use super::file_info::FileArgs;
 use super::generate::GenerateArgs;
 use super::light::LightArgs;
+use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
 use pinhole::accel::AccelChoice;
-use pinhole::image::tone::ToneCurve;
 use pinhole::load::Format;
 
 /// Ray traces spheres with compute shaders, without a display, and checks its pictures.
@@ -41,7 +43,7 @@ pub(super) enum Command {
     Demo(DemoArgs),
     /// Write a file of generated spheres, for tests and measurements
     Generate(GenerateArgs),
-    /// List the adapters of this machine with their drivers, limits and features
+    /// Say what a data file or a scene file holds; or list the adapters of this machine with drivers, limits and features
     Info(InfoArgs),
 }
 
@@ -50,10 +52,12 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
     /// File for the picture (.png or .exr), or - to write PNG to standard output
-    #[arg(short, long, value_name = "OUT.png")]
-    pub(super) output: PathBuf,
+    #[arg(short, long, value_name = "OUT.png", required_unless_present = "print_scene")]
+    pub(super) output: Option<PathBuf>,
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
+    #[command(flatten)]
+    pub(super) color: super::color_flags::ColorArgs,
     #[command(flatten)]
     pub(super) light: LightArgs,
     #[command(flatten)]
@@ -69,6 +73,8 @@ pub(super) struct RenderArgs {
     /// How the two pictures of a stereo camera are written [default: side-by-side]
     #[arg(long, value_enum)]
     pub(super) stereo: Option<Stereo>,
+    #[command(flatten)]
+    pub(super) report: ReportArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -77,49 +83,6 @@ pub(super) enum Stereo {
     SideBySide,
     /// In two files: OUT-left.png and OUT-right.png
     TwoFiles,
-}
-
-/// Flags for writing the picture. [`super::encoding::EncodingFlags`] checks them.
-#[derive(Debug, Args)]
-pub(super) struct EncodingArgs {
-    /// Bits per channel of a PNG, 8 or 16 [default: the scene's, or 8]
-    #[arg(long, value_name = "N")]
-    pub(super) bits: Option<u32>,
-    /// Make the background transparent: write RGBA, with alpha from the spheres [default: the scene's, or false]
-    #[arg(
-        long,
-        value_name = "BOOL",
-        num_args = 0..=1,
-        require_equals = true,
-        default_missing_value = "true"
-    )]
-    pub(super) transparent: Option<bool>,
-    /// Exposure of a PNG in stops from -32 to 32; each stop doubles the brightness [default: the scene's, or 0]
-    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
-    pub(super) exposure: Option<f32>,
-    /// Tone curve of a PNG, which brings light that is brighter than white into range [default: the scene's, or none]
-    #[arg(long, value_enum)]
-    pub(super) tone: Option<Tone>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Tone {
-    /// No curve: brighter light is clipped
-    None,
-    /// A curve like that of film, for red, green and blue separately
-    Filmic,
-    /// AgX: strong colors turn white
-    Agx,
-}
-
-impl From<Tone> for ToneCurve {
-    fn from(tone: Tone) -> Self {
-        match tone {
-            Tone::None => Self::None,
-            Tone::Filmic => Self::Filmic,
-            Tone::Agx => Self::Agx,
-        }
-    }
 }
 
 /// The scene and the view of it. [`super::input::Source`] checks them.
@@ -170,6 +133,9 @@ pub(super) struct ViewArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct DemoArgs {
+    /// Width and height of the picture in pixels, such as 800x600 [default: the scene's]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<String>,
     #[command(flatten)]
     pub(super) device: DeviceArgs,
 }
@@ -237,7 +203,7 @@ impl From<Structure> for AccelChoice {
 
 /// Arguments of `verify` that describe the picture and the device. A recording contains both, so `--replay` excludes
 /// them.
-const RENDERING: [&str; 29] = [
+const RENDERING: [&str; 33] = [
     "path",
     "format",
     "radius",
@@ -250,6 +216,10 @@ const RENDERING: [&str; 29] = [
     "eye",
     "look_at",
     "direction",
+    "view",
+    "turn",
+    "margin",
+    "zoom",
     "up",
     "fov",
     "distance",
@@ -391,18 +361,10 @@ pub(super) enum Backend {
 }
 
 #[derive(Debug, Args)]
-#[cfg_attr(
-    feature = "gpu",
-    command(
-        after_help = "The self-test runs computations on the adapter and checks the properties that the error bounds \
-    of `verify` rely on. Exit codes: 0 done; 1 there is no adapter, or it cannot compute; 2 wrong usage; 3 it \
-    computes, but a property fails.\n\n\
-    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
-    `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
-    outcome (ok, note, FAILED), words, figures. New versions may add keys, but do not change these."
-    )
-)]
+#[command(after_help = super::info::HELP)]
 pub(super) struct InfoArgs {
+    #[command(flatten)]
+    pub(super) file: FileArgs,
     /// Test whether an adapter computes as precisely as the error bounds of `verify` assume
     #[cfg(feature = "gpu")]
     #[arg(long)]

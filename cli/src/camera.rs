@@ -5,8 +5,9 @@ use clap::builder::PossibleValuesParser;
 use serde::Deserialize;
 
 use super::failure::Failure;
-use pinhole::camera::{CameraError, CameraKind, CameraParameters};
+use pinhole::camera::{CameraError, CameraKind, CameraParameters, Viewpoint, turned};
 use pinhole::geometry::bounds::Bounds;
+use pinhole::glam::DVec3;
 
 /// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
 /// is set once.
@@ -26,7 +27,24 @@ pub(super) struct CameraArgs {
     /// Direction in which the camera looks, instead of --look-at [default without --eye: 0,0,-1]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
-    /// Direction that is up in the picture [default: 0,1,0]
+    /// Where the camera stands when it frames the scene: x, -x, y, -y, z, -z, iso, or AZIMUTH,ELEVATION in degrees
+    /// [default for data files: 30,20, or straight on where all spheres lie in one plane]
+    #[arg(
+        long, help_heading = HEADING, value_name = "VIEW", allow_hyphen_values = true,
+        conflicts_with_all = ["eye", "look_at", "direction"]
+    )]
+    view: Option<Viewpoint>,
+    /// Turn the camera about the direction that is up, by this angle in degrees; counter-clockwise seen from above
+    #[arg(long, help_heading = HEADING, value_name = "DEGREES", allow_hyphen_values = true, conflicts_with = "eye")]
+    turn: Option<f64>,
+    /// Free part of the picture on each side of a framed scene: 0.1 or 10% (pinhole, thin-lens, orthographic)
+    /// [default: 7.5%]
+    #[arg(long, help_heading = HEADING, value_name = "PART", value_parser = part, allow_hyphen_values = true)]
+    margin: Option<f64>,
+    /// Enlarge the picture about its middle (pinhole, thin-lens, orthographic)
+    #[arg(long, help_heading = HEADING, value_name = "FACTOR", allow_hyphen_values = true)]
+    zoom: Option<f64>,
+    /// Direction that is up in the picture [default: 0,1,0, or another one in a view along y]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
     /// Vertical field of view in degrees (pinhole, thin-lens) [default: 30]
@@ -67,8 +85,8 @@ pub(super) struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// Returns the camera that the flags describe, if there are any, checked as far as is possible without a scene.
-    pub(super) fn parameters(&self) -> Result<Option<CameraParameters>, Failure> {
+    /// Returns the camera that the flags describe, checked as far as is possible without a scene.
+    pub(super) fn flags(&self) -> Result<CameraFlags, Failure> {
         let mut table = toml::Table::new();
         for (key, _, value) in self.keys() {
             match (value, key.split_once('.')) {
@@ -83,38 +101,56 @@ impl CameraArgs {
                 }
             }
         }
-        let kind = match &self.camera {
-            Some(kind) => kind.as_str(),
-            None if table.is_empty() => return Ok(None),
-            None => CameraKind::ALL[0].name(),
+        if let Some(turn) = self.turn.filter(|turn| !turn.is_finite()) {
+            return Err(Failure::usage(format!("--turn {turn}: it must be a finite angle")));
+        }
+        let is_any = self.camera.is_some() || self.view.is_some() || self.turn.is_some();
+        let flags = CameraFlags {
+            is_given: is_any || !table.is_empty(),
+            kind: self.camera.clone().unwrap_or_else(|| CameraKind::ALL[0].name().to_owned()),
+            table,
+            view: self.view,
+            turn: self.turn.unwrap_or(0.0),
+            eye: self.eye.is_some(),
+            direction: self.direction.map(DVec3::from),
+            up: self.up.map(DVec3::from),
         };
-        let document = toml::Table::from_iter([(kind.to_owned(), toml::Value::Table(table))]);
-        let parameters = CameraParameters::deserialize(toml::Value::Table(document))
-            .map_err(|error| self.unknown(kind, error.message()))?;
+        self.check(&flags)?;
+        Ok(flags)
+    }
+
+    /// Checks the flags with any scene.
+    fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
+        let kind = flags.kind.as_str();
+        let parameters = flags.parameters(None).map_err(|message| self.unknown(kind, &message))?;
         // An error in the flags themselves shows with any scene, so these bounds are arbitrary.
-        let bounds = Bounds::of_sphere(pinhole::glam::DVec3::ZERO, 1.0);
-        let checked = match parameters.camera(1.0, &bounds) {
+        let subject = &Bounds::of_sphere(DVec3::ZERO, 1.0).into();
+        let checked = match parameters.camera(1.0, subject) {
             // For a camera without an eye position, the distance of the focus depends on the scene.
-            Err(CameraError::Range { .. } | CameraError::Length { .. })
-                if kind == CameraKind::ThinLens.name() && self.eye.is_none() =>
+            Err(CameraError::Range { parameter, .. })
+                if parameter == "`aperture_radius`" && !flags.eye =>
             {
                 Ok(())
             }
-            made => made.and_then(|_| parameters.stereo_pair(1.0, &bounds)).map(drop),
+            Err(CameraError::Length { .. })
+                if kind == CameraKind::ThinLens.name() && !flags.eye =>
+            {
+                Ok(())
+            }
+            made => made.and_then(|_| parameters.stereo_pair(1.0, subject)).map(drop),
         };
-        match checked {
-            Ok(()) => Ok(Some(parameters)),
-            Err(error) => Err(Failure::usage(self.in_flags(&error))),
-        }
+        checked.map_err(|error| Failure::usage(self.in_flags(&error)))
     }
 
     /// Returns every key of a camera table with its flag and its value. Each camera refuses keys that it does not have.
-    fn keys(&self) -> [(&'static str, &'static str, Option<toml::Value>); 15] {
+    fn keys(&self) -> [(&'static str, &'static str, Option<toml::Value>); 17] {
         [
             ("eye", "--eye", self.eye.map(list)),
             ("look_at", "--look-at", self.look_at.map(list)),
             ("direction", "--direction", self.direction.map(list)),
             ("up", "--up", self.up.map(list)),
+            ("margin", "--margin", self.margin.map(Into::into)),
+            ("zoom", "--zoom", self.zoom.map(Into::into)),
             ("vertical_fov", "--fov", self.fov.map(Into::into)),
             ("distance", "--distance", self.distance.map(Into::into)),
             ("half_extent", "--half-extent", self.half_extent.map(list)),
@@ -154,6 +190,85 @@ impl CameraArgs {
             text.replace(&format!("`{key}`"), &format!("`{flag}`"))
         })
     }
+}
+
+/// The camera flags that were given, checked.
+#[derive(Clone, Debug)]
+pub(super) struct CameraFlags {
+    /// Whether there is any flag, so that the camera takes the place of the scene's.
+    pub(super) is_given: bool,
+    kind: String,
+    table: toml::Table,
+    view: Option<Viewpoint>,
+    turn: f64,
+    eye: bool,
+    direction: Option<DVec3>,
+    up: Option<DVec3>,
+}
+
+impl Default for CameraFlags {
+    /// No flag: a pinhole camera that frames the scene.
+    fn default() -> Self {
+        Self {
+            is_given: false,
+            kind: CameraKind::ALL[0].name().to_owned(),
+            table: toml::Table::new(),
+            view: None,
+            turn: 0.0,
+            eye: false,
+            direction: None,
+            up: None,
+        }
+    }
+}
+
+impl CameraFlags {
+    /// Returns the viewpoint: that of `--view`, or else `automatic` for a camera that stands outside the scene and has
+    /// no eye and no direction.
+    pub(super) fn viewpoint(&self, automatic: Option<Viewpoint>) -> Option<Viewpoint> {
+        let is_outside = ["panorama", "fisheye"].iter().all(|kind| *kind != self.kind);
+        let automatic = automatic.filter(|_| is_outside && !self.eye && self.direction.is_none());
+        self.view.or(automatic)
+    }
+
+    /// Returns the flags that show how the camera is turned, to be used again; `None` if there is nothing to say.
+    pub(super) fn view_in_flags(&self, automatic: Option<Viewpoint>) -> Option<String> {
+        let turn = if self.turn == 0.0 { String::new() } else { format!(" --turn {}", self.turn) };
+        let direction = |d: DVec3| format!("--direction {},{},{}{turn}", d.x, d.y, d.z);
+        let named = self.viewpoint(automatic).map(|view| format!("--view {view}{turn}"));
+        named.or(self.direction.filter(|_| !self.eye).map(direction))
+    }
+
+    /// Returns the parameters of the camera, which stands at the `automatic` viewpoint if no flag says where.
+    pub(super) fn parameters(
+        &self,
+        automatic: Option<Viewpoint>,
+    ) -> Result<CameraParameters, String> {
+        let mut table = self.table.clone();
+        let up = self.up.unwrap_or(DVec3::Y);
+        if let Some(view) = self.viewpoint(automatic) {
+            let [direction, up] = view.axes(up, self.turn);
+            table.insert("direction".to_owned(), list(direction.to_array()));
+            table.insert("up".to_owned(), list(up.to_array()));
+        } else if self.turn != 0.0 {
+            let direction = self.direction.unwrap_or(DVec3::NEG_Z);
+            let direction = turned(direction, up, self.turn);
+            table.insert("direction".to_owned(), list(direction.to_array()));
+        }
+        let document = toml::Table::from_iter([(self.kind.clone(), toml::Value::Table(table))]);
+        CameraParameters::deserialize(toml::Value::Table(document))
+            .map_err(|error| error.message().to_owned())
+    }
+}
+
+/// Parses a part of a whole, such as 0.1 or 10%.
+fn part(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 100.0),
+        None => (text, 1.0),
+    };
+    let number = number.trim().parse::<f64>();
+    number.map(|number| number / unit).map_err(|_| "write a part such as 0.1 or 10%".to_owned())
 }
 
 fn kinds() -> PossibleValuesParser {

@@ -7,7 +7,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pinhole::LinearRgb;
 use pinhole::load::npy::SpheresError;
 use pinhole::load::npz::NpzError;
-use pinhole::load::{FORMATS, Format, LoadError, Loaded, Options, Trajectory};
+use pinhole::load::{
+    FORMATS, Format, LoadError, Loaded, Options, TableError, TopologyError, Trajectory,
+};
 
 use super::failure::Failure;
 use super::{input, memory};
@@ -77,9 +79,7 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
         read_whole(path, format, options)?
     };
     if options.color.is_some() && loaded.colors.is_some() {
-        loaded.notes.push(
-            "the color for all spheres is not used, because the file gives colors".to_owned(),
-        );
+        loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
     }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
@@ -89,19 +89,39 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
 
 /// Reads the frame that is asked for, if there is memory for it.
 fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Loaded> {
-    let named = |error| match error {
+    let frame = options.frame.unwrap_or_default();
+    let options = options.to_read().with_format(format);
+    let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
+    check_frame(path, &found, frame)?;
+    found.into_frame(frame).map_err(|error| named(path, error))
+}
+
+/// Finds all frames of a file, and checks that there is memory for the one that is asked for.
+pub(super) fn trajectory(
+    path: &Path,
+    format: &'static Format,
+    options: &DataOptions,
+) -> Result<Trajectory> {
+    let all = options.to_read().with_format(format);
+    let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
+    check_frame(path, &found, options.frame.unwrap_or_default())?;
+    Ok(found)
+}
+
+fn check_frame(path: &Path, found: &Trajectory, frame: usize) -> Result<()> {
+    let bytes = found.frame_bytes(frame).unwrap_or_default();
+    let what = format!("{}: reading {bytes} bytes needs", path.display());
+    memory::check_reading(&what, bytes).map_err(Error::msg)
+}
+
+/// An error of reading a file, with its path in front.
+pub(super) fn named(path: &Path, error: LoadError) -> Error {
+    match error {
         LoadError::File { error, .. } => {
             Error::new(error).context(format!("{}: cannot be read", path.display()))
         }
         other => Error::new(other).context(path.display().to_string()),
-    };
-    let frame = options.frame.unwrap_or_default();
-    let options = options.to_read().with_format(format);
-    let found = Trajectory::open_up_to(path, &options).map_err(named)?;
-    let bytes = found.frame_bytes(frame).unwrap_or_default();
-    let what = format!("{}: reading {bytes} bytes needs", path.display());
-    memory::check_reading(&what, bytes).map_err(Error::msg)?;
-    found.into_frame(frame).map_err(named)
+    }
 }
 
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loaded> {
@@ -115,19 +135,30 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Loa
     format.read(bytes, &options.to_read()).with_context(file_name)
 }
 
-/// Turns an error into a failure. An array without a radius, or with two, is wrong usage, because a flag corrects it.
+/// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.
 pub(super) fn as_usage(error: anyhow::Error) -> Failure {
+    match error.downcast_ref::<LoadError>() {
+        Some(LoadError::Topology(TopologyError::Missing { .. })) => {
+            return Failure::usage(format!("{error:#} (add --topology FILE)"));
+        }
+        Some(LoadError::Table(TableError::TwoRadii { .. })) => {
+            return Failure::usage(format!("{error:#}"));
+        }
+        _ => {}
+    }
     let of_array = match error.downcast_ref::<LoadError>() {
         Some(LoadError::Npy(error) | LoadError::Npz(NpzError::Spheres { error, .. })) => {
             Some(error)
         }
         _ => None,
     };
+    let loading = error.downcast_ref::<LoadError>();
+    let has_two_radii = matches!(loading, Some(LoadError::Table(TableError::TwoRadii { .. })));
     match of_array {
-        Some(SpheresError::NoRadius { .. }) => {
-            Failure::usage(format!("{error:#} (add --radius R)"))
+        Some(SpheresError::TwoRadii { .. } | SpheresError::Table(TableError::TwoRadii { .. })) => {
+            Failure::usage(format!("{error:#}"))
         }
-        Some(SpheresError::TwoRadii { .. }) => Failure::usage(format!("{error:#}")),
+        None if has_two_radii => Failure::usage(format!("{error:#}")),
         _ => Failure::Job(error),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 
@@ -15,22 +16,25 @@ use super::speak::tell;
 use super::threads;
 use pinhole::image::LayerSet;
 
-const SCENE: &str = include_str!("../../examples/three-spheres.toml");
-const SCENE_FILE: &str = "three-spheres.toml";
-const PICTURE_FILE: &str = "three-spheres.png";
+const SCENE: &str = include_str!("../../examples/demo.toml");
+const SCENE_FILE: &str = "demo.toml";
+const PICTURE_FILE: &str = "demo.png";
 
 pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
+    let started = Instant::now();
     let device = Device::new(&args.device, None)?;
     let outputs = Outputs::new(Path::new(PICTURE_FILE), &[])?;
     let scene_file = PathBuf::from(SCENE_FILE);
+    let source = Source::of_scene(&scene_file).with_size(args.size.as_deref())?;
     let is_there = is_there(&scene_file)?;
     threads::start()?;
-    let input = Source::of_scene(&scene_file).scene_from_text(SCENE)?;
+    let input = source.scene_from_text(SCENE)?;
     let image = render(&input, LayerSet::COLOR, &device.open()?)?;
     outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(
-        "wrote {SCENE_FILE} and {PICTURE_FILE}; change the scene and run \
-         `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"
+        "wrote {SCENE_FILE} and {PICTURE_FILE} in {:.1} s; change the scene and run \
+         `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`",
+        started.elapsed().as_secs_f64()
     ));
     Ok(())
 }

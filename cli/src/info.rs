@@ -1,4 +1,4 @@
-//! `pinhole info`: lists the adapters of the machine, and tests one.
+//! `pinhole info`: lists the adapters of the machine, and tests one, or describes a file.
 
 use anyhow::Context;
 use serde::Serialize;
@@ -9,9 +9,23 @@ use super::device::WantedAdapter;
 #[cfg(feature = "gpu")]
 use super::dump_shaders::dump;
 use super::failure::Failure;
+use super::file_info;
 #[cfg(feature = "gpu")]
 use super::self_test::SelfTested;
 use super::speak::answer;
+
+/// The end of the help.
+pub(super) const HELP: &str = "The self-test runs computations on the adapter and checks the properties that the error \
+    bounds of `verify` rely on. Exit codes: 0 done; 1 the file cannot be read, or there is no adapter, or it cannot \
+    compute; 2 wrong usage; 3 it computes, but a property fails.\n\n\
+    JSON: `version`, `adapters` (name, backend, device_type, driver, driver_info, chosen, limits, features), \
+    `problem`; with --self-test also `self_test` (adapter, passed, properties), whose properties have name, passed, \
+    outcome (ok, note, FAILED), words, figures.\n\n\
+    JSON of a file: `version`, `file`, `bytes`, `kind` (data or scene), `spheres`, `min`, `max`, `radius_min`, \
+    `radius_max`, `notes`. Of data also `format`, `compressed`, `frames`, `frame`, `problem`, `colors`, `opacities`, \
+    `cell`, `columns` (name, kind; of numbers min, max, nan; of text different, first). Of a scene also `width`, \
+    `height`, `camera`, `stereo`, `integrator`, `samples`, `lights`, `files`. New versions may add keys, but do not \
+    change these.";
 
 /// The report on this program and the machine.
 #[derive(Serialize)]
@@ -62,6 +76,9 @@ struct Features {
 }
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    if let Some(path) = &args.file.path {
+        return file_info::run(&args.file, path, args.json);
+    }
     #[cfg(feature = "gpu")]
     if let Some(folder) = &args.dump_shaders {
         return dump(folder);

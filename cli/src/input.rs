@@ -1,27 +1,36 @@
 //! Reads the input: from a path to a scene with its camera and settings.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Error, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow};
 
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
+use super::camera::CameraFlags;
+use super::color_flags::ColorFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
-use super::light::{self, LightFlags};
-use super::memory;
+pub(super) use super::input_format::extension;
+pub(super) use super::input_format::parse_size;
+use super::input_format::{Format, data_format};
+use super::light::LightFlags;
 use super::progress;
+pub(super) use super::read_file::read;
+use super::report::Report;
+use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
-use pinhole::camera::{Camera, CameraError, CameraParameters, View};
+use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
+use pinhole::color_by::{ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
 use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
+use pinhole::scene::sphere::Sphere;
 use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::style::Style;
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -34,12 +43,26 @@ pub(super) struct Input {
     /// The settings for rendering.
     pub(super) settings: RenderSettings,
     pub(super) encoding: Encoding,
+    /// What colors mean, if a column of the data gives them.
+    pub(super) color_key: Option<ColorKey>,
+    /// What the scene file draws over the picture.
+    pub(super) annotations: AnnotationPlan,
     /// Where the size of the picture comes from, for messages: a flag or a file.
     pub(super) size_from: String,
     /// Notes for the user that are not errors.
     pub(super) notes: Vec<String>,
     /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
+    /// What the program says about the picture.
+    pub(super) report: Report,
+    /// The camera, with its position.
+    pub(super) parameters: CameraParameters,
+    /// The data with its keys and the flags about it; its path is as the program found it.
+    pub(super) data: Option<Data>,
+    /// The spheres of a scene file itself.
+    pub(super) own_spheres: Vec<Sphere>,
+    /// Path of the image of the sky.
+    pub(super) sky_image: Option<PathBuf>,
 }
 
 impl Input {
@@ -49,39 +72,8 @@ impl Input {
     }
 }
 
-/// The kind of an input file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Scene,
-    Data(&'static load::Format),
-}
-
-impl Format {
-    /// Returns the format for the extension of a path.
-    fn of(path: &Path) -> Result<Self> {
-        let extension = extension(path);
-        match (data_format(path), extension.as_deref()) {
-            (Some(format), _) => Ok(Self::Data(format)),
-            (None, Some("toml")) => Ok(Self::Scene),
-            _ if is_standard_input(path) => {
-                bail!("-: name the format of the data on standard input with --format")
-            }
-            (None, Some("bin")) => bail!(
-                "{}: the extension .bin does not show the format; if the file has x, y, z, radius in \
-                 little-endian f32, add --format raw-f32x4",
-                path.display()
-            ),
-            _ => bail!(
-                "{}: this is not the extension of a format that can be read; use .toml (scene), \
-                 {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
-                path.display(),
-                load::Format::extensions_of(|_| true)
-            ),
-        }
-    }
-}
-
-fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
+/// Checks that flags apply to a file of this format.
+pub(super) fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
     if let Some(radius) = options.radius
         && !(radius.is_finite() && radius > 0.0)
     {
@@ -95,19 +87,17 @@ fn check_flags(format: Format, options: &DataOptions) -> Result<(), Failure> {
     }
 }
 
-/// Returns the extension of a file name in lower case, without the dot.
-pub(super) fn extension(path: &Path) -> Option<String> {
-    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
-}
-
 /// An input file with its flags, checked as far as is possible before the file is read.
 pub(super) struct Source {
     path: PathBuf,
     format: Format,
     size: Option<(u32, u32)>,
     options: DataOptions,
-    camera: Option<CameraParameters>,
+    camera: CameraFlags,
     light: LightFlags,
+    /// The style of data files.
+    style: Style,
+    color: ColorFlags,
 }
 
 impl Source {
@@ -132,14 +122,19 @@ impl Source {
             format,
             size: args.size.as_deref().map(parse_size).transpose()?,
             options,
-            camera: args.camera.parameters()?,
-            light: LightFlags::default(),
+            camera: args.camera.flags()?,
+            ..Self::of_scene(path)
         })
     }
 
-    /// Returns this source with light flags.
+    /// Returns this source with light flags. Without them, data files have one ray for each pixel.
     pub(super) fn with_light(self, light: LightFlags) -> Self {
-        Self { light, ..self }
+        Self { light, style: light.style_of_data(), ..self }
+    }
+
+    /// Returns this source with flags for colors from data.
+    pub(super) fn with_color(self, color: ColorFlags) -> Self {
+        Self { color, ..self }
     }
 
     /// Makes a source from a scene file without flags.
@@ -150,9 +145,16 @@ impl Source {
             format: Format::Scene,
             size: None,
             options,
-            camera: None,
+            camera: CameraFlags::default(),
             light: LightFlags::default(),
+            style: Style::Fast,
+            color: ColorFlags::default(),
         }
+    }
+
+    /// Returns this source with the size of a picture, such as `800x600`.
+    pub(super) fn with_size(self, size: Option<&str>) -> Result<Self, Failure> {
+        Ok(Self { size: size.map(parse_size).transpose()?, ..self })
     }
 
     /// Makes a source from a file that `bench` measures.
@@ -183,54 +185,147 @@ impl Source {
         };
         let mut loaded = data::read(path, format, &self.options).map_err(as_usage)?;
         let mut notes = std::mem::take(&mut loaded.notes);
+        let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
-        let (film, size_from) = self.film(Film::default())?;
-        let scene = loaded.scene(self.options.color.unwrap_or_else(default_color));
-        let scene = scene.with_context(file_name)?;
+        let mapping = self.color.apply_to(&Mapping::default())?;
+        let color = self.options.color.unwrap_or_else(default_color);
+        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
+        notes.extend_from_slice(mapped.notes());
+        let color_key = mapped.key().cloned();
         if scene.is_empty() {
             notes.push(format!(
                 "{}: the file has no spheres, so the picture shows only the background",
                 path.display()
             ));
         }
-        let parameters = self.camera.unwrap_or_default();
-        let (camera, eyes) = cameras(&parameters, &film, &scene).with_context(file_name)?;
-        let settings = self.light.apply_to(light::plain(self.light.integrator(None)))?;
-        let encoding = Encoding::default();
+        let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
+        let facing = scene.subject().flat_axis().map(Viewpoint::on_axis);
         let files = vec![path.clone()];
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        let facing = Some(facing.unwrap_or(Viewpoint::OBLIQUE));
+        self.input(
+            file,
+            scene,
+            Found { notes, files, sky: None, sky_image: None, has_atoms, facing, color_key },
+        )
     }
 
     /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
     /// other paths.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
         let file_name = || self.path.display().to_string();
-        let file = SceneFile::parse(text).with_context(file_name)?;
-        let (data, color, notes) = self.data_of(&file)?;
-        let kind = self.light.integrator(file.integrator());
+        let file = SceneFile::parse_in_style(text, self.light.style()).with_context(file_name)?;
+        let FoundData { spheres: data, color_key, color, notes, has_atoms } =
+            self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_file = sky_file.map(|file| self.resolve(file));
-        let image = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
+        let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.resolve(&data.file));
-        let files = [Some(self.path.clone()), data_file, sky_file].into_iter().flatten().collect();
-        let (film, size_from) = self.film(file.film)?;
+        let files =
+            [Some(self.path.clone()), data_file, sky_file.clone()].into_iter().flatten().collect();
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
+            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
         };
         let scene = scene.with_context(file_name)?;
-        let (camera, eyes) = match &self.camera {
-            Some(parameters) => cameras(parameters, &film, &scene).with_context(file_name)?,
-            None => (
-                file.camera(&film, &scene).with_context(file_name)?,
-                file.stereo_pair(&film, &scene).with_context(file_name)?,
-            ),
+        self.input(
+            file,
+            scene,
+            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None, color_key },
+        )
+    }
+
+    /// Makes the film, the camera and the settings of a scene.
+    fn input(&self, mut file: SceneFile, scene: Scene, found: Found) -> Result<Input, Failure> {
+        let file_name = || self.path.display().to_string();
+        let (film, size_from) = self.film(file.film)?;
+        file.film = film;
+        file.background = self.light.background().unwrap_or(file.background);
+        let has_flags = self.camera.is_given || matches!(self.format, Format::Data(_));
+        let parameters = if has_flags {
+            self.camera.parameters(found.facing).map_err(Failure::usage)?
+        } else {
+            file.camera_parameters()
         };
-        let settings =
-            file.settings(kind, &scene, camera.as_ref(), image).with_context(file_name)?;
-        let settings = self.light.apply_to(settings)?;
-        let encoding = file.encoding;
-        Ok(Input { scene, camera, eyes, film, settings, encoding, size_from, notes, files })
+        let (aspect, subject) = (film.aspect(), scene.subject());
+        let placed = parameters.placed(aspect, &subject);
+        let made = |parameters: CameraParameters| {
+            let camera = parameters.camera(aspect, &subject)?;
+            Ok((camera, parameters.stereo_pair(aspect, &subject)?))
+        };
+        let cameras = placed.and_then(|placed| Ok((placed, made(placed)?)));
+        let (placed, (camera, eyes)) = match cameras {
+            Ok(cameras) => cameras,
+            // The scene file knows the place of the error.
+            Err(error) if has_flags => return Err(Error::new(error).context(file_name()).into()),
+            Err(error) => {
+                return Err(Error::new(file.at_camera(&error)).context(file_name()).into());
+            }
+        };
+        let kind = self.light.integrator(file.integrator());
+        let settings = file.settings(kind, &scene, camera.as_ref(), found.sky);
+        let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
+        let report = Report {
+            path: self.path.display().to_string(),
+            spheres: scene.len(),
+            has_atoms: found.has_atoms,
+            style: file.style(),
+            view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
+        };
+        let (encoding, annotations) = (file.encoding, file.annotations.clone());
+        let data = self.data(&file)?;
+        let own_spheres = file.spheres().collect();
+        let parameters = placed;
+        let Found { notes, files, sky_image, color_key, .. } = found;
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            color_key,
+            annotations,
+            size_from,
+            notes,
+            files,
+            report,
+            parameters,
+            data,
+            own_spheres,
+            sky_image,
+        })
+    }
+
+    /// Returns the data with its keys, over which flags take precedence.
+    fn data(&self, file: &SceneFile) -> Result<Option<Data>, Failure> {
+        let flags = self.options.clone();
+        let mut data = match self.format {
+            Format::Data(format) => Data {
+                format: (data_format(&self.path) != Some(format)).then(|| format.name.to_owned()),
+                ..Data::of_file(self.path.to_string_lossy())
+            },
+            Format::Scene => {
+                let Some(data) = file.data().cloned() else { return Ok(None) };
+                let resolved = |file: &String| self.resolve(file).to_string_lossy().into_owned();
+                Data {
+                    file: resolved(&data.file),
+                    topology: data.topology.as_ref().map(resolved),
+                    ..data
+                }
+            }
+        };
+        data.frame = flags.frame.or(data.frame);
+        data.radius = flags.radius.or(data.radius);
+        data.color = flags.color.or(data.color);
+        let topology = flags.topology.map(|file| file.to_string_lossy().into_owned());
+        data.topology = topology.or(data.topology);
+        if !flags.columns.is_empty() {
+            data.columns = flags.columns;
+        }
+        data.mapping = self.color.apply_to(&data.mapping)?;
+        Ok(Some(data))
     }
 
     /// Reads the image of the sky.
@@ -247,8 +342,8 @@ impl Source {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
 
-    /// Reads the data of a scene file. Returns its spheres, the colour for spheres without colours, and notes.
-    fn data_of(&self, file: &SceneFile) -> Result<(DataSpheres, LinearRgb, Vec<String>), Failure> {
+    /// Reads the data of a scene file.
+    fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
         let flags = self.options.clone();
         let Some(data) = file.data() else {
             let given = [
@@ -258,18 +353,26 @@ impl Source {
                 ("--topology", flags.topology.is_some()),
                 ("--columns", !flags.columns.is_empty()),
             ];
-            return match given.into_iter().find(|(_, is_given)| *is_given) {
-                Some((flag, _)) => Err(Failure::usage(format!(
+            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
+            return match given.or(self.color.given()) {
+                Some(flag) => Err(Failure::usage(format!(
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
                 ))),
-                None => Ok((DataSpheres::Spheres(Vec::new()), default_color(), Vec::new())),
+                None => Ok(FoundData {
+                    spheres: DataSpheres::Spheres(Vec::new()),
+                    color_key: None,
+                    color: default_color(),
+                    notes: Vec::new(),
+                    has_atoms: false,
+                }),
             };
         };
         let path = self.resolve(&data.file);
         let in_scene = || format!("{}: `data`", self.path.display());
         let extension = extension(&path);
-        let Some(format) = data_format(&path) else {
+        let named = data.format.as_deref().and_then(load::Format::of_name);
+        let Some(format) = named.or_else(|| data_format(&path)) else {
             let problem = if extension.as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else {
@@ -293,9 +396,12 @@ impl Source {
         let options = flags.or(keys);
         let loaded =
             data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
-        let data = Data { color: options.color, ..data.clone() };
-        let (spheres, notes) = data.apply(loaded).with_context(in_scene)?;
-        Ok((spheres, options.color.unwrap_or_else(default_color), notes))
+        let has_atoms = loaded.labels("species").is_some();
+        let mapping = self.color.apply_to(&data.mapping)?;
+        let data = Data { mapping, color: options.color, ..data.clone() };
+        let (spheres, color_key, notes) = data.apply(loaded).with_context(in_scene)?;
+        let color = options.color.unwrap_or_else(default_color);
+        Ok(FoundData { spheres, color_key, color, notes, has_atoms })
     }
 
     /// Returns the film, and where its size comes from.
@@ -310,71 +416,30 @@ impl Source {
     }
 }
 
-/// The camera, and its eyes if it has two.
-type Cameras = (Box<dyn Camera>, Option<[Box<dyn Camera>; 2]>);
+/// The data of a scene file.
+struct FoundData {
+    spheres: DataSpheres,
+    /// What colors mean, if a column gives them.
+    color_key: Option<ColorKey>,
+    /// The color of spheres without one.
+    color: LinearRgb,
+    notes: Vec<String>,
+    has_atoms: bool,
+}
 
-fn cameras(
-    parameters: &CameraParameters,
-    film: &Film,
-    scene: &Scene,
-) -> Result<Cameras, CameraError> {
-    let (aspect, bounds) = (film.aspect(), scene.bounds_to_frame());
-    Ok((parameters.camera(aspect, &bounds)?, parameters.stereo_pair(aspect, &bounds)?))
+/// What was found beside the spheres.
+struct Found {
+    notes: Vec<String>,
+    files: Vec<PathBuf>,
+    /// The image of the sky, and its path.
+    sky: Option<Environment>,
+    sky_image: Option<PathBuf>,
+    has_atoms: bool,
+    /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
+    facing: Option<Viewpoint>,
+    color_key: Option<ColorKey>,
 }
 
 fn default_color() -> LinearRgb {
     LinearRgb::from_srgb8(DEFAULT_COLOR)
-}
-
-/// Parses a size, such as `800x600`.
-pub(super) fn parse_size(text: &str) -> Result<(u32, u32), Failure> {
-    let sides = text.split_once(['x', 'X']);
-    sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?))).ok_or_else(
-        || Failure::usage(format!("--size {text}: write WIDTHxHEIGHT in pixels, such as 800x600")),
-    )
-}
-
-/// Returns the format of a data file. What cannot be read is an error later, when it is.
-fn data_format(path: &Path) -> Option<&'static load::Format> {
-    let is_scene = extension(path).as_deref() == Some("toml");
-    load::Format::of_path(path).ok().flatten().filter(|_| !is_scene)
-}
-
-/// Whether a path means standard input.
-pub(super) fn is_standard_input(path: &Path) -> bool {
-    path == Path::new("-")
-}
-
-/// Bytes that are read first from a file whose size is not known, such as a pipe.
-const FIRST_PIECE: u64 = 1 << 20;
-
-/// Reads a whole file. A regular file is read into memory of exactly its size.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        bail!("{}: this is a folder; name a file", path.display());
-    }
-    let cannot_read = || format!("{}: cannot be read", path.display());
-    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
-        (Box::new(std::io::stdin().lock()), 0)
-    } else {
-        let file = std::fs::File::open(path).with_context(cannot_read)?;
-        let size = file.metadata().map_or(0, |metadata| metadata.len());
-        (Box::new(file), size)
-    };
-    let what = format!("{}: reading {size} bytes needs", path.display());
-    memory::check_reading(&what, size).map_err(Error::msg)?;
-    let mut bytes = Vec::new();
-    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
-        || format!("{}: there is not enough memory for {size} bytes", path.display()),
-    )?;
-    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
-    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
-    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
-        == piece
-    {
-        piece = bytes.len() as u64;
-        let what = format!("{}: reading more than {piece} bytes needs", path.display());
-        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
-    }
-    Ok(bytes)
 }

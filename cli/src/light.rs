@@ -1,24 +1,33 @@
 //! The light flags of the command line. They take precedence over the keys of a scene file.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
+use pinhole::LinearRgb;
 use pinhole::camera::filter::PixelFilter;
 use pinhole::range::RangeError;
 use pinhole::render::{Integrator, Occlusion, Outline, RenderSettings, Sampling, Studio};
 use pinhole::scene_file::IntegratorKind;
+use pinhole::style::Style;
 
 /// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
 /// is set once.
-pub(super) const HEADING: &str =
-    "Light (any of these flags, or a table about light in the scene, makes a lit picture)";
+pub(super) const HEADING: &str = "Light and style";
 
 #[derive(Debug, Args)]
 pub(super) struct LightArgs {
-    /// How the light is computed [default: the scene's; studio if another flag asks for light; otherwise primary]
+    /// Look of the picture: light, lines and background. It takes the place of the scene's [default: the scene's; for
+    /// data files: default, or the one that suits --integrator]
+    #[arg(long, help_heading = HEADING, value_name = "STYLE", value_parser = styles())]
+    style: Option<Style>,
+    /// CSS color of the background [default: the scene's, or the style's]
+    #[arg(long, help_heading = HEADING, value_name = "CSS")]
+    background: Option<String>,
+    /// How the light is computed [default: the scene's, or the style's]
     #[arg(long, help_heading = HEADING, value_enum)]
     integrator: Option<IntegratorArg>,
-    /// Samples per pixel, from 1 to 16777216 [default: the scene's, or 16]
+    /// Samples per pixel, from 1 to 16777216: how smooth the picture is [default: the scene's, or the style's]
     #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
     samples: Option<u32>,
     /// Seed of the random numbers; another seed gives other noise [default: the scene's, or 0]
@@ -40,9 +49,16 @@ pub(super) struct LightArgs {
     /// Outlines around shapes with this width in pixels, from 0.5 to 64 (studio)
     #[arg(long, help_heading = HEADING, value_name = "PIXELS", allow_hyphen_values = true)]
     outline: Option<f32>,
-    /// Remove noise with a filter that is guided by shapes and colors
-    #[arg(long, help_heading = HEADING)]
-    denoise: bool,
+    /// Remove noise with a filter that is guided by shapes and colors [default: the scene's, or the style's]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "BOOL",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "true"
+    )]
+    denoise: Option<bool>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -75,39 +91,60 @@ impl From<FilterArg> for PixelFilter {
 /// The flags that were given, checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LightFlags {
+    style: Option<Style>,
+    background: Option<LinearRgb>,
     integrator: Option<IntegratorKind>,
     samples: Option<u32>,
     seed: Option<u32>,
     filter: Option<PixelFilter>,
     ao: Option<u32>,
     outline: Option<f32>,
-    denoise: bool,
+    denoise: Option<bool>,
     /// The flag (`--time` or `--noise`) that leaves the number of samples open, unless `samples` limits it.
     open_ended_by: Option<&'static str>,
 }
 
 impl LightFlags {
     pub(super) fn new(args: &LightArgs) -> Result<Self, Failure> {
-        let LightArgs { samples, seed, ao, outline, denoise, .. } = *args;
-        let refused = |flag: &str, error: &RangeError| {
-            Failure::usage(format!("--{flag} {}: it must be {}", error.value(), error.range))
+        let LightArgs { style, samples, seed, ao, outline, denoise, .. } = *args;
+        let refused = |flag: &str, given: String, error: &RangeError| {
+            Failure::usage(format!("--{flag} {given}: it must be {}", error.range))
         };
+        let background = args.background.as_deref().map(LinearRgb::from_css).transpose();
+        let background =
+            background.map_err(|error| Failure::usage(format!("--background: {error}")))?;
         if let Some(samples) = samples {
             let sampling = Sampling { samples, ..Sampling::default() };
-            sampling.check().map_err(|error| refused("samples", &error))?;
+            sampling.check().map_err(|error| refused("samples", samples.to_string(), &error))?;
         }
         let mut studio = Studio::default();
-        add_to_studio(&mut studio, ao, None);
-        studio.check().map_err(|error| refused("ao", &error))?;
-        add_to_studio(&mut studio, None, outline);
-        studio.check().map_err(|error| refused("outline", &error))?;
+        if let Some(rays) = ao {
+            add_to_studio(&mut studio, ao, None);
+            studio.check().map_err(|error| refused("ao", rays.to_string(), &error))?;
+        }
+        if let Some(width) = outline {
+            add_to_studio(&mut studio, None, outline);
+            studio.check().map_err(|error| refused("outline", width.to_string(), &error))?;
+        }
         let integrator = args.integrator.map(|integrator| match integrator {
             IntegratorArg::Primary => IntegratorKind::Primary,
             IntegratorArg::Studio => IntegratorKind::Studio,
             IntegratorArg::Path => IntegratorKind::Path,
         });
         let filter = args.filter.map(Into::into);
-        Ok(Self { integrator, samples, seed, filter, ao, outline, denoise, open_ended_by: None })
+        let open_ended_by = None;
+        Ok(Self {
+            style,
+            background,
+            integrator,
+            samples,
+            seed,
+            filter,
+            ao,
+            outline,
+            denoise,
+            open_ended_by,
+        })
     }
 
     /// Returns these flags with the flag that leaves the number of samples open, if there is one.
@@ -115,9 +152,29 @@ impl LightFlags {
         Self { open_ended_by: flag, ..self }
     }
 
-    /// Returns the integrator of the picture; `scene` is the one that the scene asks for.
+    /// Returns the style that takes the place of the scene's.
+    pub(super) fn style(&self) -> Option<Style> {
+        self.style
+    }
+
+    /// Returns the style of data that no scene file describes.
+    pub(super) fn style_of_data(&self) -> Style {
+        self.style.unwrap_or(match self.integrator {
+            Some(IntegratorKind::Primary) => Style::Fast,
+            Some(IntegratorKind::Path) => Style::Path,
+            Some(IntegratorKind::Studio) | None => Style::Default,
+        })
+    }
+
+    /// Returns the background that takes the place of the scene's.
+    pub(super) fn background(&self) -> Option<LinearRgb> {
+        self.background
+    }
+
+    /// Returns the integrator of the picture; `scene` is the one that the scene asks for. If neither says, occlusion
+    /// needs a studio, and other flags do not change the light.
     pub(super) fn integrator(&self, scene: Option<IntegratorKind>) -> IntegratorKind {
-        let by_flags = self.for_light().next().map(|_| IntegratorKind::Studio);
+        let by_flags = self.ao.map(|_| IntegratorKind::Studio);
         self.integrator.or(scene).or(by_flags).unwrap_or_default()
     }
 
@@ -129,21 +186,29 @@ impl LightFlags {
             ("--filter", self.filter.is_some()),
             ("--ao", self.ao.is_some()),
             ("--outline", self.outline.is_some()),
-            ("--denoise", self.denoise),
+            ("--denoise", self.denoise == Some(true)),
         ];
         let given = given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag);
         given.chain(self.open_ended_by)
     }
 
-    /// Applies the flags to the settings of a scene. Flags take precedence.
-    pub(super) fn apply_to(&self, mut settings: RenderSettings) -> Result<RenderSettings, Failure> {
+    /// Applies the flags to the settings of a scene. Flags take precedence. `scene` is the integrator that the scene
+    /// asks for; if neither it nor a flag asks for one, samples smooth the edges and do not change the light.
+    pub(super) fn apply_to(
+        &self,
+        mut settings: RenderSettings,
+        scene: Option<IntegratorKind>,
+    ) -> Result<RenderSettings, Failure> {
         if let (Integrator::Primary(_), Some(flag)) =
             (&settings.integrator, self.for_light().next())
         {
-            return Err(Failure::usage(format!(
-                "{flag} applies only to the integrators `studio` and `path`, but this picture is made by `primary`; \
-                 remove {flag} or choose another --integrator"
-            )));
+            if self.integrator.or(scene).is_some() {
+                return Err(Failure::usage(format!(
+                    "{flag} applies only to the integrators `studio` and `path`, but this picture is made by \
+                     `primary`; remove {flag} or choose another --integrator or --style"
+                )));
+            }
+            settings = settings.with_smooth_edges();
         }
         let sampling = &mut settings.sampling;
         let most =
@@ -151,7 +216,7 @@ impl LightFlags {
         sampling.samples = self.samples.unwrap_or(most);
         sampling.seed = self.seed.unwrap_or(sampling.seed);
         sampling.filter = self.filter.unwrap_or(sampling.filter);
-        settings.is_denoised |= self.denoise;
+        settings.is_denoised = self.denoise.unwrap_or(settings.is_denoised);
         let flag = if self.ao.is_some() { "--ao" } else { "--outline" };
         match &mut settings.integrator {
             Integrator::Studio(studio) => add_to_studio(studio, self.ao, self.outline),
@@ -172,15 +237,12 @@ fn add_to_studio(studio: &mut Studio, ao: Option<u32>, outline: Option<f32>) {
         studio.occlusion = Some(Occlusion { samples, ..studio.occlusion.unwrap_or_default() });
     }
     if let Some(width) = outline {
-        studio.outline = Some(Outline { width, ..studio.outline.unwrap_or_default() });
+        studio.outline = Some(Outline { width, ..studio.outline.unwrap_or(Outline::thin()) });
     }
 }
 
-/// Returns the default settings of an integrator, for data files.
-pub(super) fn plain(kind: IntegratorKind) -> RenderSettings {
-    match kind {
-        IntegratorKind::Primary => RenderSettings::default(),
-        IntegratorKind::Studio => RenderSettings::studio(),
-        IntegratorKind::Path => RenderSettings::path(),
-    }
+/// Parses the name of a style.
+fn styles() -> impl TypedValueParser<Value = Style> {
+    PossibleValuesParser::new(Style::ALL.iter().map(|style| style.name()))
+        .try_map(|name| Style::of_name(&name).ok_or("this is not a style"))
 }

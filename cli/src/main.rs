@@ -14,6 +14,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 mod adapter;
+mod annotation;
 mod args;
 #[cfg(feature = "gpu")]
 mod bench;
@@ -22,6 +23,7 @@ mod bench_report;
 #[cfg(feature = "gpu")]
 mod bench_scene;
 mod camera;
+mod color_flags;
 mod data;
 mod demo;
 mod device;
@@ -29,9 +31,12 @@ mod device;
 mod dump_shaders;
 mod encoding;
 mod failure;
+mod file_info;
+mod file_info_text;
 mod generate;
 mod info;
 mod input;
+mod input_format;
 mod interrupt;
 mod light;
 mod memory;
@@ -39,9 +44,12 @@ mod output;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
+mod print_scene;
 mod process;
 mod progress;
+mod read_file;
 mod render;
+mod report;
 #[cfg(feature = "gpu")]
 mod self_test;
 mod speak;

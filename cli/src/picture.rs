@@ -13,6 +13,7 @@ use super::output::{
 };
 use super::progress;
 use super::speak::answer;
+use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer, LayerSet};
 use pinhole::write::{exr, npy, png};
@@ -33,6 +34,8 @@ pub(super) struct Outputs {
     /// Layers in the file of the picture.
     inside: LayerSet,
     layers: Vec<(Layer, PathBuf)>,
+    /// What is drawn over a PNG.
+    annotations: Annotations,
 }
 
 impl Outputs {
@@ -45,6 +48,7 @@ impl Outputs {
             picture: is_file.then(|| picture.to_path_buf()),
             inside: LayerSet::COLOR,
             layers: Vec::new(),
+            annotations: Annotations::default(),
         };
         for text in layers {
             match parse_layer(text)? {
@@ -68,6 +72,16 @@ impl Outputs {
         self.format
     }
 
+    /// Returns these outputs with annotations that are drawn over a PNG.
+    pub(super) fn with_annotations(self, annotations: Annotations) -> Self {
+        Self { annotations, ..self }
+    }
+
+    /// Encodes the picture as PNG, with its annotations.
+    fn png(&self, image: &Image, encoding: &Encoding) -> Result<Vec<u8>, png::PngError> {
+        png::encode_annotated(image, encoding, &self.annotations)
+    }
+
     fn paths(&self) -> impl Iterator<Item = &PathBuf> {
         self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
     }
@@ -79,8 +93,14 @@ impl Outputs {
 
     /// Returns the layers to render.
     pub(super) fn layers(&self, encoding: &Encoding) -> LayerSet {
-        let alpha = encoding.transparent().then_some(Layer::Alpha);
-        self.layers.iter().map(|(layer, _)| *layer).chain(self.inside.iter()).chain(alpha).collect()
+        // The exposure and the tone curve of a PNG need what tells the background from the rest.
+        let encoded = if self.format == PictureFormat::Png || encoding.transparent() {
+            encoding.layers()
+        } else {
+            LayerSet::COLOR
+        };
+        let asked = self.layers.iter().map(|(layer, _)| *layer);
+        asked.chain(self.inside.iter()).chain(encoded.iter()).collect()
     }
 
     /// Encodes and writes all outputs, and `text` to a file if it is given. The files get their names when all of them
@@ -99,7 +119,7 @@ impl Outputs {
         }
         files.extend(self.files(image, encoding, adapter)?);
         let for_standard_output = match &self.picture {
-            None => Some(png::encode(image, encoding)?),
+            None => Some(self.png(image, encoding)?),
             Some(_) => None,
         };
         name_all(files)?;
@@ -121,7 +141,7 @@ impl Outputs {
         match (&self.picture, self.format) {
             (None, _) => {}
             (Some(path), PictureFormat::Png) => {
-                files.push((path, unnamed(path, &png::encode(image, encoding)?)?));
+                files.push((path, unnamed(path, &self.png(image, encoding)?)?));
             }
             (Some(path), PictureFormat::Exr) => {
                 let file = unnamed_with(path, |file| {
@@ -152,6 +172,7 @@ impl Outputs {
             picture: Some(with_eye(picture, eye)),
             inside: self.inside,
             layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
+            annotations: self.annotations.clone(),
         });
         let paths = || outputs.iter().flat_map(Self::paths);
         paths().try_for_each(|path| check_writable(path))?;

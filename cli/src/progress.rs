@@ -59,11 +59,9 @@ pub(super) fn is_seen() -> bool {
 }
 
 /// Number of steps of a bar.
-#[cfg(feature = "gpu")]
 const STEPS: u64 = 10_000;
 
 /// Shows the fraction of the picture that is traced, from 0 to 1.
-#[cfg(feature = "gpu")]
 pub(super) fn tracing(part: f64) {
     show_part(part, "tracing [{bar:40}] {percent}%, {eta} left", None);
 }
@@ -75,7 +73,6 @@ pub(super) fn rendering(part: f64, message: String) {
     show_part(part, template, Some(message));
 }
 
-#[cfg(feature = "gpu")]
 fn show_part(part: f64, template: &str, message: Option<String>) {
     let mut line = line();
     if !line.is_seen() {

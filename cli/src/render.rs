@@ -1,8 +1,14 @@
 //! `pinhole render`: renders a scene file or a data file.
 
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::Instant;
+
 use anyhow::Context;
 
+use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
+use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
 use super::device::{Device, Opened};
@@ -14,6 +20,7 @@ use super::interrupt;
 use super::light::LightFlags;
 use super::memory;
 use super::picture::Outputs;
+use super::print_scene;
 use super::progress;
 use super::speak::tell;
 use super::stop_rule::StopRule;
@@ -26,9 +33,9 @@ use super::with_scene::with_structures;
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::camera::View;
-use pinhole::cpu;
+use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{Headless, RenderPlan};
+use pinhole::gpu::{GpuError, Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
 
 /// A render job, checked as far as is possible before the input is read.
@@ -36,6 +43,7 @@ struct Job {
     source: Source,
     outputs: Outputs,
     encoding: EncodingFlags,
+    annotation: AnnotationFlags,
     stop_rule: StopRule,
     device: Device,
     stereo: Option<Stereo>,
@@ -43,13 +51,19 @@ struct Job {
 
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self, Failure> {
-        let outputs = Outputs::new(&args.output, &args.layers)?;
+        let standard_output = PathBuf::from("-");
+        let output = args.output.as_ref().unwrap_or(&standard_output);
+        let outputs = Outputs::new(output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
+        let color = ColorFlags::new(&args.color)?;
+        let annotation =
+            AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
         Ok(Self {
-            source: Source::new(&args.input)?.with_light(light),
+            source: Source::new(&args.input)?.with_light(light).with_color(color),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
+            annotation,
             outputs,
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
@@ -58,23 +72,36 @@ impl Job {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let started = Instant::now();
+    let quiet = args.report.quiet;
     let job = Job::new(args)?;
+    if quiet {
+        progress::close();
+    }
+    let note = |note: &dyn std::fmt::Display| {
+        if !quiet {
+            tell(format_args!("note: {note}"));
+        }
+    };
     threads::start()?;
+    if args.report.print_scene {
+        let input = job.source.load()?;
+        input.notes.iter().for_each(|text| note(text));
+        return Ok(print_scene::print(&input, job.encoding.apply_to(input.encoding))?);
+    }
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
-    for note in &input.notes {
-        tell(format_args!("note: {note}"));
-    }
-    let encoding = job.encoding.apply_to(input.encoding);
+    input.notes.iter().for_each(|text| note(text));
+    let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
+    let encoding = encoding.with_background(input.settings.visible_background());
     input.settings.is_transparent = encoding.transparent();
     if input.settings.integrator.is_primary() {
         job.stop_rule.check_without_light()?;
     }
-    for note in input.settings.notes(&input.scene) {
-        tell(format_args!("note: {note}"));
-    }
-    let layers = job.outputs.layers(&encoding);
+    input.settings.notes(&input.scene).iter().for_each(|text| note(text));
+    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input)?);
+    let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {
         return Err(Failure::usage(
@@ -83,17 +110,28 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     let adapter = opened.adapter();
     if job.stereo == Some(Stereo::TwoFiles) {
-        let outputs = job.outputs.of_eyes()?;
+        let outputs = outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
         let images = render_views(&input, &job.stop_rule, &views, layers, &opened)?;
-        return Ok(Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?);
+        Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
+        said(quiet, &input, started);
+        return Ok(());
     }
     let image = match render_views(&input, &job.stop_rule, &views, layers, &opened)? {
         Views::One(image) => image,
         Views::Two([left, right]) => Image::side_by_side([&left, &right])
             .context("the pictures of both eyes cannot be joined")?,
     };
-    Ok(job.outputs.write(&image, &encoding, adapter, None)?)
+    outputs.write(&image, &encoding, adapter, None)?;
+    said(quiet, &input, started);
+    Ok(())
+}
+
+/// Says in one line what was rendered, with which look, and how long it took.
+fn said(quiet: bool, input: &Input, started: Instant) {
+    if !quiet {
+        tell(input.report.line(started.elapsed()));
+    }
 }
 
 /// Renders the view of the camera, or of the middle between two eyes.
@@ -117,10 +155,10 @@ fn render_views(
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             check_on_cpu(input, stop_rule, views, layers)?;
-            tell(
-                "note: no Vulkan, Metal or DX12 adapter was found; \
-                 rendering on the CPU reference, which is slower; `pinhole info` says what to install",
-            );
+            tell(format_args!(
+                "note: rendering on the CPU reference, which is slower: {}",
+                GpuError::NoAdapter
+            ));
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
@@ -151,9 +189,19 @@ fn on_cpu(
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
     check_on_cpu(input, stop_rule, views, layers)?;
-    progress::stage("rendering on the CPU reference");
     let Input { scene, settings, .. } = input;
-    let images = views.try_each(|view| cpu::render(scene, view, settings, layers));
+    let bytes = SearchTree::BYTES_PER_SPHERE * scene.len() as u64;
+    let what = format!("a search tree of {} spheres needs", scene.len());
+    memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
+    progress::stage("building the search tree");
+    let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
+    let images = views.try_each(|view| {
+        let watch = |part| {
+            progress::tracing(part);
+            ControlFlow::Continue(())
+        };
+        cpu::render_watched(&tree, view, settings, layers, &watch)
+    });
     Ok(images.context("the CPU reference cannot render this picture")?)
 }
 

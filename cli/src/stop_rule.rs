@@ -17,7 +17,7 @@ use pinhole::gpu::{Decision, Progress};
 
 #[derive(Debug, Args)]
 pub(super) struct StopArgs {
-    /// Take samples for this time, such as 20s, 1.5m or 2h, but at most --samples
+    /// Take samples for this time in seconds, or such as 20s, 1.5m or 2h, but at most --samples
     #[arg(long, help_heading = HEADING, value_name = "TIME")]
     time: Option<String>,
     /// Take samples until the noise is at most this fraction of the light, such as 0.01, but at most --samples
@@ -99,12 +99,12 @@ impl StopRule {
 fn parse_time(text: &str) -> Result<Duration, Failure> {
     let wrong = || {
         Failure::usage(format!(
-            "--time {text}: write a time greater than 0, such as 20s, 1.5m or 2h"
+            "--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h"
         ))
     };
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match &text[number.len()..] {
-        "s" => 1.0,
+        "" | "s" => 1.0,
         "m" | "min" => 60.0,
         "h" => 3600.0,
         _ => return Err(wrong()),
@@ -264,12 +264,15 @@ mod tests {
     #[test]
     fn times() {
         let time = |text| parse_time(text).map_err(|failure| failure.message());
-        for (text, seconds) in [("20s", 20.0), ("1.5m", 90.0), ("2min", 120.0), ("0.5h", 1800.0)] {
+        for (text, seconds) in
+            [("20", 20.0), ("20s", 20.0), ("1.5m", 90.0), ("2min", 120.0), ("0.5h", 1800.0)]
+        {
             assert_eq!(time(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
         }
-        for text in ["", "20", "s", "0s", "-1s", "1d", "infs", "NaNs", "1e300h", "20 s", "1m30s"] {
-            let wrong =
-                format!("--time {text}: write a time greater than 0, such as 20s, 1.5m or 2h");
+        for text in ["", "s", "0s", "-1s", "1d", "infs", "NaNs", "1e300h", "20 s", "1m30s"] {
+            let wrong = format!(
+                "--time {text}: write a time greater than 0 in seconds, or such as 20s, 1.5m or 2h"
+            );
             assert_eq!(time(text), Err(wrong), "{text}");
         }
     }

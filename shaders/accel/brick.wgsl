@@ -1,5 +1,5 @@
 // Searching a brick, which is a part of the scene that fits into bindings, for the nearest shape.
-// provides: Nearest, Search, brick, distance_to, ids, nearest_hit, offer, shapes
+// provides: Nearest, Search, brick, distance_within, ids, nearest_hit, offer, shapes
 // needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, find_nearest, intersect, is_excluded
 
 struct Nearest {
@@ -25,10 +25,15 @@ struct Search {
     excluded: Excluded,
 }
 
-// The distance to a shape, or NO_HIT.
-fn distance_to(search: Search, shape_index: u32) -> f32 {
+// The distance to a shape if it is less than a limit, otherwise any distance that is not. Only a shape that would be
+// the nearest is compared with the excluded ones, because that takes as long as the test of a sphere.
+fn distance_within(search: Search, shape_index: u32, limit: f32) -> f32 {
     let shape = shapes[shape_index];
-    return select(intersect(search.ray, shape).t, NO_HIT, is_excluded(search.excluded, shape_index, shape));
+    var t = intersect(search.ray, shape).t;
+    if (t < limit && is_excluded(search.excluded, shape_index, shape)) {
+        t = NO_HIT;
+    }
+    return t;
 }
 
 // Replaces the nearest hit if a shape is nearer, or as near with a smaller id. The result therefore does not depend on

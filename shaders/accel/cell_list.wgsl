@@ -7,14 +7,14 @@
 //// copied
 // Testing the list of a cell that stores copies of its spheres. The radius of the last sphere is negative.
 // provides: test_list
-// needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_to, shapes
+// needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_within, shapes
 
 fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
     var t = NO_HIT;
     var shape_index = NO_SHAPE;
     var at = start;
     loop {
-        let here = distance_to(search, at);
+        let here = distance_within(search, at, t);
         if (here < t) {
             t = here;
             shape_index = at;
@@ -34,7 +34,7 @@ fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
 //// referenced
 // Testing the list of a cell that stores indices of spheres. The highest bit of the last index is set.
 // provides: test_list
-// needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_to
+// needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_within
 
 // Indices of the spheres of all cells, list after list.
 @group(1) @binding(4) var<storage, read> references: array<u32>;
@@ -49,7 +49,7 @@ fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
     loop {
         let reference = references[at];
         let candidate = reference & SHAPE_INDEX;
-        let here = distance_to(search, candidate);
+        let here = distance_within(search, candidate, t);
         if (here < t) {
             t = here;
             shape_index = candidate;

@@ -1,16 +1,6 @@
 // Colours and materials of the shapes of a brick. Twin: src/gpu/scene/appearance.rs.
-// provides: brick, material_index, shapes, sphere_color
-// needs: Brick, Shape
-
-// The brick, see accel/brick.wgsl.
-@group(1) @binding(0) var<uniform> brick: Brick;
-// The shapes, see accel/brick.wgsl.
-@group(1) @binding(1) var<storage, read> shapes: array<Shape>;
-// Appearance words in the order of `shapes`: a colour word for each shape and, from `brick.material_first` on, a
-// material word for each shape if there are several materials.
-@group(1) @binding(2) var<storage, read> appearances: array<u32>;
-// Linear colours with alpha, or the values of all bytes if shapes have individual RGBA8 colours.
-@group(1) @binding(3) var<storage, read> palette: array<vec4f>;
+// provides: material_index, sphere_color
+// needs: appearances, brick, palette
 
 // The linear colour and the alpha of a shape. Each component is read separately, because the components of an RGBA8
 // colour have different indices in the palette.

@@ -25,7 +25,7 @@ fn filter_table(index: u32) -> f32 {
 fn ground_distance(ray: Ray, behind: f32) -> f32 {
     let toward = dot(ray.direction, lighting.ground_normal);
     let height = dot(ray.origin - lighting.ground_point, lighting.ground_normal);
-    let is_toward = lighting_has(LIGHTING_GROUND) && toward < 0.0;
+    let is_toward = toward < 0.0 && lighting_has(LIGHTING_GROUND);
     let t = height / select(1.0, -toward, is_toward);
     return select(NO_HIT, t, is_toward && t > -behind);
 }

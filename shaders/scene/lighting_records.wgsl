@@ -1,7 +1,7 @@
 // Records that the host writes for lit pictures. Twins: the structs of the same names in src/gpu/passes/lit/records.rs.
 // A test compares names, offsets and sizes.
-// provides: DispatchParameters, LIGHTING_CATCHER, LIGHTING_GROUND, LIGHTING_SKY_SEEN, LIGHTING_TRANSPARENT,
-//   LIGHT_CHANCE, LIGHT_DIRECT, LIGHT_MULTIPLE, LightingParameters
+// provides: DispatchParameters, LIGHTING_CATCHER, LIGHTING_GROUND, LIGHTING_SHADOWS, LIGHTING_SKY_SEEN,
+//   LIGHTING_TRANSPARENT, LIGHT_CHANCE, LIGHT_DIRECT, LIGHT_MULTIPLE, LightingParameters
 
 // The parameters of a dispatch.
 struct DispatchParameters {

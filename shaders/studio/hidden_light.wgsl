@@ -1,7 +1,7 @@
 // Testing whether a light is hidden from a surface, in a studio.
-// provides: hide, is_hidden
-// needs: CameraRay, Excluded, NORMAL, PATH_BACK, PATH_ON_GROUND, Ray, Search, Start, enter_scene, find_any,
-//   ground_distance, has, paths, slot
+// provides: is_hidden
+// needs: CameraRay, Excluded, PATH_BACK, PATH_ON_GROUND, Ray, Search, Start, enter_scene, find_any, ground_distance,
+//   has
 
 // Searches the brick for an occluder. `excluded` must be the shape on which the ray starts, and `to_center` the vector
 // to its centre.
@@ -17,11 +17,4 @@ fn is_hidden(start: Start, excluded: Excluded, to_center: vec3f, direction: vec3
         is_hidden = find_any(Search(entry.ray, entry.inverse, excluded), rest);
     }
     return is_hidden;
-}
-
-// Sets the bits of hidden lights, one for each of 32 lights.
-fn hide(index: u32, lights: u32) {
-    if (lights != 0u) {
-        paths[slot(index, NORMAL)].w |= lights;
-    }
 }

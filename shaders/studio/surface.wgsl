@@ -5,13 +5,8 @@
 // needs: ALBEDO, DIRECTION, Departure, EMISSIVE, FIRST, HIT_GROUND, HIT_NOTHING, LAMBERT, LIGHTING_CATCHER,
 //   LIGHTING_TRANSPARENT, LIST_OF_LIGHT, LOBE, NORMAL, NO_PATH, OTHER_BRICK, PATH_ALIVE, PATH_BACK, PATH_INSIDE,
 //   PATH_ON_GROUND, RADIANCE, Ray, THROUGHPUT, append, classify_hit, dispatch, distance_from_camera, exit_distance_of,
-//   has, lighting, lighting_has, load, load_hit, load_start, material_of, next_list, path_of, paths, slot,
+//   faded, has, lighting, lighting_has, load, load_hit, load_start, material_of, next_list, path_of, paths, slot,
 //   start_fences, store, store_departure, store_start, vertex_of
-
-// The fraction of the colour that depth cueing replaces at a distance.
-fn faded(distance: f32) -> f32 {
-    return clamp((distance - lighting.cue_near) * lighting.cue_scale, 0.0, 1.0);
-}
 
 @compute @workgroup_size(64)
 fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {

@@ -2,7 +2,7 @@
 //!
 //! Every structure refers to the same spheres, and every traversal calls the same sphere test in f32, so that the
 //! result, distance and id, is that of testing every sphere, to the bit. The kernels in `shaders/` walk the same data
-//! in the same order.
+//! in the same order. One walk of the 8-wide tree is in f64 and calls the tests of the CPU reference (`wide_tree_visit`).
 
 pub(crate) mod binary_tree;
 mod binary_tree_trace;
@@ -35,6 +35,7 @@ pub(crate) mod wide_node;
 pub(crate) mod wide_tree;
 mod wide_tree_build;
 mod wide_tree_trace;
+pub(crate) mod wide_tree_visit;
 
 pub use brick::{Accel, Brick, Index, Structure};
 pub use grid::ListLayout;

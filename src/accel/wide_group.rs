@@ -44,7 +44,7 @@ impl Group {
 /// Moves bit s to bit `s ^ octant`: the lowest bit is then the child that a ray of this octant hits first. The WGSL
 /// twin is `octant_order` in `shaders/accel/wide_group.wgsl`.
 #[inline]
-fn octant_order(mask: u32, octant: u32) -> u32 {
+pub(super) fn octant_order(mask: u32, octant: u32) -> u32 {
     let mut mask = mask;
     if octant & 1 != 0 {
         mask = (mask & 0x55) << 1 | mask >> 1 & 0x55;

@@ -118,6 +118,13 @@ impl WideNode {
         }
     }
 
+    /// The grid along an axis, 0 to 2: its origin and the size of a cell.
+    #[inline]
+    pub(super) fn grid(&self, axis: usize) -> [f64; 2] {
+        let exponent = self.0[3] >> (8 * axis) & 0xff;
+        [f32::from_bits(self.0[axis]).into(), f32::from_bits(exponent << 23).into()]
+    }
+
     fn origin(&self) -> Vec3A {
         Vec3A::from_array([0, 1, 2].map(|axis| f32::from_bits(self.0[axis])))
     }

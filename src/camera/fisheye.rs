@@ -9,9 +9,9 @@ use super::framing;
 use super::{Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect};
 #[cfg(feature = "scene-file")]
 use crate::exact;
-#[cfg(feature = "scene-file")]
-use crate::geometry::bounds::Bounds;
 use crate::geometry::ray::Ray;
+#[cfg(feature = "scene-file")]
+use crate::geometry::subject::Subject;
 
 /// An equidistant fisheye camera.
 ///
@@ -96,49 +96,62 @@ impl Camera for FisheyeCamera {
 
 /// The table `[camera.fisheye]` of a scene file.
 #[cfg(feature = "scene-file")]
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FisheyeParameters {
     /// Position of the camera; without it, the camera frames the scene.
-    #[serde(deserialize_with = "exact::optional_array")]
+    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
     pub eye: Option<[f64; 3]>,
     /// The point at which the camera looks.
-    #[serde(deserialize_with = "exact::optional_array")]
+    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
     pub look_at: Option<[f64; 3]>,
     /// The direction in which the camera looks, instead of `look_at`.
-    #[serde(deserialize_with = "exact::optional_array")]
+    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
-    /// The direction that is up in the picture.
-    #[serde(deserialize_with = "exact::array")]
-    pub up: [f64; 3],
+    /// The direction that is up in the picture; without it +y, or in a view along y another axis.
+    #[serde(deserialize_with = "exact::optional_array", skip_serializing_if = "Option::is_none")]
+    pub up: Option<[f64; 3]>,
     /// The angle across the whole disk, in degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
 }
 
 #[cfg(feature = "scene-file")]
-impl Default for FisheyeParameters {
-    fn default() -> Self {
-        Self { eye: None, look_at: None, direction: None, up: [0.0, 1.0, 0.0], angle: None }
-    }
-}
-
-#[cfg(feature = "scene-file")]
 impl FisheyeParameters {
+    /// The same camera with a position, a direction and the direction that is up.
+    ///
+    /// # Errors
+    /// The same errors as [`FisheyeParameters::camera`].
+    pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
+        use super::pose::{Placement, PoseParameters};
+
+        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
+        match (PoseParameters { eye, look_at, direction, up }).placement()? {
+            Placement::Fixed(_, up) => Ok(Self { up: Some(up), ..*self }),
+            Placement::Framed(_, direction, up) => {
+                let eye = self.camera(aspect, subject)?.pose.origin().to_array();
+                Ok(Self { eye: Some(eye), direction: Some(direction), up: Some(up), ..*self })
+            }
+        }
+    }
+
     /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
-    /// `bounds`.
+    /// the subject.
     ///
     /// # Errors
     /// Returns an error if a value is out of range, or values exclude each other.
-    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<FisheyeCamera, CameraError> {
+    pub fn camera(&self, aspect: f64, subject: &Subject<'_>) -> Result<FisheyeCamera, CameraError> {
         use super::pose::{Placement, PoseParameters};
 
         let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
         let angle = self.angle.map_or(FisheyeCamera::DEFAULT_ANGLE_RADIANS, f64::to_radians);
         match (PoseParameters { eye, look_at, direction, up }).placement()? {
-            Placement::Fixed(pose) => FisheyeCamera::new(pose, angle, aspect),
-            Placement::Framed(pose) => {
+            Placement::Fixed(pose, _) => FisheyeCamera::new(pose, angle, aspect),
+            Placement::Framed(pose, ..) => {
                 let camera = FisheyeCamera::new(pose, angle, aspect)?;
-                let pose = pose.framing(bounds, framing::round_distance(bounds, 0.5 * angle))?;
+                let bounds = &subject.bounds();
+                let back = framing::round_distance(bounds, 0.5 * angle) * pose.basis().w();
+                let pose = pose.framing(bounds, back)?;
                 Ok(FisheyeCamera { pose, ..camera })
             }
         }

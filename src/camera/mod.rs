@@ -17,12 +17,17 @@ mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
 mod pinhole;
+#[cfg(feature = "scene-file")]
+mod pinhole_parameters;
 mod pose;
 pub mod sampling;
 #[cfg(feature = "scene-file")]
 mod stereo;
 mod thin_lens;
 mod view;
+mod viewpoint;
+
+pub use framing::DEFAULT_MARGIN;
 
 pub use fisheye::FisheyeCamera;
 #[cfg(feature = "scene-file")]
@@ -37,7 +42,7 @@ pub use panorama::PanoramaParameters;
 pub use parameters::CameraParameters;
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
-pub use pinhole::PinholeParameters;
+pub use pinhole_parameters::PinholeParameters;
 pub use pose::{CameraError, Pose};
 #[cfg(feature = "scene-file")]
 pub use stereo::StereoParameters;
@@ -45,6 +50,7 @@ pub use thin_lens::ThinLensCamera;
 #[cfg(feature = "scene-file")]
 pub use thin_lens::ThinLensParameters;
 pub use view::View;
+pub use viewpoint::{Viewpoint, ViewpointError, turned};
 
 /// A camera says which ray belongs to a relative location in [−1, 1]².
 ///
@@ -208,6 +214,21 @@ fn checked_half_extent(half_extent: impl Into<DVec2>) -> Result<DVec2, CameraErr
     checked_length("half extent in y", half_extent.y)?;
     Ok(half_extent)
 }
+
+/// Returns an error for a margin that would leave too little of the picture.
+fn checked_margin(value: f64) -> Result<f64, CameraError> {
+    let (low, high) = (0.0, framing::MOST_MARGIN);
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        Err(CameraError::Range { parameter: "`margin`", value, low, high })
+    }
+}
+
+/// The message for a margin that has no effect.
+#[cfg(feature = "scene-file")]
+const MARGIN_WITHOUT_FRAMING: &str =
+    "`margin` applies only to a camera that frames the scene; remove `margin` or `eye`";
 
 fn checked_aspect(aspect: f64) -> Result<f64, CameraError> {
     checked_length("aspect ratio", aspect)

@@ -2,17 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-#[cfg(feature = "scene-file")]
-use super::StereoParameters;
 use super::{
     Camera, CameraError, CameraKind, CameraVectors, Pose, checked_aspect, checked_half_extent,
-    checked_length, framing, stereo_lengths,
+    checked_length, checked_margin, framing, stereo_lengths,
 };
-#[cfg(feature = "scene-file")]
-use crate::exact;
-use crate::geometry::bounds::Bounds;
 use crate::geometry::math::MAX_LENGTH;
 use crate::geometry::ray::Ray;
+use crate::geometry::subject::Subject;
 
 /// A pinhole camera.
 ///
@@ -61,31 +57,38 @@ impl PinholeCamera {
         Self::new(pose, 1.0, tangents(fov_radians, aspect)?)
     }
 
-    /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole box.
+    /// A camera that looks along −z with y up, as molecule viewers do, and sees the whole subject: a box, or
+    /// [the spheres of a scene](crate::Scene::subject).
     ///
     /// # Errors
     /// Returns an error if the aspect ratio is not greater than zero, or the eye would have to stand too far away.
-    pub fn framing_from_the_front(bounds: &Bounds, aspect: f64) -> Result<Self, CameraError> {
+    pub fn framing_from_the_front<'a>(
+        subject: impl Into<Subject<'a>>,
+        aspect: f64,
+    ) -> Result<Self, CameraError> {
         let pose = Pose::looking_along(DVec3::ZERO, Pose::DEFAULT_DIRECTION, DVec3::Y)?;
-        Self::framing(bounds, pose, Self::DEFAULT_FOV_RADIANS, aspect)
+        let margin = framing::DEFAULT_MARGIN;
+        Self::framing(subject, pose, Self::DEFAULT_FOV_RADIANS, aspect, margin)
     }
 
-    /// A camera that keeps the orientation of `pose` and moves so that it sees the whole box.
+    /// A camera that keeps the orientation of `pose` and moves so that the picture of the subject, a box or
+    /// [the spheres of a scene](crate::Scene::subject), lies in the middle of the film and leaves `margin` free on the
+    /// two sides that it comes closest to, as a fraction of the film's width or height.
     ///
     /// # Errors
-    /// The same errors as [`PinholeCamera::with_vertical_fov`], and an error if the eye would have to stand too far
-    /// away.
-    pub fn framing(
-        bounds: &Bounds,
+    /// The same errors as [`PinholeCamera::with_vertical_fov`], and an error if the margin is not from 0 to 0.45, or
+    /// the eye would have to stand too far away.
+    pub fn framing<'a>(
+        subject: impl Into<Subject<'a>>,
         pose: Pose,
         fov_radians: f64,
         aspect: f64,
+        margin: f64,
     ) -> Result<Self, CameraError> {
+        let (subject, margin) = (subject.into(), checked_margin(margin)?);
         let tangents = tangents(fov_radians, aspect)?;
-        let basis = pose.basis();
-        let distance = framing::perspective_distance(bounds, &basis, tangents);
-        let pose = pose.framing(bounds, distance)?;
-        Self::new(pose, 1.0, tangents)
+        let eye = framing::perspective_eye(&subject, &pose.basis(), tangents, margin);
+        Self::new(pose.framing(&subject.bounds(), eye)?, 1.0, tangents)
     }
 
     /// The cameras of the left and of the right eye, `separation` apart along u. Both look along −w. Their view planes
@@ -124,6 +127,14 @@ impl PinholeCamera {
 
     pub(super) fn half_extent(&self) -> DVec2 {
         self.half_extent
+    }
+
+    /// The same camera with a narrower field of view: the picture is enlarged about its middle.
+    #[cfg(feature = "scene-file")]
+    pub(super) fn zoomed(self, zoom: Option<f64>) -> Result<Self, CameraError> {
+        let Some(zoom) = zoom else { return Ok(self) };
+        let half_extent = checked_half_extent(self.half_extent / checked_length("`zoom`", zoom)?)?;
+        Ok(Self { half_extent, ..self })
     }
 }
 
@@ -171,100 +182,5 @@ impl Camera for PinholeCamera {
             forward: self.shift * basis.u() - self.distance * basis.w(),
             numbers: [0.0; 3],
         }
-    }
-}
-
-/// The table `[camera.pinhole]` of a scene file.
-#[cfg(feature = "scene-file")]
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PinholeParameters {
-    /// Position of the camera; without it, the camera frames the scene.
-    #[serde(deserialize_with = "exact::optional_array")]
-    pub eye: Option<[f64; 3]>,
-    /// The point at which the camera looks.
-    #[serde(deserialize_with = "exact::optional_array")]
-    pub look_at: Option<[f64; 3]>,
-    /// The direction in which the camera looks, instead of `look_at`.
-    #[serde(deserialize_with = "exact::optional_array")]
-    pub direction: Option<[f64; 3]>,
-    /// The direction that is up in the picture.
-    #[serde(deserialize_with = "exact::array")]
-    pub up: [f64; 3],
-    /// Distance of the view plane from the eye.
-    pub distance: Option<f64>,
-    /// Half width and half height of the view plane.
-    #[serde(deserialize_with = "exact::optional_array")]
-    pub half_extent: Option<[f64; 2]>,
-    /// Vertical field of view in degrees, instead of `distance` and `half_extent`.
-    pub vertical_fov: Option<f64>,
-    /// Parameters of a stereo pair, if there are two eyes.
-    pub stereo: Option<StereoParameters>,
-}
-
-#[cfg(feature = "scene-file")]
-impl Default for PinholeParameters {
-    fn default() -> Self {
-        Self {
-            eye: None,
-            look_at: None,
-            direction: None,
-            up: [0.0, 1.0, 0.0],
-            distance: None,
-            half_extent: None,
-            vertical_fov: None,
-            stereo: None,
-        }
-    }
-}
-
-#[cfg(feature = "scene-file")]
-impl PinholeParameters {
-    /// The camera for a film of the given aspect ratio. Without an `eye` it is placed so that it sees the whole of
-    /// `bounds`. For two eyes, this is the camera halfway between them.
-    ///
-    /// # Errors
-    /// Returns an error if a value is out of range, or values exclude each other.
-    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<PinholeCamera, CameraError> {
-        use super::pose::{Placement, PoseParameters};
-
-        let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
-        let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
-        let fov = self.vertical_fov.map_or(PinholeCamera::DEFAULT_FOV_RADIANS, f64::to_radians);
-        match (placement, self.half_extent, self.distance) {
-            (_, Some(_), _) if self.vertical_fov.is_some() => Err(CameraError::Parameters {
-                message: "`vertical_fov` and `half_extent` exclude each other; keep one",
-            }),
-            (Placement::Fixed(pose), Some(half_extent), distance) => {
-                PinholeCamera::new(pose, distance.unwrap_or(1.0), half_extent)
-            }
-            (_, None, Some(_)) => Err(CameraError::Parameters {
-                message: "`distance` needs a `half_extent`; a field of view needs neither",
-            }),
-            (Placement::Framed(_), Some(_), _) => Err(CameraError::Parameters {
-                message: "`half_extent` needs an `eye`; to frame the whole scene give `vertical_fov`",
-            }),
-            (Placement::Fixed(pose), None, None) => {
-                PinholeCamera::with_vertical_fov(pose, fov, aspect)
-            }
-            (Placement::Framed(pose), None, None) => {
-                PinholeCamera::framing(bounds, pose, fov, aspect)
-            }
-        }
-    }
-
-    /// The cameras of the left and of the right eye; `None` without `stereo`.
-    ///
-    /// # Errors
-    /// The same errors as [`PinholeParameters::camera`].
-    pub fn stereo_pair(
-        &self,
-        aspect: f64,
-        bounds: &Bounds,
-    ) -> Result<Option<[PinholeCamera; 2]>, CameraError> {
-        let pair = |stereo: StereoParameters| {
-            self.camera(aspect, bounds)?.stereo_pair(stereo.separation, stereo.convergence)
-        };
-        self.stereo.map(pair).transpose()
     }
 }

@@ -138,9 +138,9 @@ impl Pose {
         Ok(Self { origin: eye, basis })
     }
 
-    /// The same orientation at `distance` behind the centre of a box.
-    pub(super) fn framing(self, bounds: &Bounds, distance: f64) -> Result<Self, CameraError> {
-        let origin = bounds.center() + self.basis.w() * distance;
+    /// The same orientation, at a place relative to the centre of a box.
+    pub(super) fn framing(self, bounds: &Bounds, offset: DVec3) -> Result<Self, CameraError> {
+        let origin = bounds.center() + offset;
         checked_point("the eye", origin).map_err(|_| CameraError::Framing { bounds: *bounds })?;
         Ok(Self { origin, ..self })
     }
@@ -193,16 +193,16 @@ pub(super) struct PoseParameters {
     pub(super) eye: Option<[f64; 3]>,
     pub(super) look_at: Option<[f64; 3]>,
     pub(super) direction: Option<[f64; 3]>,
-    pub(super) up: [f64; 3],
+    pub(super) up: Option<[f64; 3]>,
 }
 
-/// The pose that [`PoseParameters`] describe.
+/// The pose that [`PoseParameters`] describe, and the direction that is up.
 #[cfg(feature = "scene-file")]
 pub(super) enum Placement {
     /// The file gives position and orientation.
-    Fixed(Pose),
-    /// The file gives the orientation; the position follows from what the camera must see.
-    Framed(Pose),
+    Fixed(Pose, [f64; 3]),
+    /// The file gives the orientation, whose direction is returned; the position follows from what the camera must see.
+    Framed(Pose, [f64; 3], [f64; 3]),
 }
 
 #[cfg(feature = "scene-file")]
@@ -210,10 +210,14 @@ impl PoseParameters {
     pub(super) fn placement(&self) -> Result<Placement, CameraError> {
         match (self.eye, self.look_at, self.direction) {
             (Some(eye), Some(look_at), None) => {
-                Pose::looking_at(eye, look_at, self.up).map(Placement::Fixed)
+                let toward = DVec3::from(look_at) - DVec3::from(eye);
+                let (pose, up) = self.upright(toward, |up| Pose::looking_at(eye, look_at, up))?;
+                Ok(Placement::Fixed(pose, up))
             }
             (Some(eye), None, Some(direction)) => {
-                Pose::looking_along(eye, direction, self.up).map(Placement::Fixed)
+                let along = |up| Pose::looking_along(eye, direction, up);
+                let (pose, up) = self.upright(direction.into(), along)?;
+                Ok(Placement::Fixed(pose, up))
             }
             (Some(_), None, None) => Err(CameraError::Parameters {
                 message: "an `eye` needs a `look_at` point or a `direction`",
@@ -226,8 +230,27 @@ impl PoseParameters {
             }),
             (None, None, direction) => {
                 let direction = direction.unwrap_or(Pose::DEFAULT_DIRECTION);
-                Pose::looking_along(DVec3::ZERO, direction, self.up).map(Placement::Framed)
+                let along = |up| Pose::looking_along(DVec3::ZERO, direction, up);
+                let (pose, up) = self.upright(direction.into(), along)?;
+                Ok(Placement::Framed(pose, direction, up))
             }
+        }
+    }
+
+    /// Makes a pose with the direction that is up. If none was given, it is +y, or for a view straight down or up the
+    /// horizontal direction that [`Viewpoint::axes`](super::Viewpoint::axes) chooses.
+    fn upright(
+        &self,
+        toward: DVec3,
+        pose: impl Fn([f64; 3]) -> Result<Pose, CameraError>,
+    ) -> Result<(Pose, [f64; 3]), CameraError> {
+        let up = self.up.unwrap_or([0.0, 1.0, 0.0]);
+        match pose(up) {
+            Err(CameraError::UpParallelToView { .. }) if self.up.is_none() => {
+                let up = [0.0, 0.0, if toward.y < 0.0 { -1.0 } else { 1.0 }];
+                Ok((pose(up)?, up))
+            }
+            made => Ok((made?, up)),
         }
     }
 }

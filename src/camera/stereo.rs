@@ -1,7 +1,7 @@
 //! The parameters of a stereo pair in a scene file.
 
 /// The table `stereo` of a camera, which asks for one picture for each eye.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct StereoParameters {
     /// Distance between the eyes, in scene units.

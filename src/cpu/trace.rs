@@ -1,26 +1,17 @@
-//! The nearest hit, found by testing every sphere. The WGSL twin is `shaders/primary/trace.wgsl`.
+//! The nearest hit. The WGSL twin is `shaders/primary/trace.wgsl`.
 
-use glam::DVec3;
-
+use super::search::Search;
 use super::sphere::intersect;
+use crate::geometry::math::wide;
 use crate::geometry::ray::{Hit, Ray};
-use crate::scene::Scene;
 
 /// The nearest hit in front of the ray's origin; of several spheres at the same distance, that with the smallest id.
-/// `None` for a miss.
+/// `None` for a miss. With a reference to a scene, every sphere is tested.
 #[must_use]
-pub fn trace(scene: &Scene, ray_in_world: &Ray) -> Option<Hit> {
-    let ray = Ray { origin: ray_in_world.origin - scene.origin(), ..*ray_in_world };
-    let mut nearest: Option<Hit> = None;
-    for (id, &[x, y, z, radius]) in scene.spheres().iter().enumerate() {
-        let center = DVec3::new(x.into(), y.into(), z.into());
-        let Some((t, normal)) = intersect(&ray, center, radius.into()) else {
-            continue;
-        };
-        // Ids ascend, so `<` prefers the smaller id at equal distances.
-        if nearest.is_none_or(|hit| t < hit.t) {
-            nearest = Some(Hit { t, id: id as u32, normal });
-        }
-    }
-    nearest
+pub fn trace<'a>(search: impl Into<Search<'a>>, ray_in_world: &Ray) -> Option<Hit> {
+    let search = search.into();
+    let ray = Ray { origin: ray_in_world.origin - search.scene().origin(), ..*ray_in_world };
+    let nearest = search
+        .nearest(&ray, |_, [x, y, z, radius]| intersect(&ray, wide([x, y, z]), radius.into()))?;
+    Some(Hit { t: nearest.t, id: nearest.id, normal: nearest.hit })
 }

@@ -5,3 +5,4 @@ pub mod bounds;
 pub(crate) mod disk;
 pub mod math;
 pub mod ray;
+pub mod subject;

@@ -20,6 +20,10 @@ pub struct HeadlessOptions {
     /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off.
     /// The picture does not depend on this option.
     pub indirect: bool,
+    /// Whether one pass takes whole samples of studios, where all spheres are opaque and in one brick and there is no
+    /// ground. It takes less time than several passes. Only experiments and tests turn it off. The picture is the same,
+    /// but for what a device rounds otherwise.
+    pub one_pass: bool,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
@@ -40,7 +44,14 @@ impl Default for HeadlessOptions {
     fn default() -> Self {
         let timeout = Duration::from_secs(600);
         let edits = Vec::new();
-        Self { adapter: None, limits: LimitChoice::Adapter, timeout, indirect: true, edits }
+        Self {
+            adapter: None,
+            limits: LimitChoice::Adapter,
+            timeout,
+            indirect: true,
+            one_pass: true,
+            edits,
+        }
     }
 }
 

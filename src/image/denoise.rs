@@ -24,6 +24,21 @@ pub const GUIDES: LayerSet = LayerSet::COLOR
     .with(Layer::Albedo)
     .with(Layer::Variance);
 
+/// The least albedo by which light is divided.
+const LEAST_ALBEDO: f32 = 0.01;
+
+/// What the channels of a pixel's colour are divided by, to get the light on its surface: the albedo. A channel without
+/// surface colour that nevertheless shines, as in a highlight, is not divided. One that is dark, as green is on a red
+/// sphere, is divided by the least albedo, so that the light of white neighbours does not bleach it.
+fn divisors(albedo: [f32; 3], color: [f32; 3]) -> [f32; 3] {
+    let has_color = albedo.iter().any(|c| *c >= LEAST_ALBEDO);
+    std::array::from_fn(|i| match albedo[i] {
+        c if c >= LEAST_ALBEDO => c,
+        _ if has_color && color[i] < LEAST_ALBEDO => LEAST_ALBEDO,
+        _ => 1.0,
+    })
+}
+
 /// What is filtered and what guides the filter, row by row from the top.
 #[derive(Clone, Debug)]
 pub(crate) struct Guided {
@@ -43,11 +58,11 @@ impl Guided {
         let depths = image.depth().ok_or_else(missing(Layer::Depth))?;
         let albedos = image.albedo().ok_or_else(missing(Layer::Albedo))?;
         let variances = image.variance().ok_or_else(missing(Layer::Variance))?;
-        // A channel without surface colour is not divided: 1 takes the place of its albedo.
         let albedos: Vec<[f32; 4]> = albedos
             .iter()
-            .map(|rgb| {
-                let [r, g, b] = rgb.map(|c| if c < 0.01 { 1.0 } else { c });
+            .zip(image.color())
+            .map(|(albedo, color)| {
+                let [r, g, b] = divisors(*albedo, *color);
                 [r, g, b, 0.0]
             })
             .collect();

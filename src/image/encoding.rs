@@ -1,6 +1,8 @@
 //! How writers encode a picture: bits, transparency, exposure and tone curve.
 
+use crate::image::color::LinearRgb;
 use crate::image::tone::ToneCurve;
+use crate::image::{Layer, LayerSet};
 
 /// The number of bits of each sample of a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -34,6 +36,8 @@ pub struct Encoding {
     transparent: bool,
     exposure: f32,
     tone: ToneCurve,
+    background: Option<LinearRgb>,
+    dots_per_inch: Option<f32>,
 }
 
 /// Why parameters do not make an encoding.
@@ -49,6 +53,12 @@ pub enum EncodingError {
     Exposure {
         /// The exposure as given, in stops.
         stops: f32,
+    },
+    /// The resolution is out of range.
+    #[error("`dpi` is {dots_per_inch}; it must lie between 1 and 100000 dots per inch")]
+    DotsPerInch {
+        /// The resolution as given.
+        dots_per_inch: f32,
     },
     /// The number of bits is neither 8 nor 16.
     #[error("`bits` is {bits}; it must be 8 or 16")]
@@ -94,6 +104,66 @@ impl Encoding {
     #[must_use]
     pub fn with_tone(self, tone: ToneCurve) -> Self {
         Self { tone, ..self }
+    }
+
+    /// The same encoding for a picture with this background, which the exposure and the tone curve leave as it is:
+    /// they are applied to what lies in front of it. `None` applies them to the whole picture, as for a visible sky.
+    #[must_use]
+    pub fn with_background(self, background: Option<LinearRgb>) -> Self {
+        Self { background, ..self }
+    }
+
+    /// The background that the exposure and the tone curve leave as it is.
+    #[must_use]
+    pub fn background(&self) -> Option<LinearRgb> {
+        self.background
+    }
+
+    /// The layers that an encoded picture needs: alpha if it is transparent, or if its background must be told from
+    /// what lies in front of it.
+    #[must_use]
+    pub fn layers(&self) -> LayerSet {
+        let needs_alpha = self.transparent || self.kept_background().is_some();
+        if needs_alpha { LayerSet::COLOR.with(Layer::Alpha) } else { LayerSet::COLOR }
+    }
+
+    /// The background, if exposure or tone curve would change it.
+    pub(crate) fn kept_background(&self) -> Option<LinearRgb> {
+        let is_changed = self.exposure != 0.0 || self.tone != ToneCurve::None;
+        self.background.filter(|_| is_changed && !self.transparent)
+    }
+
+    /// Converts a pixel to linear light of a display like [`Encoding::display`], but leaves the background as it is:
+    /// its share of the pixel is 1 − alpha.
+    #[must_use]
+    pub fn display_over(&self, linear: [f32; 3], alpha: f32, background: LinearRgb) -> [f32; 3] {
+        let behind = background.to_array().map(|c| c * (1.0 - alpha));
+        if alpha <= 0.0 {
+            return behind;
+        }
+        let in_front = std::array::from_fn(|i| ((linear[i] - behind[i]) / alpha).max(0.0));
+        let shown = self.display(in_front);
+        std::array::from_fn(|i| alpha * shown[i].clamp(0.0, 1.0) + behind[i])
+    }
+
+    /// The same encoding with the number of pixels per inch at which the picture is to be printed, which is written to
+    /// PNG files and changes no pixel.
+    ///
+    /// # Errors
+    /// Returns an error if it does not lie between 1 and 100,000.
+    pub fn with_dots_per_inch(self, dots_per_inch: Option<f32>) -> Result<Self, EncodingError> {
+        match dots_per_inch {
+            Some(dots_per_inch) if !(1.0..=1e5).contains(&dots_per_inch) => {
+                Err(EncodingError::DotsPerInch { dots_per_inch })
+            }
+            dots_per_inch => Ok(Self { dots_per_inch, ..self }),
+        }
+    }
+
+    /// The number of pixels per inch at which the picture is to be printed, if it was chosen.
+    #[must_use]
+    pub fn dots_per_inch(&self) -> Option<f32> {
+        self.dots_per_inch
     }
 
     /// The number of bits of each sample.

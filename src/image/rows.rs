@@ -24,6 +24,12 @@ impl RowMut<'_> {
         if id == NO_ID { 0.0 } else { 1.0 }
     }
 
+    /// Whether there is a layer that [`RowMut::set`] fills and [`RowMut::set_averages`] does not.
+    pub(crate) fn has_data(&self) -> bool {
+        let vectors = self.normal.is_some() || self.position.is_some();
+        vectors || self.depth.is_some() || self.id.is_some()
+    }
+
     /// Stores the result of the pixel's only ray.
     pub(crate) fn set(&mut self, column: usize, pixel: &Pixel) {
         self.color[column] = pixel.color;

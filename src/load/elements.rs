@@ -3,6 +3,7 @@
 use mendeleev::Element;
 
 use crate::image::color::LinearRgb;
+use crate::text::shortened;
 
 /// Van der Waals radii in Å, by atomic number from 1; 0 where there is no value.
 ///
@@ -62,7 +63,7 @@ pub(super) fn unknown_note(names: &[String], unless: &str) -> Option<String> {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let named = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    let named = names.iter().take(NAMED).map(|name| shortened(name)).collect::<Vec<_>>().join(", ");
     let note = format!(
         "these species are not chemical elements: {named}{more}; they are drawn in pink with radius 2 unless \
          {unless}a scene file has a table `[elements.NAME]` for them"

@@ -63,6 +63,18 @@ pub enum LoadError {
     #[cfg(feature = "mmcif")]
     #[error(transparent)]
     MmCif(#[from] super::mmcif::MmCifError),
+    /// A LAS file cannot be read.
+    #[cfg(feature = "las")]
+    #[error(transparent)]
+    Las(#[from] super::las::LasError),
+    /// A binary trajectory cannot be read.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Binary(#[from] super::binary::BinaryError),
+    /// A trajectory does not go with its topology.
+    #[cfg(feature = "binary")]
+    #[error(transparent)]
+    Topology(#[from] super::topology::TopologyError),
     /// An `.npy` file cannot be read.
     #[cfg(feature = "npy")]
     #[error(transparent)]
@@ -75,6 +87,10 @@ pub enum LoadError {
     #[cfg(feature = "pdb")]
     #[error(transparent)]
     Pdb(#[from] super::pdb::PdbError),
+    /// A PLY file cannot be read.
+    #[cfg(feature = "ply")]
+    #[error(transparent)]
+    Ply(#[from] super::ply::PlyError),
     /// Raw numbers cannot be read.
     #[error(transparent)]
     Raw(#[from] super::raw::RawError),
@@ -82,6 +98,10 @@ pub enum LoadError {
     #[cfg(feature = "table")]
     #[error(transparent)]
     Table(#[from] super::table::TableError),
+    /// A VTK XML file cannot be read.
+    #[cfg(feature = "vtk")]
+    #[error(transparent)]
+    Vtk(#[from] super::vtk::VtkError),
     /// An XYZ file cannot be read.
     #[cfg(feature = "xyz")]
     #[error(transparent)]

@@ -1,17 +1,15 @@
-//! The table of file formats, and reading a file with one of them.
+//! A file format, and reading a file with it.
 
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, OptionError};
+use super::formats::FORMATS;
 #[cfg(feature = "gzip")]
 use super::gzip;
 use super::loaded::Loaded;
-use super::raw;
 use super::source::{Source, without_gz};
 use super::trajectory::Frames;
-#[allow(unused_imports, reason = "not every format has frames")]
-use super::trajectory::read_from_memory;
 
 /// A file format for spheres.
 #[derive(Debug)]
@@ -34,9 +32,9 @@ pub struct Format {
     /// Whether a file gives colours, either directly or through the elements of its atoms.
     pub has_colors: bool,
     /// Whether the first bytes of a file look like this format.
-    starts: fn(&[u8]) -> bool,
-    reader: fn(&[u8], &Options) -> Result<Loaded, LoadError>,
-    extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
+    pub(super) starts: fn(&[u8]) -> bool,
+    pub(super) reader: fn(&[u8], &Options) -> Result<Loaded, LoadError>,
+    pub(super) extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
 }
 
 /// Options for reading a file of spheres.
@@ -53,157 +51,6 @@ pub struct Options {
     pub topology: Option<PathBuf>,
     /// The names of the columns, in the order of the file, for tables without a header; empty if there is one.
     pub columns: Vec<String>,
-}
-
-/// All formats that this build can read. No two of them share a name or an extension.
-pub static FORMATS: &[Format] = &[
-    #[cfg(feature = "xyz")]
-    Format {
-        name: "xyz",
-        extensions: &["xyz"],
-        about: "Text with one atom on each line (XYZ)",
-        frames: Some(super::xyz::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: true,
-        has_colors: true,
-        starts: super::xyz::starts,
-        reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "xyz")]
-    Format {
-        name: "extxyz",
-        extensions: &["extxyz"],
-        about: "Text with one atom on each line and named columns (extended XYZ)",
-        frames: Some(super::xyz::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: true,
-        has_colors: true,
-        starts: never,
-        reader: |bytes, options| read_from_memory(bytes, super::xyz::FRAMES, options),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "pdb")]
-    Format {
-        name: "pdb",
-        extensions: &["pdb", "ent"],
-        about: "Text in the fixed columns of the Protein Data Bank; a frame is a model",
-        frames: Some(super::pdb::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: true,
-        starts: super::pdb::starts,
-        reader: |bytes, options| read_from_memory(bytes, super::pdb::FRAMES, options),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "lammps")]
-    Format {
-        name: "lammps-dump",
-        extensions: &["lammpstrj", "dump"],
-        about: "A dump of atoms of LAMMPS; a frame is a step",
-        frames: Some(super::lammps::dump::FRAMES),
-        needs_topology: false,
-        may_lack_names: true,
-        may_lack_radii: true,
-        has_colors: false,
-        starts: super::lammps::dump::starts,
-        reader: |bytes, options| read_from_memory(bytes, super::lammps::dump::FRAMES, options),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "lammps")]
-    Format {
-        name: "lammps-data",
-        extensions: &["data", "lmp"],
-        about: "A data file of LAMMPS, with the section Atoms",
-        frames: None,
-        needs_topology: false,
-        may_lack_names: true,
-        may_lack_radii: true,
-        has_colors: false,
-        starts: super::lammps::data::starts,
-        reader: super::lammps::data::read,
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "mmcif")]
-    Format {
-        name: "mmcif",
-        extensions: &["cif", "mmcif"],
-        about: "Text of named items (mmCIF), or the CIF of a small molecule; a frame is a model",
-        frames: Some(super::mmcif::FRAMES),
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: true,
-        starts: super::mmcif::starts,
-        reader: |bytes, options| read_from_memory(bytes, super::mmcif::FRAMES, options),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "npy")]
-    Format {
-        name: "npy",
-        extensions: &["npy"],
-        about: "A NumPy array of shape (n, 4) or, with a radius, (n, 3)",
-        frames: None,
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: true,
-        has_colors: false,
-        starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
-        reader: |bytes, options| Ok(Loaded::new(super::npy::read_spheres(bytes, options.radius)?)),
-        extra_bytes: no_extra_bytes,
-    },
-    #[cfg(feature = "npy")]
-    Format {
-        name: "npz",
-        extensions: &["npz"],
-        about: "A NumPy archive with an array of shape (n, 4) or, with a radius, (n, 3)",
-        frames: None,
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: true,
-        has_colors: false,
-        starts: |bytes| bytes.starts_with(b"PK\x03\x04"),
-        reader: |bytes, options| Ok(Loaded::new(super::npz::read_spheres(bytes, options.radius)?)),
-        extra_bytes: |bytes| Ok(super::npz::array_bytes(bytes)?),
-    },
-    #[cfg(feature = "csv")]
-    Format {
-        name: "csv",
-        extensions: &["csv", "tsv"],
-        about: "A table of text with commas, tabs, semicolons or white space",
-        frames: None,
-        needs_topology: false,
-        may_lack_names: true,
-        may_lack_radii: true,
-        has_colors: false,
-        starts: super::csv::starts,
-        reader: super::csv::read,
-        extra_bytes: no_extra_bytes,
-    },
-    Format {
-        name: "raw-f32x4",
-        extensions: &[],
-        about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
-        frames: None,
-        needs_topology: false,
-        may_lack_names: false,
-        may_lack_radii: false,
-        has_colors: false,
-        starts: never,
-        reader: |bytes, _| Ok(Loaded::new(raw::read_spheres(bytes)?)),
-        extra_bytes: no_extra_bytes,
-    },
-];
-
-fn never(_: &[u8]) -> bool {
-    false
-}
-
-fn no_extra_bytes(_: &[u8]) -> Result<u64, LoadError> {
-    Ok(0)
 }
 
 impl Format {
@@ -395,6 +242,7 @@ mod tests {
         feature = "mmcif",
         feature = "npy",
         feature = "pdb",
+        feature = "ply",
         feature = "xyz"
     ))]
     #[test]
@@ -402,6 +250,7 @@ mod tests {
         for (bytes, name) in [
             (&b"\x93NUMPY\x01"[..], "npy"),
             (b"PK\x03\x04", "npz"),
+            (b"ply\r\nformat ascii 1.0", "ply"),
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),

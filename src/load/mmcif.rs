@@ -25,11 +25,11 @@ use super::atoms::{Atom, Atoms};
 use super::error::LoadError;
 use super::format::Options;
 use super::source::Bytes;
-use super::trajectory::{FrameIndex, FrameSpan, Frames, bytes};
+use super::trajectory::{FrameIndex, FrameReader, FrameSpan, Frames, bytes};
 use crate::text::{shortened, without_byte_order_mark};
 
 /// How frames are found and read one by one.
-pub(super) const FRAMES: Frames = Frames::Bytes { find, read };
+pub(super) const FRAMES: Frames = Frames::Bytes { find };
 
 /// Whether the first line that is neither blank nor a comment begins a data block.
 pub(super) fn starts(bytes: &[u8]) -> bool {
@@ -40,7 +40,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
 }
 
 /// Finds the models. The whole file is in memory for that, because a row may go over several lines.
-fn find(source: &mut dyn Bytes, _: Option<usize>) -> Result<FrameIndex, LoadError> {
+fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIndex, LoadError> {
     let mut text = Vec::new();
     source.seek(SeekFrom::Start(0))?;
     source.read_to_end(&mut text)?;
@@ -54,49 +54,68 @@ fn find(source: &mut dyn Bytes, _: Option<usize>) -> Result<FrameIndex, LoadErro
         .collect();
     let none = frames.is_empty().then_some(MmCifError::NoAtoms);
     let problem = problem.or(none).map(LoadError::from);
-    // The end of the last gap is the end of the file.
-    Ok(FrameIndex { head: 0..text.len() as u64, frames, is_whole: true, problem })
+    let reader =
+        MmCif { models: frames.clone(), end: text.len() as u64, is_whole: problem.is_none() };
+    Ok(FrameIndex {
+        frames,
+        is_whole: true,
+        problem,
+        reader: Some(Box::new(reader)),
+        ..FrameIndex::default()
+    })
 }
 
-fn read(
-    source: &mut dyn Bytes,
-    index: &FrameIndex,
-    wanted: usize,
-    _: &Options,
-) -> Result<Loaded, LoadError> {
-    let frames = &index.frames;
-    let Some(FrameSpan { bytes: rows, lines_before }) = frames.get(wanted) else {
-        return Err(LoadError::NoSuchFrame { wanted, frames: frames.len() });
-    };
-    // Models of a block follow each other without a gap; the text between blocks has their names and cells.
-    let is_first =
-        |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
-    let first = (0..=wanted).rev().find(|frame| is_first(*frame)).unwrap_or_default();
-    let last =
-        (wanted..frames.len()).find(|frame| frame + 1 == frames.len() || is_first(frame + 1));
-    let last = last.unwrap_or(wanted);
-    let start = if first == 0 { 0 } else { frames[first - 1].bytes.end };
-    let before = bytes(source, &(start..frames[first].bytes.start))?;
-    let count_lines = |text: &[u8]| memchr::memchr_iter(b'\n', text).count();
-    let lines_of_rows = frames[first].lines_before;
-    let lines = lines_of_rows.saturating_sub(count_lines(&before));
-    let mut header = Header::before(without_byte_order_mark(&before), lines)?;
-    let end = frames.get(last + 1).map_or(index.head.end, |next| next.bytes.start);
-    if header.cell()?.is_none() && index.problem.is_none() {
-        let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
-        header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
-    }
-    let cell = header.cell()?;
-    let columns = header.columns.ok_or(MmCifError::NoAtoms)?;
-    let text = bytes(source, rows)?;
-    let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
-    loaded.cell = cell;
-    if columns.is_fractional {
-        loaded.notes.push(
+/// Reads models, whose names of columns and cells stand in the text around them.
+#[derive(Debug)]
+struct MmCif {
+    models: Vec<FrameSpan>,
+    /// The end of the file.
+    end: u64,
+    /// Whether the last model is followed by what may follow it.
+    is_whole: bool,
+}
+
+impl FrameReader for MmCif {
+    fn read(
+        &self,
+        source: &mut dyn Bytes,
+        wanted: usize,
+        span: &FrameSpan,
+        _: &Options,
+    ) -> Result<Loaded, LoadError> {
+        let frames = &self.models;
+        let FrameSpan { bytes: rows, lines_before } = span;
+        // Models of a block follow each other without a gap; the text between blocks has their names and cells.
+        let is_first =
+            |frame: usize| frame == 0 || frames[frame - 1].bytes.end != frames[frame].bytes.start;
+        let first = (0..=wanted).rev().find(|frame| is_first(*frame)).unwrap_or_default();
+        let last =
+            (wanted..frames.len()).find(|frame| frame + 1 == frames.len() || is_first(frame + 1));
+        let last = last.unwrap_or(wanted);
+        let start = if first == 0 { 0 } else { frames[first - 1].bytes.end };
+        let before = bytes(source, &(start..frames[first].bytes.start))?;
+        let count_lines = |text: &[u8]| memchr::memchr_iter(b'\n', text).count();
+        let lines_of_rows = frames[first].lines_before;
+        let lines = lines_of_rows.saturating_sub(count_lines(&before));
+        let mut header = Header::before(without_byte_order_mark(&before), lines)?;
+        let end = frames.get(last + 1).map_or(self.end, |next| next.bytes.start);
+        if header.cell()?.is_none() && self.is_whole {
+            let lines =
+                frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
+            header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
+        }
+        let cell = header.cell()?;
+        let columns = header.columns.ok_or(MmCifError::NoAtoms)?;
+        let text = bytes(source, rows)?;
+        let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
+        loaded.cell = cell;
+        if columns.is_fractional {
+            loaded.notes.push(
             "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them".to_owned(),
         );
+        }
+        Ok(loaded)
     }
-    Ok(loaded)
 }
 
 /// Where a value begins, and the value.

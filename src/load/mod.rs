@@ -17,14 +17,24 @@
 
 #[cfg(any(feature = "mmcif", feature = "pdb"))]
 mod atoms;
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every format has every kind of number")]
+mod binary;
 #[cfg(feature = "csv")]
 pub mod csv;
+#[cfg(feature = "dcd")]
+mod dcd;
 #[cfg(feature = "table")]
 mod elements;
 #[cfg(any(feature = "exr", feature = "hdr"))]
 pub mod environment;
 mod error;
 mod format;
+mod formats;
+#[cfg(feature = "gromacs")]
+mod gromacs;
+#[cfg(feature = "gsd")]
+mod gsd;
 #[cfg(feature = "gzip")]
 mod gzip;
 #[cfg(feature = "table")]
@@ -32,6 +42,8 @@ mod gzip;
 mod labels;
 #[cfg(feature = "lammps")]
 pub mod lammps;
+#[cfg(feature = "las")]
+mod las;
 mod loaded;
 #[cfg(feature = "mmcif")]
 pub mod mmcif;
@@ -43,6 +55,8 @@ mod numbers;
 mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
+#[cfg(feature = "ply")]
+mod ply;
 pub mod raw;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has lines of values")]
@@ -53,16 +67,32 @@ mod spacing;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has named columns")]
 mod table;
+#[cfg(feature = "binary")]
+#[allow(dead_code, reason = "not every binary format needs one")]
+mod topology;
 mod trajectory;
+#[cfg(feature = "vtk")]
+mod vtk;
 #[cfg(feature = "xyz")]
 pub mod xyz;
 
+#[cfg(feature = "binary")]
+pub use binary::BinaryError;
 pub use error::{LoadError, OptionError};
-pub use format::{FORMATS, Format, Options};
+pub use format::{Format, Options};
+pub use formats::FORMATS;
+#[cfg(feature = "las")]
+pub use las::LasError;
 pub use loaded::{Column, ColumnValues, Labels, Loaded};
 pub use open::{from_bytes, open};
+#[cfg(feature = "ply")]
+pub use ply::PlyError;
 #[cfg(feature = "table")]
 pub use rows::LineError;
 #[cfg(feature = "table")]
 pub use table::TableError;
+#[cfg(feature = "binary")]
+pub use topology::TopologyError;
 pub use trajectory::Trajectory;
+#[cfg(feature = "vtk")]
+pub use vtk::VtkError;

@@ -1,4 +1,7 @@
 //! Reads spheres from an `.npz` file: a zip archive of NumPy arrays, as `savez` and `savez_compressed` write it.
+//!
+//! One array has the positions, or `x`, `y` and `z` do. The others, with a row for each sphere, are columns whose names say
+//! what they mean, as in all tables: `radius`, `colors`, `opacity` and so on.
 
 use std::io::Read;
 
@@ -6,12 +9,27 @@ use flate2::bufread::DeflateDecoder;
 use npyz::npz::array_name_from_file_name;
 use rawzip::{CompressionMethod, ZipArchive, ZipSliceArchive, ZipVerification};
 
-use super::npy::{self, SpheresError};
-use crate::scene::sphere_array::SphereArray;
+use super::format::Options;
+use super::loaded::Loaded;
+use super::npy::{Array, Spheres, SpheresError};
+use super::table::Table;
 use crate::text::{one_line, shortened};
 
-/// Names that mark the array to read among several; the first name that occurs counts.
-const NAMES: [&str; 2] = ["spheres", "positions"];
+/// Names that mark the array of positions among several; the first name that occurs counts.
+const NAMES: [&str; 9] = [
+    "spheres",
+    "positions",
+    "position",
+    "pos",
+    "points",
+    "coordinates",
+    "coords",
+    "centers",
+    "xyz",
+];
+
+/// The most arrays that are read.
+const MAX_ARRAYS: usize = 1024;
 
 /// The most bytes that one byte of deflate can expand to (zlib's technical details: 258 bytes from two bits).
 const MAX_RATIO: u64 = 1032;
@@ -29,9 +47,9 @@ pub enum NpzError {
     /// The archive has no array.
     #[error("the archive has no array; save the spheres with numpy.savez")]
     Empty,
-    /// The archive has several arrays, and none is called `spheres` or `positions`.
+    /// The archive has several arrays, and no name says which has the positions.
     #[error(
-        "the archive has the arrays {}; name the one to read `spheres` or `positions`, or save it alone",
+        "the archive has the arrays {}; name the one with the centers `positions`, or `spheres` if it has radii as well",
         listed(names)
     )]
     Ambiguous {
@@ -56,60 +74,144 @@ pub enum NpzError {
     },
 }
 
-/// Reads spheres from the only array of an archive, or else from the one called `spheres` or `positions`, as
-/// [`npy::read_spheres`] does.
+/// Reads spheres from the array called `spheres` or `positions`, or from the only one, as [`super::npy::read`] does; or
+/// from `x`, `y` and `z`. Other arrays with a row for each sphere are radii, colours, opacities or columns, by their
+/// names. A note lists arrays that are not used.
 ///
 /// # Errors
-/// If there is no such array, it is damaged, or it is not a list of spheres.
-pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, NpzError> {
+/// If no array has positions, an array is damaged, or they do not make spheres.
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, NpzError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
-    let (name, entry) = entry_with_spheres(&archive)?;
-    let contents = contents(&archive, entry.wayfinder, entry.method);
-    let array = contents
-        .map_err(|message| NpzError::Entry { name: name.clone(), message: one_line(&message) })?;
-    npy::read_spheres(&array, radius).map_err(|error| NpzError::Spheres { name, error })
+    let entries = entries(&archive, bytes.len() as u64)?;
+    let main = main_array(&entries)?;
+    let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
+    let of_array = |name: &str| {
+        let name = shortened(&one_line(name));
+        move |error| NpzError::Spheres { name: name.clone(), error }
+    };
+    let first = &entries[main.index];
+    let data = first.contents(&archive)?;
+    let array = Array::open(&data).map_err(of_array(&first.name))?;
+    let count = array.rows();
+    let (mut spheres, mut columns, mut notes) = (None, Vec::new(), Vec::new());
+    if main.is_alone {
+        match array.spheres(radius).map_err(of_array(&first.name))? {
+            Spheres::Ready { spheres: ready, have_radii } => spheres = Some((ready, have_radii)),
+            Spheres::Columns { columns: found, notes: said } => (columns, notes) = (found, said),
+        }
+    }
+    drop(data);
+    let mut unused = Vec::new();
+    for (index, entry) in entries.iter().enumerate() {
+        if main.is_alone && index == main.index {
+            continue;
+        }
+        let data = entry.contents(&archive)?;
+        let array = Array::open(&data).map_err(of_array(&entry.name))?;
+        let name = shortened(&one_line(&entry.name));
+        if array.rows() != count || !array.has_rows() {
+            unused.push(format!("`{name}` has the shape {}", array.shape()));
+            continue;
+        }
+        match array.columns(&name) {
+            Ok(found) => columns.extend(found),
+            Err(reason) => unused.push(format!("`{name}` {reason}")),
+        }
+    }
+    let table = Table { columns };
+    let loaded = match spheres {
+        Some((spheres, have_radii)) => table.dress(spheres, have_radii, &options),
+        None => table.into_loaded(&options),
+    };
+    let mut loaded = loaded.map_err(|error| of_array(&first.name)(error.into()))?;
+    loaded.notes.append(&mut notes);
+    if !unused.is_empty() {
+        let more = unused.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        unused.truncate(NAMED);
+        let unused = unused.join(", ");
+        loaded.notes.push(format!(
+            "these arrays are not used, because they do not have a row for each of the {count} spheres, or are not \
+             numbers: {unused}{more}"
+        ));
+    }
+    Ok(loaded)
 }
 
-/// Returns the uncompressed size in bytes of the array that [`read_spheres`] reads, as the archive declares it.
+/// Returns the uncompressed size in bytes of the arrays, as the archive declares it.
 ///
 /// # Errors
-/// If there is no such array.
+/// If no array has positions.
 pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
     let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
-    let (_, entry) = entry_with_spheres(&archive)?;
-    Ok(entry.wayfinder.uncompressed_size_hint())
+    let entries = entries(&archive, bytes.len() as u64)?;
+    main_array(&entries)?;
+    let sizes = entries.iter().map(|entry| entry.wayfinder.uncompressed_size_hint());
+    Ok(sizes.fold(0, u64::saturating_add))
 }
 
-/// The position of an array in its archive, and how it is compressed.
+/// An array in its archive: where it is, and how it is compressed.
 struct Entry {
+    name: String,
     wayfinder: rawzip::ZipArchiveEntryWayfinder,
     method: CompressionMethod,
 }
 
-/// Finds the array to read, and its name.
-fn entry_with_spheres(archive: &ZipSliceArchive<&[u8]>) -> Result<(String, Entry), NpzError> {
-    let mut entries = Vec::new();
+impl Entry {
+    fn contents<'a>(
+        &self,
+        archive: &'a ZipSliceArchive<&[u8]>,
+    ) -> Result<std::borrow::Cow<'a, [u8]>, NpzError> {
+        let name = || shortened(&one_line(&self.name));
+        contents(archive, self.wayfinder, self.method)
+            .map_err(|message| NpzError::Entry { name: name(), message: one_line(&message) })
+    }
+}
+
+/// Lists the arrays of an archive. If two have the same name, the later one counts, as in NumPy.
+fn entries(archive: &ZipSliceArchive<&[u8]>, size: u64) -> Result<Vec<Entry>, NpzError> {
+    let mut entries: Vec<Entry> = Vec::new();
+    let mut compressed = 0_u64;
     for entry in archive.entries() {
         let entry = entry.map_err(|error| broken(&error))?;
         let name = String::from_utf8_lossy(entry.file_path().as_bytes()).into_owned();
-        if let Some(name) = array_name_from_file_name(&name) {
-            entries.push((name.to_owned(), entry));
+        let Some(name) = array_name_from_file_name(&name) else { continue };
+        let (name, wayfinder) = (name.to_owned(), entry.wayfinder());
+        compressed = compressed.saturating_add(wayfinder.compressed_size_hint());
+        // Arrays that lie over each other could take much more memory than the file.
+        if entries.len() == MAX_ARRAYS || compressed > size {
+            let message =
+                format!("it has more than {MAX_ARRAYS} arrays, or arrays that lie over each other");
+            return Err(NpzError::Archive { message });
         }
+        entries.retain(|known| known.name != name);
+        entries.push(Entry { name, wayfinder, method: entry.compression_method() });
     }
-    // If two arrays have the same name, the later one counts, as in NumPy.
-    let named = |wanted: &&str| entries.iter().rposition(|(name, _)| name == wanted);
-    let index = match (entries.len(), NAMES.iter().find_map(named)) {
-        (0, _) => return Err(NpzError::Empty),
-        (_, Some(index)) => index,
-        (1, None) => 0,
-        _ => {
-            let names = entries.into_iter().map(|(name, _)| name).collect();
-            return Err(NpzError::Ambiguous { names });
-        }
-    };
-    let (name, entry) = entries.swap_remove(index);
-    let entry = Entry { wayfinder: entry.wayfinder(), method: entry.compression_method() };
-    Ok((shortened(&one_line(&name)), entry))
+    Ok(entries)
+}
+
+/// The array that says how many spheres there are.
+struct Main {
+    index: usize,
+    /// Whether it has all of their positions, as opposed to one coordinate.
+    is_alone: bool,
+}
+
+fn main_array(entries: &[Entry]) -> Result<Main, NpzError> {
+    let named =
+        |wanted: &str| entries.iter().position(|entry| entry.name.eq_ignore_ascii_case(wanted));
+    let is_alone = true;
+    match (entries.len(), NAMES.into_iter().find_map(named)) {
+        (0, _) => Err(NpzError::Empty),
+        (_, Some(index)) => Ok(Main { index, is_alone }),
+        (1, None) => Ok(Main { index: 0, is_alone }),
+        _ => match ["x", "y", "z"].map(named) {
+            [Some(index), Some(_), Some(_)] => Ok(Main { index, is_alone: false }),
+            _ => Err(NpzError::Ambiguous {
+                names: entries.iter().map(|entry| entry.name.clone()).collect(),
+            }),
+        },
+    }
 }
 
 /// Returns the bytes of an entry, which are borrowed from the archive if they are not compressed.
@@ -167,9 +269,11 @@ fn broken(error: &rawzip::Error) -> NpzError {
     NpzError::Archive { message: one_line(&error.to_string()) }
 }
 
+/// How many names a message lists.
+const NAMED: usize = 5;
+
 /// Lists names on one line, however many there are.
 fn listed(names: &[String]) -> String {
-    const NAMED: usize = 5;
     let named = names.iter().take(NAMED).map(|name| format!("`{}`", shortened(&one_line(name))));
     let more = match names.len().saturating_sub(NAMED) {
         0 => String::new(),

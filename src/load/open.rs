@@ -34,7 +34,7 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Loaded, LoadErr
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty; only its extension is used, to
-/// choose the format as [`open`] does, and no file is opened.
+/// choose the format as [`open`] does, and no file is opened but the topology in the options.
 ///
 /// # Errors
 /// If the bytes cannot be read, their format is not known, or an option does not apply to it.

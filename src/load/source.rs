@@ -11,6 +11,9 @@ use super::gzip::{self, Gunzip};
 /// How much of a file is read at a time.
 const PIECE: usize = 1 << 18;
 
+/// The same, where a reader looks at places that are far from each other. What is longer is read without a copy.
+const SMALL_PIECE: usize = 1 << 12;
+
 /// Bytes that can be read from any place.
 pub(super) trait Bytes: BufRead + Seek {}
 
@@ -37,6 +40,19 @@ impl Source {
             return Ok(Self::Gzip(BufReader::with_capacity(PIECE, gunzip)));
         }
         Ok(Self::Plain(plain))
+    }
+
+    /// Returns this source for a reader that goes from place to place, at the start of the file.
+    pub(super) fn in_small_pieces(self) -> io::Result<Self> {
+        let mut source = match self {
+            Self::Plain(plain) => {
+                Self::Plain(BufReader::with_capacity(SMALL_PIECE, plain.into_inner()))
+            }
+            #[cfg(feature = "gzip")]
+            gzip => gzip,
+        };
+        source.rewind()?;
+        Ok(source)
     }
 
     fn inner(&mut self) -> &mut dyn Bytes {

@@ -74,7 +74,8 @@ fn nearest(
         let middle = cell_of(*center);
         for offset in 0..27_i64 {
             let offset = I64Vec3::new(offset % 3, offset / 3 % 3, offset / 9) - I64Vec3::ONE;
-            around.entry(middle + offset).or_default().push(index);
+            // Cells that are too far for an i64 are all one, which takes time but changes nothing.
+            around.entry(middle.wrapping_add(offset)).or_default().push(index);
         }
     }
     let mut squared = vec![f64::INFINITY; asked.len()];
@@ -138,5 +139,7 @@ mod tests {
         assert_eq!(radius_of(&[]), None);
         assert_eq!(radius_of(&[DVec3::ONE]), None);
         assert_eq!(radius_of(&[DVec3::ONE; 7]), None);
+        // The volume is 0 in f64, and so is the side of a cell.
+        assert_eq!(radius_of(&lattice(10, 1e-150)), None);
     }
 }

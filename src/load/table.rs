@@ -1,7 +1,14 @@
 //! Makes spheres of a table of points: recognises by their names which columns are positions, radii, colours, opacities
 //! and chemical elements. All formats with named columns share these rules, so that a name means the same in each.
 
+mod names;
+
 use glam::DVec3;
+
+use names::{
+    COLOR_NAMES, COLORS, DIAMETERS, ELEMENTS, OPACITIES, POSITIONS, RADII, Sets, TRANSPARENCIES,
+};
+pub(super) use names::{has_positions, is_element, must_be_numbers};
 
 use super::elements::{self, appearance};
 use super::format::Options;
@@ -73,43 +80,6 @@ pub enum TableError {
     },
 }
 
-/// Names of the components of a position, a colour and so on: any one of these sets.
-type Sets = &'static [[&'static str; 3]];
-
-const POSITIONS: Sets = &[
-    ["x", "y", "z"],
-    ["position.x", "position.y", "position.z"],
-    ["positions.x", "positions.y", "positions.z"],
-    ["pos.x", "pos.y", "pos.z"],
-    ["points.x", "points.y", "points.z"],
-    ["coordinates.x", "coordinates.y", "coordinates.z"],
-    ["center.x", "center.y", "center.z"],
-];
-
-const COLORS: Sets = &[
-    ["red", "green", "blue"],
-    ["r", "g", "b"],
-    ["diffuse.red", "diffuse.green", "diffuse.blue"],
-    ["color.x", "color.y", "color.z"],
-    ["colour.x", "colour.y", "colour.z"],
-    ["colors.x", "colors.y", "colors.z"],
-    ["rgb.x", "rgb.y", "rgb.z"],
-    ["color.r", "color.g", "color.b"],
-    ["colour.r", "colour.g", "colour.b"],
-    ["color.0", "color.1", "color.2"],
-    ["colors.0", "colors.1", "colors.2"],
-    ["rgb.0", "rgb.1", "rgb.2"],
-    ["rgba.0", "rgba.1", "rgba.2"],
-];
-
-const RADII: &[&str] = &["radius", "radii", "particle.radius", "sphere.radius"];
-const DIAMETERS: &[&str] = &["diameter", "diameters", "particle.diameter"];
-const OPACITIES: &[&str] = &["opacity", "alpha", "color.3", "colors.3", "rgba.3", "color.a"];
-const TRANSPARENCIES: &[&str] = &["transparency"];
-const ELEMENTS: &[&str] =
-    &["species", "element", "elements", "symbol", "symbols", "type.symbol", "particle.type"];
-const COLOR_NAMES: &[&str] = &["color", "colour", "colors"];
-
 impl TableColumn {
     pub(super) fn numbers(name: impl Into<String>, numbers: Vec<f64>) -> Self {
         Self { name: name.into(), values: ColumnValues::Numbers(numbers), full: None }
@@ -140,9 +110,24 @@ impl Table {
                 return Err(TableError::Position { row, column: name.clone(), found: values[row] });
             }
         }
+        let centers = x.iter().zip(&y).zip(&z);
+        let spheres = centers.map(|((x, y), z)| [*x, *y, *z, 0.0]).collect();
+        drop((x, y, z));
+        self.dress(SphereArray::F64(spheres), false, options)
+    }
+
+    /// Gives the table to spheres, one row to each. If the spheres have no radii, they get them as
+    /// [`Table::into_loaded`] says.
+    pub(super) fn dress(
+        mut self,
+        mut spheres: SphereArray,
+        have_radii: bool,
+        options: &Options,
+    ) -> Result<Loaded, TableError> {
         let mut notes = Vec::new();
         let (colors, opacities) = (self.colors(&mut notes), self.opacities(&mut notes));
-        let found_radii = self.radii()?;
+        let found_radii = if have_radii { None } else { self.radii()? };
+        let gives_radii = have_radii || found_radii.is_some();
         let species = self.species();
         let elements = species
             .as_ref()
@@ -154,38 +139,33 @@ impl Table {
             .as_ref()
             .zip(elements.as_ref())
             .map(|(labels, elements)| move |row: usize| elements[labels.indices[row] as usize]);
-        let radius_of: Box<dyn Fn(usize) -> f64 + Send + Sync> =
-            match (&found_radii, options.radius, &element_of) {
-                (Some((column, _)), Some(_), _) => {
-                    return Err(TableError::TwoRadii { column: column.clone() });
-                }
-                (Some((_, radii)), None, _) => Box::new(|row| radii[row]),
-                (None, Some(radius), _) => Box::new(move |_| radius),
-                (None, None, Some(element_of)) => Box::new(|row| element_of(row).radius),
-                (None, None, None) => {
-                    let radius = guessed_radius(
-                        x.len(),
-                        |row| DVec3::new(x[row], y[row], z[row]),
-                        &mut notes,
-                    );
-                    Box::new(move |_| radius)
-                }
-            };
-        let spheres = parallel::map(x.len(), |row| [x[row], y[row], z[row], radius_of(row)]);
+        match (found_radii, options.radius, &element_of) {
+            (Some((column, _)), Some(_), _) => return Err(TableError::TwoRadii { column }),
+            (Some((_, radii)), None, _) => set_radii(&mut spheres, |row| radii[row]),
+            (None, _, _) if have_radii => {}
+            (None, Some(radius), _) => set_radii(&mut spheres, |_| radius),
+            (None, None, Some(element_of)) => {
+                set_radii(&mut spheres, |row| element_of(row).radius);
+            }
+            (None, None, None) => {
+                let center = |row| center(&spheres, row);
+                let radius = guessed_radius(spheres.len(), center, &mut notes);
+                set_radii(&mut spheres, |_| radius);
+            }
+        }
         let by_element = element_of
             .as_ref()
-            .map(|element_of| parallel::map(x.len(), |row| element_of(row).color));
+            .map(|element_of| parallel::map(spheres.len(), |row| element_of(row).color));
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
             named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
         });
         let unknown: Vec<_> = unknown.collect();
-        if colors.is_none() || found_radii.is_none() {
+        if colors.is_none() || !gives_radii {
             notes.extend(elements::unknown_note(&unknown, "the file gives a color or radius or "));
         }
-        drop(radius_of);
         let colors = colors.or(by_element);
-        let mut loaded = Loaded::new(SphereArray::F64(spheres));
+        let mut loaded = Loaded::new(spheres);
         loaded.colors = colors;
         loaded.opacities = opacities;
         self.note_what_is_unused(&mut notes);
@@ -348,6 +328,14 @@ impl Table {
 }
 
 impl TableColumn {
+    /// The largest number; 0 if there is none.
+    pub(super) fn largest(&self) -> f64 {
+        match &self.values {
+            ColumnValues::Numbers(numbers) => numbers.iter().copied().fold(0.0, f64::max),
+            ColumnValues::Labels(_) => 0.0,
+        }
+    }
+
     fn is_empty(&self) -> bool {
         match &self.values {
             ColumnValues::Numbers(numbers) => numbers.is_empty(),
@@ -356,27 +344,23 @@ impl TableColumn {
     }
 }
 
-/// The name of a column in lower case, with dots for what separates words.
-fn plain(name: &str) -> String {
-    TableColumn::numbers(name, Vec::new()).plain_name()
+fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {
+    match spheres {
+        SphereArray::F32(all) => {
+            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row) as f32);
+        }
+        SphereArray::F64(all) => {
+            all.iter_mut().enumerate().for_each(|(row, sphere)| sphere[3] = radius(row));
+        }
+    }
 }
 
-/// Whether a column with this name must have numbers, because positions or radii follow from it.
-pub(super) fn must_be_numbers(name: &str) -> bool {
-    let name = plain(name);
-    let name = name.as_str();
-    POSITIONS.as_flattened().contains(&name) || RADII.contains(&name) || DIAMETERS.contains(&name)
-}
-
-/// Whether a column with this name has chemical elements, which may be atomic numbers.
-pub(super) fn is_element(name: &str) -> bool {
-    ELEMENTS.contains(&plain(name).as_str())
-}
-
-/// Whether columns with these names have positions.
-pub(super) fn has_positions(names: &[String]) -> bool {
-    let names: Vec<String> = names.iter().map(|name| plain(name)).collect();
-    POSITIONS.iter().any(|set| set.iter().all(|wanted| names.iter().any(|name| name == wanted)))
+fn center(spheres: &SphereArray, row: usize) -> DVec3 {
+    let [x, y, z, _] = match spheres {
+        SphereArray::F32(all) => all[row].map(f64::from),
+        SphereArray::F64(all) => all[row],
+    };
+    DVec3::new(x, y, z)
 }
 
 /// The radius of spheres that have none, with a note.

@@ -1,9 +1,10 @@
 //! Files with several frames, of which one at a time is in memory.
 #![cfg_attr(
-    not(all(feature = "pdb", feature = "xyz")),
+    not(all(feature = "gsd", feature = "pdb", feature = "xyz")),
     allow(dead_code, reason = "some formats with frames are left out")
 )]
 
+use std::fmt;
 use std::io::{self, BufRead, Read as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -24,20 +25,35 @@ pub(super) enum Frames {
     },
     /// Binary data, where a reader goes to any place.
     Bytes {
-        /// Finds all frames, or those up to one that is wanted. What is wrong after some frames is the problem of the
-        /// index, not an error.
-        find: fn(&mut dyn Bytes, Option<usize>) -> Result<FrameIndex, LoadError>,
-        /// Reads one frame, counted from 0.
-        read: fn(&mut dyn Bytes, &FrameIndex, usize, &Options) -> Result<Loaded, LoadError>,
+        /// Finds all frames, or those up to one that is wanted, and gives the index a reader. What is wrong after some
+        /// frames is the problem of the index, not an error.
+        find: fn(&mut dyn Bytes, Option<usize>, &Options) -> Result<FrameIndex, LoadError>,
     },
+}
+
+/// Reads frames of binary data, with what was found out about the file.
+pub(super) trait FrameReader: fmt::Debug + Send + Sync {
+    /// Reads one frame that the index has, counted from 0.
+    fn read(
+        &self,
+        source: &mut dyn Bytes,
+        frame: usize,
+        span: &FrameSpan,
+        options: &Options,
+    ) -> Result<Loaded, LoadError>;
 }
 
 impl Frames {
     /// Finds frames. An index has at least one.
-    fn find(self, source: &mut dyn Bytes, last: Option<usize>) -> Result<FrameIndex, LoadError> {
+    fn find(
+        self,
+        source: &mut dyn Bytes,
+        last: Option<usize>,
+        options: &Options,
+    ) -> Result<FrameIndex, LoadError> {
         let mut index = match self {
             Self::Lines { find, .. } => find(&mut LineReader::new(source), last)?,
-            Self::Bytes { find, .. } => find(source, last)?,
+            Self::Bytes { find } => find(source, last, options)?,
         };
         match index.problem.take() {
             Some(problem) if index.frames.is_empty() => return Err(problem),
@@ -58,16 +74,18 @@ impl Frames {
         let Some(span) = index.frames.get(wanted) else {
             return Err(LoadError::NoSuchFrame { wanted, frames });
         };
-        let mut loaded = match self {
-            Self::Lines { read, .. } => {
+        let mut loaded = match (self, &index.reader) {
+            (Self::Lines { read, .. }, _) => {
                 let head = bytes(source, &index.head)?;
                 let text = bytes(source, &span.bytes)?;
                 let lines_before = span.lines_before;
                 let text = FrameText { head: &head, text: &text, lines_before, index: wanted };
                 read(&text, options)?
             }
-            Self::Bytes { read, .. } => read(source, index, wanted, options)?,
+            (Self::Bytes { .. }, Some(reader)) => reader.read(source, wanted, span, options)?,
+            (Self::Bytes { .. }, None) => return Err(LoadError::NoSuchFrame { wanted, frames: 0 }),
         };
+        loaded.notes.extend_from_slice(&index.notes);
         loaded.frames = index.is_whole.then_some(frames);
         Ok(loaded)
     }
@@ -94,9 +112,15 @@ pub(super) fn read_from_memory(
 ) -> Result<Loaded, LoadError> {
     let wanted = options.frame.unwrap_or_default();
     let mut source = io::Cursor::new(bytes);
-    let index = frames.find(&mut source, None)?;
+    let index = frames.find(&mut source, None, options)?;
     let loaded = frames.read(&mut source, &index, wanted, options);
     match index.problem {
+        // Frames of binary data do not depend on what follows them.
+        Some(problem) if matches!(frames, Frames::Bytes { .. }) && wanted < index.frames.len() => {
+            let mut loaded = loaded?;
+            loaded.notes.push(problem.to_string());
+            Ok(loaded)
+        }
         Some(problem) if loaded.is_ok() || wanted >= index.frames.len() => Err(problem),
         _ => loaded,
     }
@@ -112,6 +136,10 @@ pub(super) struct FrameIndex {
     pub(super) is_whole: bool,
     /// What is wrong after the last frame, as where a program is still writing.
     pub(super) problem: Option<LoadError>,
+    /// Notes for the user on every frame.
+    pub(super) notes: Vec<String>,
+    /// Reads the frames, if they are binary data.
+    pub(super) reader: Option<Box<dyn FrameReader>>,
 }
 
 /// Where a frame is in its file.
@@ -182,7 +210,10 @@ impl Trajectory {
         };
         format.check(options)?;
         let frames = format.frames.ok_or(LoadError::NoFrames { format: format.name })?;
-        let index = frames.find(&mut source, last).map_err(of_file)?;
+        if matches!(frames, Frames::Bytes { .. }) {
+            source = source.in_small_pieces().map_err(|error| of_file(error.into()))?;
+        }
+        let index = frames.find(&mut source, last, options).map_err(of_file)?;
         let options = Options { format: Some(format), frame: None, ..options.clone() };
         Ok(Self { path: path.to_path_buf(), source, frames, index, options })
     }

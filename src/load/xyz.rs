@@ -21,7 +21,7 @@ use super::loaded::Loaded;
 use super::rows::{self, Lines, Rows, Values};
 use super::table::{Table, TableError};
 use super::trajectory::{FrameIndex, FrameSpan, FrameText, Frames, LineReader, read_from_memory};
-use crate::text::{shortened, without_byte_order_mark};
+use crate::text::{one_line, shortened, without_byte_order_mark};
 
 /// Reads one frame, counted from 0.
 ///
@@ -94,7 +94,8 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadEr
     // The comment may have any encoding; the part that is read is ASCII.
     let comment = String::from_utf8_lossy(lines.next().unwrap_or_default());
     lines_before += 1;
-    let refused = |message| XyzError::Properties { line: lines_before, message };
+    let refused =
+        |message: String| XyzError::Properties { line: lines_before, message: one_line(&message) };
     let declared = Declared::of_comment(&comment).map_err(refused)?;
     let cell = columns::cell_of(&comment).map_err(refused)?;
     let rows = Rows { text: lines.rest, lines_before, may_be_longer: declared.is_plain };

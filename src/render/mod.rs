@@ -15,7 +15,7 @@ use crate::image::LayerSet;
 use crate::image::color::LinearRgb;
 use crate::image::denoise;
 use crate::image::outline;
-use crate::light::{Ground, Light, Sky};
+use crate::light::{Ground, Light, LightFrame, LightKind, Sky};
 
 mod check;
 mod integrator;
@@ -107,6 +107,33 @@ impl RenderSettings {
     #[must_use]
     pub fn path() -> Self {
         Self { integrator: Integrator::Path(PathTracing::default()), ..Self::studio() }
+    }
+
+    /// The same picture with several samples for each pixel, which smooth its edges. A picture by primary rays becomes
+    /// one of the integrator `studio` with the same light: a light at the eye, or for [`Shading::Flat`] ambient light
+    /// alone. Other settings stay as they are.
+    #[must_use]
+    pub fn with_smooth_edges(&self) -> Self {
+        let Integrator::Primary(shading) = self.integrator else { return self.clone() };
+        let (ambient, head) = match shading {
+            Shading::Flat => (LinearRgb::WHITE, LinearRgb::BLACK),
+            Shading::Headlight => (LinearRgb::BLACK, LinearRgb::WHITE),
+        };
+        let studio = Studio { ambient, has_shadows: false, ..Studio::default() };
+        let light = Light { kind: LightKind::Head { strength: head }, frame: LightFrame::World };
+        Self {
+            integrator: Integrator::Studio(studio),
+            sampling: Sampling::default(),
+            lights: vec![light],
+            ..self.clone()
+        }
+    }
+
+    /// The background, unless the camera sees a sky in its place.
+    #[must_use]
+    pub fn visible_background(&self) -> Option<LinearRgb> {
+        let is_sky = matches!(self.integrator, Integrator::Path(_)) && self.sky.is_visible;
+        (!is_sky).then_some(self.background)
     }
 
     /// The same background with primary rays only: lights, samples, sky, ground and denoising return to their defaults.

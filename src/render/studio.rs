@@ -1,5 +1,7 @@
 //! Settings of the studio integrator: direct light.
 
+use std::f32::consts::PI;
+
 use crate::image::color::LinearRgb;
 
 /// Settings of the studio integrator: lights, shadows, ambient light, and aids for seeing shape. Surfaces that are not
@@ -73,6 +75,19 @@ pub struct Outline {
     pub depth: f32,
     /// The smallest angle between normals that makes an outline, in radians: 0 to π.
     pub angle: f32,
+}
+
+impl Outline {
+    /// Thin dark lines where the depth jumps, and none between surfaces that meet.
+    #[must_use]
+    pub fn thin() -> Self {
+        Self {
+            width: 1.2,
+            color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]),
+            depth: 0.01,
+            angle: PI,
+        }
+    }
 }
 
 impl Default for Outline {

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::math::MAX_LENGTH;
+use crate::geometry::subject::Subject;
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::material::SurfaceProperties;
@@ -287,6 +288,12 @@ impl Scene {
     #[must_use]
     pub fn bounds_to_frame(&self) -> Bounds {
         self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
+    }
+
+    /// What a camera should frame: all spheres, or a unit cube if there are none.
+    #[must_use]
+    pub fn subject(&self) -> Subject<'_> {
+        Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame())
     }
 
     /// The number of spheres.

@@ -5,11 +5,15 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::mapping::MappingKeys;
 use super::materials::Materials;
 use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
+use super::words::unknown;
+use crate::color_by::Mapping;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
+use crate::load::FORMATS;
 use crate::scene::material::SurfaceProperties;
 
 /// A reference to a data file, and the keys of the scene file that concern its spheres.
@@ -17,6 +21,8 @@ use crate::scene::material::SurfaceProperties;
 pub struct Data {
     /// Path of the data file, relative to the scene file.
     pub file: String,
+    /// Name of the data's format, if the file's extension does not show it.
+    pub format: Option<String>,
     /// Frame of a trajectory, counted from 0.
     pub frame: Option<usize>,
     /// Path of the file that says what the spheres of a trajectory are, relative to the scene file.
@@ -38,6 +44,8 @@ pub struct Data {
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
+    /// What columns decide: colours, radii, opacities, strengths of light.
+    pub mapping: Mapping,
 }
 
 /// Appearance of the atoms of one species. It replaces what the data or the table of chemical elements gives.
@@ -66,6 +74,7 @@ pub(super) struct ElementTable {
 /// The keys at the top of the file that concern its data.
 pub(super) struct DataKeys {
     pub(super) file: Option<Spanned<String>>,
+    pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
     pub(super) topology: Option<Spanned<String>>,
     pub(super) columns: Option<Spanned<Vec<String>>>,
@@ -77,6 +86,7 @@ pub(super) struct DataKeys {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) mapping: MappingKeys,
 }
 
 impl DataKeys {
@@ -87,6 +97,7 @@ impl DataKeys {
     ) -> Result<Option<WithSpan<Data>>, SceneFileError> {
         let Some(file) = self.file else {
             let orphans = [
+                ("format", range_of(&self.format)),
                 ("frame", range_of(&self.frame)),
                 ("topology", range_of(&self.topology)),
                 ("columns", range_of(&self.columns)),
@@ -99,7 +110,8 @@ impl DataKeys {
                 ("elements_by", range_of(&self.elements_by)),
                 ("leave_out", range_of(&self.leave_out)),
             ];
-            let orphan = orphans.into_iter().find_map(|(key, span)| Some((key, span?.start)));
+            let mut orphans = orphans.into_iter().chain(self.mapping.spans());
+            let orphan = orphans.find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
                 Some((key, start)) => Err(lines.span(start).error(format!(
                     "`{key}` applies to `data`, which is missing; add `data` or remove `{key}`"
@@ -122,6 +134,7 @@ impl DataKeys {
             span: lines.span(file.span().start),
             value: Data {
                 file: file.into_inner(),
+                format: self.format.map(|name| format_name(&name, lines)).transpose()?,
                 frame: self.frame.map(Spanned::into_inner),
                 topology: self.topology.map(Spanned::into_inner),
                 columns: self.columns.map(Spanned::into_inner).unwrap_or_default(),
@@ -132,8 +145,43 @@ impl DataKeys {
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
+                mapping: self.mapping.read(lines)?,
             },
         }))
+    }
+}
+
+/// Checks that a format has this name.
+fn format_name(name: &Spanned<String>, lines: &Lines<'_>) -> Result<String, SceneFileError> {
+    let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    match known.contains(&name.get_ref().as_str()) {
+        true => Ok(name.get_ref().clone()),
+        false => {
+            let span = lines.span(name.span().start);
+            Err(span.error(unknown("format", name.get_ref(), &known)))
+        }
+    }
+}
+
+impl Data {
+    /// A reference to a data file, without any other key.
+    #[must_use]
+    pub fn of_file(file: impl Into<String>) -> Self {
+        Self {
+            file: file.into(),
+            format: None,
+            frame: None,
+            topology: None,
+            columns: Vec::new(),
+            mapping: Mapping::default(),
+            radius: None,
+            radius_scale: 1.0,
+            color: None,
+            surface: SurfaceProperties::default(),
+            elements: Vec::new(),
+            elements_by: Vec::new(),
+            leave_out: Vec::new(),
+        }
     }
 }
 

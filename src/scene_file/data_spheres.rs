@@ -2,6 +2,7 @@
 
 use super::data::{Data, Element};
 use super::value::DEFAULT_COLOR;
+use crate::color_by::{ColorByError, ColorKey, Mapped};
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::sphere::Sphere;
@@ -14,12 +15,17 @@ pub enum DataSpheres {
     Spheres(Vec<Sphere>),
     /// Centres and radii alone; the scene gives all of them the same colour and surface properties.
     Array(SphereArray),
+    /// Centres and radii, and what columns decide; the scene gives the rest.
+    Mapped(SphereArray, Box<Mapped>),
 }
 
 /// An error of applying the keys of a scene file to its data.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataError {
+    /// A column cannot decide what it should.
+    #[error(transparent)]
+    ColorBy(#[from] ColorByError),
     /// The data has no text columns.
     #[error(
         "`{key}` applies only to data with text, such as the names of atoms, and {file} has none; remove it"
@@ -46,17 +52,30 @@ pub enum DataError {
 
 impl Data {
     /// Applies the colours, radii and surface properties of the scene file to the spheres of its data, and leaves out
-    /// the spheres that it names. Returns the spheres, and notes for the user about names that do not occur in the
-    /// data.
+    /// the spheres that it names. Returns the spheres, what their colours mean if a column gives them, and notes for the
+    /// user, such as names that do not occur in the data.
     ///
     /// # Errors
-    /// If the scene file names a column that the data does not have.
-    pub fn apply(&self, mut loaded: Loaded) -> Result<(DataSpheres, Vec<String>), DataError> {
+    /// If the scene file names a column that the data does not have, or whose values cannot be used.
+    pub fn apply(
+        &self,
+        mut loaded: Loaded,
+    ) -> Result<(DataSpheres, Option<ColorKey>, Vec<String>), DataError> {
         let mut notes = std::mem::take(&mut loaded.notes);
         if loaded.colors.is_none() && loaded.opacities.is_none() && !self.asks_for_text() {
+            let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &[])?;
             loaded.spheres.scale_radii(self.radius_scale);
-            return Ok((DataSpheres::Array(loaded.spheres), notes));
+            notes.extend_from_slice(mapped.notes());
+            let key = mapped.key().cloned();
+            let spheres = match self.mapping.is_empty() {
+                true => DataSpheres::Array(loaded.spheres),
+                false => DataSpheres::Mapped(loaded.spheres, Box::new(mapped)),
+            };
+            return Ok((spheres, key, notes));
         }
+        let is_left_out = self.left_out(&loaded, &mut notes)?;
+        let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &is_left_out)?;
+        notes.extend_from_slice(mapped.notes());
         let species = ["species".to_owned()];
         let by = if self.elements_by.is_empty() && self.elements.is_empty() {
             &[]
@@ -65,10 +84,9 @@ impl Data {
         } else {
             &self.elements_by
         };
-        let columns: Vec<&Labels> = by
-            .iter()
-            .map(|column| self.labels(&loaded, "elements_by", column))
-            .collect::<Result<_, _>>()?;
+        let key = if self.elements_by.is_empty() { "elements" } else { "elements_by" };
+        let columns: Vec<&Labels> =
+            by.iter().map(|column| self.labels(&loaded, key, column)).collect::<Result<_, _>>()?;
         let element_of = |name: &String| self.elements.iter().find(|element| element.name == *name);
         let elements: Vec<Vec<Option<&Element>>> =
             columns.iter().map(|labels| labels.names.iter().map(element_of).collect()).collect();
@@ -79,20 +97,22 @@ impl Data {
             })
         };
         let color = self.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
-        let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mut spheres = Vec::new();
         for (index, mut sphere) in loaded.colored_spheres(color).enumerate() {
             if is_left_out.get(index).copied().unwrap_or(false) {
                 continue;
             }
             let element = element_at(index);
-            let opacity = sphere.surface.opacity;
-            sphere.surface = element.map_or(self.surface, |element| element.surface);
-            sphere.surface.opacity *= opacity;
+            let mut surface = element.map_or(self.surface, |element| element.surface);
+            surface.opacity *= sphere.surface.opacity;
+            sphere.surface = mapped.surface(surface, index);
             if let Some(Element { radius, color, .. }) = element {
+                // Columns take precedence over tables of elements.
+                let radius = radius.filter(|_| self.mapping.radius.is_none());
                 sphere.radius = radius.unwrap_or(sphere.radius);
                 sphere.color = color.unwrap_or(sphere.color);
             }
+            sphere.color = mapped.color(index).unwrap_or(sphere.color);
             sphere.radius *= self.radius_scale;
             spheres.push(sphere);
         }
@@ -111,7 +131,7 @@ impl Data {
                 self.file
             )
         }));
-        Ok((DataSpheres::Spheres(spheres), notes))
+        Ok((DataSpheres::Spheres(spheres), mapped.key().cloned(), notes))
     }
 
     /// Whether keys ask for columns of text.

@@ -5,15 +5,18 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::data::ElementTable;
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
     SunTable,
 };
+use super::mapping::{ByColumn, ColorTable, ColumnTable};
 use super::materials::{MaterialTable, Materials};
 use super::output::OutputTable;
 use super::span::{Lines, Number, SceneFileError, WithSpan};
 use super::value::ColorValue;
+use super::words::explain;
 use crate::camera::CameraParameters;
 use crate::camera::film::{Film, YAxis};
 use crate::exact::{self, Table};
@@ -25,6 +28,7 @@ use crate::scene::sphere::Sphere;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
+    pub(super) style: Option<Spanned<String>>,
     #[serde(default = "default_film")]
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
@@ -46,6 +50,7 @@ pub(super) struct Document {
     #[serde(default)]
     pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
     pub(super) data: Option<Spanned<String>>,
+    pub(super) format: Option<Spanned<String>>,
     pub(super) frame: Option<Spanned<usize>>,
     pub(super) topology: Option<Spanned<String>>,
     pub(super) columns: Option<Spanned<Vec<String>>>,
@@ -58,6 +63,70 @@ pub(super) struct Document {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) color_by: Option<Spanned<ByColumn<ColorTable>>>,
+    pub(super) radius_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) opacity_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) emission_by: Option<Spanned<ByColumn<ColumnTable>>>,
+    pub(super) legend: Option<Table<LegendTable>>,
+    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
+    #[serde(default)]
+    pub(super) labels: Vec<Table<LabelTable>>,
+    pub(super) text: Option<Table<TextTable>>,
+}
+
+impl Document {
+    /// Parses the text of a scene file.
+    pub(super) fn parse(text: &str, lines: &Lines<'_>) -> Result<Self, SceneFileError> {
+        toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            lines.span(start).error(explain(error.message()))
+        })
+    }
+}
+
+impl Default for Document {
+    /// The document of an empty file.
+    fn default() -> Self {
+        Self {
+            style: None,
+            film: default_film(),
+            camera: default_camera(),
+            output: Table::default(),
+            background: None,
+            shading: None,
+            integrator: None,
+            studio: None,
+            path: None,
+            sampling: None,
+            lights: None,
+            sky: None,
+            sun: None,
+            ground: None,
+            materials: BTreeMap::new(),
+            spheres: Vec::new(),
+            data: None,
+            format: None,
+            frame: None,
+            topology: None,
+            columns: None,
+            radius: None,
+            radius_scale: None,
+            color: None,
+            material: None,
+            opacity: None,
+            elements: BTreeMap::new(),
+            elements_by: None,
+            leave_out: None,
+            color_by: None,
+            radius_by: None,
+            opacity_by: None,
+            emission_by: None,
+            legend: None,
+            scale_bar: None,
+            labels: Vec::new(),
+            text: None,
+        }
+    }
 }
 
 fn default_film() -> Spanned<Table<FilmTable>> {

@@ -3,38 +3,48 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
+mod annotations;
 mod data;
 mod data_spheres;
 mod document;
 mod lighting;
+mod mapping;
 mod materials;
 mod output;
 mod span;
 mod value;
 mod words;
+mod write;
 
 pub use data::{Data, Element};
 pub use data_spheres::{DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
+pub use write::{Contents, write};
 
+use annotations::AnnotationTables;
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
 use lighting::{LightingTables, SceneLighting};
+use mapping::MappingKeys;
 use materials::Materials;
 use span::{Lines, Span, WithSpan};
 use toml::Spanned;
-use words::explain;
+use value::ColorValue;
+use words::unknown;
 
+use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
-use crate::camera::{Camera, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters};
+use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
 use crate::render::Shading;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Colors, Scene, SceneError};
+use crate::style::Style;
 
 /// The contents of a scene file.
 #[derive(Debug)]
@@ -43,7 +53,11 @@ pub struct SceneFile {
     pub film: Film,
     /// How the picture is encoded: exposure, tone curve, transparency and bits.
     pub encoding: Encoding,
-    background: LinearRgb,
+    /// What is drawn over the picture.
+    pub annotations: AnnotationPlan,
+    /// What is seen where there is nothing.
+    pub background: LinearRgb,
+    style: Option<Style>,
     /// Shading of pictures by primary rays.
     shading: Shading,
     lighting: SceneLighting,
@@ -58,15 +72,39 @@ impl SceneFile {
     /// # Errors
     /// Returns the first error in the text, with its line and column.
     pub fn parse(text: &str) -> Result<Self, SceneFileError> {
+        Self::parse_in_style(text, None)
+    }
+
+    /// Parses the text of a scene file like [`SceneFile::parse`], with this style in place of the one that the file
+    /// names. An empty text and a style are what data without a scene file is rendered with.
+    ///
+    /// # Errors
+    /// Returns the first error in the text, with its line and column.
+    pub fn parse_in_style(text: &str, style: Option<Style>) -> Result<Self, SceneFileError> {
         let lines = Lines::of(text);
-        let document: Document = toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start);
-            lines.span(start).error(explain(error.message()))
-        })?;
+        let document = Document::parse(text, &lines)?;
+        let named = document.style.as_ref().map(|name| style_of(name, &lines)).transpose()?;
+        let style = style.or(named);
+        let of_style = style.map(|style| Document::parse(style.text(), &Lines::of(style.text())));
+        let of_style = of_style.transpose()?.unwrap_or_default();
         let materials = Materials::new(document.materials, &lines)?;
-        let has_lighting = document.material.is_some() || document.opacity.is_some();
+        let mapping = MappingKeys {
+            color: document.color_by,
+            radius: document.radius_by,
+            opacity: document.opacity_by,
+            emission: document.emission_by,
+        };
+        let has_lighting =
+            document.material.is_some() || document.opacity.is_some() || mapping.need_light();
+        let annotations = AnnotationTables {
+            legend: document.legend,
+            scale_bar: document.scale_bar,
+            labels: document.labels,
+            text: document.text,
+        };
         let data = DataKeys {
             file: document.data,
+            format: document.format,
             frame: document.frame,
             topology: document.topology,
             columns: document.columns,
@@ -78,6 +116,7 @@ impl SceneFile {
             elements: document.elements,
             elements_by: document.elements_by,
             leave_out: document.leave_out,
+            mapping,
         }
         .read(&materials, &lines)?;
         let spheres = document.spheres.into_iter();
@@ -95,13 +134,38 @@ impl SceneFile {
             sun: document.sun,
             ground: document.ground,
             has_materials: has_lighting || has_surface(&spheres, data.as_ref()),
-        }
-        .read(&lines)?;
+        };
+        let of_style = StyleTables {
+            lighting: LightingTables {
+                shading: None,
+                integrator: of_style.integrator,
+                studio: of_style.studio,
+                path: of_style.path,
+                sampling: of_style.sampling,
+                lights: of_style.lights,
+                sky: of_style.sky,
+                sun: of_style.sun,
+                ground: of_style.ground,
+                has_materials: false,
+            },
+            background: of_style.background,
+            shading: of_style.shading,
+        };
+        let lighting = lighting.read(of_style.lighting, &lines)?;
         Ok(Self {
             film: FilmTable::film(document.film, &lines)?,
-            background: document.background.map_or(LinearRgb::WHITE, |color| color.0),
-            shading: document.shading.map(Spanned::into_inner).unwrap_or_default(),
+            style,
+            background: document
+                .background
+                .or(of_style.background)
+                .map_or(LinearRgb::WHITE, |color| color.0),
+            shading: document
+                .shading
+                .or(of_style.shading)
+                .map(Spanned::into_inner)
+                .unwrap_or_default(),
             encoding: document.output.0.encoding(&lines)?,
+            annotations: annotations.read(&lines)?,
             lighting,
             data,
             camera: lines.spanned(document.camera),
@@ -138,6 +202,30 @@ impl SceneFile {
         self.scene(&colored.collect::<Vec<_>>())
     }
 
+    /// Makes the scene like [`SceneFile::scene_with_array`], from data of which columns decide some properties.
+    ///
+    /// # Errors
+    /// Names the first sphere that is out of range, as [`SceneFile::scene`] does.
+    pub fn scene_with_mapped(
+        &self,
+        data: SphereArray,
+        mapped: &Mapped,
+        color: LinearRgb,
+    ) -> Result<Scene, SceneFileError> {
+        let surface = self.data().map(|data| data.surface).unwrap_or_default();
+        if self.spheres.is_empty() {
+            let appearance = mapped.appearance(data.len(), Colors::One(color), surface);
+            return Scene::from_parts(data, appearance).map_err(|error| self.spanned(&error));
+        }
+        let of_data = |(index, sphere): (usize, Sphere)| Sphere {
+            color: mapped.color(index).unwrap_or(color),
+            surface: mapped.surface(surface, index),
+            ..sphere
+        };
+        let spheres: Vec<Sphere> = data.with_color(color).enumerate().map(of_data).collect();
+        self.scene(&spheres)
+    }
+
     /// Adds a position in the file to an error.
     fn spanned(&self, error: &SceneError) -> SceneFileError {
         let &SceneError::Sphere { index, error: fault } = error else {
@@ -151,6 +239,29 @@ impl SceneFile {
             }
             (None, None) => Span::START.error(error),
         }
+    }
+
+    /// Adds the position of the camera's table to an error.
+    #[must_use]
+    pub fn at_camera(&self, error: &CameraError) -> SceneFileError {
+        self.camera.span.error(error)
+    }
+
+    /// Returns the style, if there is one.
+    #[must_use]
+    pub fn style(&self) -> Option<Style> {
+        self.style
+    }
+
+    /// Returns the parameters of the camera.
+    #[must_use]
+    pub fn camera_parameters(&self) -> CameraParameters {
+        self.camera.value
+    }
+
+    /// Returns the spheres that are in the file itself.
+    pub fn spheres(&self) -> impl Iterator<Item = Sphere> {
+        self.spheres.iter().map(|sphere| sphere.value)
     }
 
     /// Returns the reference to a data file, if the scene file has one.
@@ -167,7 +278,7 @@ impl SceneFile {
     pub fn camera(&self, film: &Film, scene: &Scene) -> Result<Box<dyn Camera>, SceneFileError> {
         self.camera
             .value
-            .camera(film.aspect(), &scene.bounds_to_frame())
+            .camera(film.aspect(), &scene.subject())
             .map_err(|error| self.camera.span.error(error))
     }
 
@@ -182,9 +293,24 @@ impl SceneFile {
     ) -> Result<Option<[Box<dyn Camera>; 2]>, SceneFileError> {
         self.camera
             .value
-            .stereo_pair(film.aspect(), &scene.bounds_to_frame())
+            .stereo_pair(film.aspect(), &scene.subject())
             .map_err(|error| self.camera.span.error(error))
     }
+}
+
+/// What a style says, as its file gives it.
+struct StyleTables {
+    lighting: LightingTables,
+    background: Option<ColorValue>,
+    shading: Option<Spanned<Shading>>,
+}
+
+/// Returns the style of a name.
+fn style_of(name: &Spanned<String>, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
+    Style::of_name(name.get_ref()).ok_or_else(|| {
+        let names: Vec<&str> = Style::ALL.iter().map(|style| style.name()).collect();
+        lines.span(name.span().start).error(unknown("style", name.get_ref(), &names))
+    })
 }
 
 /// Whether the surface of any sphere is not matt and opaque.

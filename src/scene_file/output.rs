@@ -14,6 +14,7 @@ pub(super) struct OutputTable {
     tone: ToneCurve,
     transparent: bool,
     bits: Option<Spanned<u32>>,
+    dpi: Option<Spanned<f32>>,
 }
 
 impl OutputTable {
@@ -28,6 +29,10 @@ impl OutputTable {
         if let Some(bits) = self.bits {
             let start = bits.span().start;
             encoding = encoding.with_bits(Bits::new(bits.into_inner()).map_err(span(start))?);
+        }
+        if let Some(dpi) = self.dpi {
+            let start = dpi.span().start;
+            encoding = encoding.with_dots_per_inch(Some(dpi.into_inner())).map_err(span(start))?;
         }
         Ok(encoding)
     }

@@ -1,48 +1,78 @@
 //! Writes pictures as PNG files in sRGB.
 
-use png::{BitDepth, ColorType, Compression, Filter, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
 
-use crate::image::Image;
+#[cfg(feature = "annotate")]
+use crate::annotate::{Annotations, Canvas};
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
+use crate::image::{Image, Layer};
 use crate::parallel::for_each;
 
 /// Number of pixels that a thread converts at a time.
 const CHUNK: usize = 1 << 14;
 
 /// Encodes a picture as a PNG file in sRGB with 8 or 16 bits per channel: RGB, or RGBA if the encoding is transparent.
-/// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1].
+/// The exposure and the tone curve are applied to the colours, which are then clamped to [0, 1]; they leave
+/// [the background](Encoding::with_background) as it is.
 ///
 /// PNG stores colours that are not premultiplied. So the colours of a transparent picture are divided by alpha first;
 /// they are black where alpha is zero.
 ///
 /// # Errors
-/// If the encoding is transparent and the picture was rendered without alpha, or if the encoder fails, which does not
+/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers), or if the encoder fails, which does not
 /// happen for sizes that PNG allows.
 pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
-    let alpha = match encoding.transparent() {
+    encode_with(picture, encoding, |_, _, _| {})
+}
+
+/// Encodes a picture as [`encode`] does, and draws annotations over it. Exposure and tone curve do not change them.
+///
+/// # Errors
+/// The same errors as [`encode`].
+#[cfg(feature = "annotate")]
+pub fn encode_annotated(
+    picture: &Image,
+    encoding: &Encoding,
+    annotations: &Annotations,
+) -> Result<Vec<u8>, PngError> {
+    encode_with(picture, encoding, |size, channels, samples| {
+        if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits(), samples) {
+            annotations.draw(&mut canvas);
+        }
+    })
+}
+
+/// Encodes a picture; `draw` may change its samples, and is given its size and the samples for each pixel.
+fn encode_with(
+    picture: &Image,
+    encoding: &Encoding,
+    draw: impl FnOnce([u32; 2], usize, &mut [u8]),
+) -> Result<Vec<u8>, PngError> {
+    let alpha = match encoding.layers().contains(Layer::Alpha) {
         true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
         false => None,
     };
-    let color = picture.color();
-    let (depth, samples) = match encoding.bits() {
+    let pixels = Pixels { color: picture.color(), alpha, encoding };
+    let (depth, mut samples) = match encoding.bits() {
         Bits::Eight => {
             let alpha_sample = |alpha| [(255.0 * unit(alpha)).round() as u8];
-            let rgb = |rgb| to_srgb8(encoding.display(rgb));
-            (BitDepth::Eight, samples(color, alpha, rgb, alpha_sample))
+            (BitDepth::Eight, pixels.samples(to_srgb8, alpha_sample))
         }
         Bits::Sixteen => {
             let big_endian = |sample: u16| sample.to_be_bytes();
             let alpha_sample = |alpha| big_endian((65535.0 * unit(alpha)).round() as u16);
             let rgb = |rgb| {
-                let [[a, b], [c, d], [e, f]] = to_srgb16(encoding.display(rgb)).map(big_endian);
+                let [[a, b], [c, d], [e, f]] = to_srgb16(rgb).map(big_endian);
                 [a, b, c, d, e, f]
             };
-            (BitDepth::Sixteen, samples(color, alpha, rgb, alpha_sample))
+            (BitDepth::Sixteen, pixels.samples(rgb, alpha_sample))
         }
     };
-    let color_type = if alpha.is_some() { ColorType::Rgba } else { ColorType::Rgb };
-    write([picture.width(), picture.height()], color_type, depth, &samples)
+    let color_type = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
+    let size = [picture.width(), picture.height()];
+    draw(size, color_type.samples(), &mut samples);
+    write(size, color_type, depth, encoding.dots_per_inch(), &samples)
 }
 
 /// Encodes sRGB bytes as a PNG file. `size` is the width and height; `rgb` has three bytes per pixel, row by row from
@@ -51,13 +81,14 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
 /// # Errors
 /// If `rgb` does not have three bytes per pixel.
 pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
-    write(size, ColorType::Rgb, BitDepth::Eight, rgb)
+    write(size, ColorType::Rgb, BitDepth::Eight, None, rgb)
 }
 
 fn write(
     [width, height]: [u32; 2],
     color: ColorType,
     depth: BitDepth,
+    dots_per_inch: Option<f32>,
     samples: &[u8],
 ) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
@@ -67,6 +98,11 @@ fn write(
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    // PNG counts pixels per metre; an inch is 0.0254 m.
+    encoder.set_pixel_dims(dots_per_inch.map(|dots| {
+        let per_metre = (f64::from(dots) / 0.0254).round() as u32;
+        PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }
+    }));
     let failed = |error: png::EncodingError| PngError::Encoder { message: error.to_string() };
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(samples).map_err(failed)?;
@@ -79,7 +115,7 @@ fn write(
 #[non_exhaustive]
 pub enum PngError {
     /// The picture was rendered without the layer alpha.
-    #[error("a transparent picture needs the layer alpha; ask for this layer when rendering")]
+    #[error("this encoding needs the layer alpha; ask for it when rendering")]
     MissingAlpha,
     /// The encoder failed.
     #[error("the picture cannot be written as PNG: {message}")]
@@ -89,35 +125,53 @@ pub enum PngError {
     },
 }
 
-/// Encodes all pixels: `RGB` bytes for each colour and, if there is alpha, `A` bytes for alpha.
-fn samples<const RGB: usize, const A: usize>(
-    color: &[[f32; 3]],
-    alpha: Option<&[f32]>,
-    of_color: impl Fn([f32; 3]) -> [u8; RGB] + Sync + Send,
-    of_alpha: impl Fn(f32) -> [u8; A] + Sync + Send,
-) -> Vec<u8> {
-    let size = RGB + if alpha.is_some() { A } else { 0 };
-    let mut bytes = vec![0; size * color.len()];
-    let chunks = bytes.chunks_mut(size * CHUNK).zip(color.chunks(CHUNK)).enumerate();
-    for_each(chunks.collect(), |(index, (bytes, color))| {
-        let start = index * CHUNK;
-        let (mut before, mut encoded) = ([0; 3], of_color([0.0; 3]));
-        for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
-            let alpha = alpha.map(|alpha| alpha[start + index]);
-            let rgb = alpha.map_or(*rgb, |alpha| divided(*rgb, alpha));
-            // Large parts of many pictures have one colour, such as the background.
-            let bits = rgb.map(f32::to_bits);
-            if bits != before {
-                (before, encoded) = (bits, of_color(rgb));
+/// The pixels of a picture, and how they are encoded.
+struct Pixels<'a> {
+    color: &'a [[f32; 3]],
+    /// Alpha, if the encoding needs it.
+    alpha: Option<&'a [f32]>,
+    encoding: &'a Encoding,
+}
+
+impl Pixels<'_> {
+    /// Encodes all pixels: `RGB` bytes for each colour and, if the picture is transparent, `A` bytes for alpha.
+    fn samples<const RGB: usize, const A: usize>(
+        &self,
+        of_color: impl Fn([f32; 3]) -> [u8; RGB] + Sync + Send,
+        of_alpha: impl Fn(f32) -> [u8; A] + Sync + Send,
+    ) -> Vec<u8> {
+        let size = RGB + if self.encoding.transparent() { A } else { 0 };
+        let mut bytes = vec![0; size * self.color.len()];
+        let chunks = bytes.chunks_mut(size * CHUNK).zip(self.color.chunks(CHUNK)).enumerate();
+        for_each(chunks.collect(), |(index, (bytes, color))| {
+            let start = index * CHUNK;
+            let (mut before, mut encoded) = (None, [0; RGB]);
+            for (index, (pixel, rgb)) in bytes.chunks_exact_mut(size).zip(color).enumerate() {
+                let alpha = self.alpha.map_or(1.0, |alpha| alpha[start + index]);
+                // Large parts of many pictures have one colour, such as the background.
+                let [r, g, b] = rgb.map(f32::to_bits);
+                let bits = Some([r, g, b, alpha.to_bits()]);
+                if bits != before {
+                    (before, encoded) = (bits, of_color(self.shown(*rgb, alpha)));
+                }
+                let (target, rest) = pixel.split_at_mut(RGB);
+                target.copy_from_slice(&encoded);
+                if !rest.is_empty() {
+                    rest.copy_from_slice(&of_alpha(alpha));
+                }
             }
-            let (target, rest) = pixel.split_at_mut(RGB);
-            target.copy_from_slice(&encoded);
-            if let Some(alpha) = alpha {
-                rest.copy_from_slice(&of_alpha(alpha));
-            }
+        });
+        bytes
+    }
+
+    /// Converts a pixel to linear light of a display.
+    fn shown(&self, rgb: [f32; 3], alpha: f32) -> [f32; 3] {
+        match self.encoding.kept_background() {
+            Some(background) => self.encoding.display_over(rgb, alpha, background),
+            None if self.encoding.transparent() => self.encoding.display(divided(rgb, alpha)),
+            None => self.encoding.display(rgb),
         }
-    });
-    bytes
+    }
 }
 
 /// Divides a premultiplied colour by alpha.

@@ -111,8 +111,8 @@ fn a_framed_box_is_seen_whole_and_fills_the_picture() {
         let aspect = 0.3 + random.f64() * 3.0;
         let fov = random.f64() * 2.0 + 0.1;
         let cameras: [Box<dyn Camera>; 2] = [
-            Box::new(PinholeCamera::framing(&bounds, pose, fov, aspect).unwrap()),
-            Box::new(OrthographicCamera::framing(&bounds, pose, aspect).unwrap()),
+            Box::new(PinholeCamera::framing(bounds, pose, fov, aspect, 0.025).unwrap()),
+            Box::new(OrthographicCamera::framing(bounds, pose, aspect, 0.025).unwrap()),
         ];
         for camera in &cameras {
             let largest = bounds
@@ -204,7 +204,7 @@ fn degenerate_lengths_and_angles_are_errors() {
         assert!(is_length_error(PinholeCamera::new(pose, 1.0, [1.0, bad]).unwrap_err()));
         assert!(is_length_error(OrthographicCamera::new(pose, [1.0, bad]).unwrap_err()));
         assert!(is_length_error(PinholeCamera::with_vertical_fov(pose, 1.0, bad).unwrap_err()));
-        assert!(is_length_error(OrthographicCamera::framing(&bounds, pose, bad).unwrap_err()));
+        assert!(is_length_error(OrthographicCamera::framing(bounds, pose, bad, 0.1).unwrap_err()));
     }
     for bad in [0.0, -0.1, std::f64::consts::PI, 4.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(

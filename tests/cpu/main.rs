@@ -10,16 +10,25 @@
 mod support;
 
 mod accel_trees;
+mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
+#[path = "../support/damage.rs"]
+mod damage;
+#[path = "../support/seeds/mod.rs"]
+mod seeds;
 
 mod basis;
+mod binary;
 mod camera;
 mod camera_tables;
+mod color_by;
 mod comparator;
 mod environment;
 mod environment_files;
+mod framing;
+mod fuzz;
 mod generate;
 mod grid_check;
 mod hostile_rays;
@@ -42,6 +51,8 @@ mod sampling;
 mod scene;
 mod scene_file;
 mod scene_file_light;
+mod scene_file_write;
+mod search;
 mod settings;
 mod soundness;
 mod stereo;

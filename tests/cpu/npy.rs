@@ -1,8 +1,9 @@
 //! Tests of reading arrays of spheres from .npy, .npz and raw files: good files, bad files and noise.
 
 use pinhole::SphereArray;
-use pinhole::load::npy::{SpheresError, read_spheres};
-use pinhole::load::{npz, raw};
+use pinhole::load::npy::{self as reader, SpheresError};
+use pinhole::load::npz::{self, NpzError};
+use pinhole::load::{ColumnValues, Loaded, raw};
 use pinhole::write;
 use pinhole::write::npy::write_spheres;
 
@@ -10,6 +11,14 @@ use crate::arrays::{npy, zip};
 
 /// Two spheres: x, y, z, radius.
 const ROWS: [[f32; 4]; 2] = [[1.0, 2.0, 3.0, 0.5], [4.0, -5.0, 6.5, 0.25]];
+
+fn read_spheres(file: &[u8], radius: Option<f64>) -> Result<SphereArray, SpheresError> {
+    reader::read(file, radius).map(|loaded| loaded.spheres)
+}
+
+fn read_archive(file: &[u8], radius: Option<f64>) -> Result<SphereArray, NpzError> {
+    npz::read(file, radius).map(|loaded| loaded.spheres)
+}
 
 fn bytes<const N: usize>(numbers: &[f32], encode: impl Fn(f32) -> [u8; N]) -> Vec<u8> {
     numbers.iter().flat_map(|x| encode(*x)).collect()
@@ -83,27 +92,37 @@ fn long_arrays() {
 
 #[test]
 fn arrays_that_are_not_lists_of_spheres() {
-    let shape = "it must be (n, 4) for x, y, z, radius or (n, 3) for x, y, z";
+    let shape = "it must be (n, 3) for x, y, z; (n, 4) for x, y, z, radius; (n, 5) with a value after that; (n, 6) \
+                 for x, y, z, red, green, blue; or (n, 7) for x, y, z, radius, red, green, blue";
     for (shape_of, found) in
-        [("(8,)", "(8,)"), ("(2, 5)", "(2, 5)"), ("(1, 2, 4)", "(1, 2, 4)"), ("()", "()")]
+        [("(8,)", "(8,)"), ("(4, 2)", "(4, 2)"), ("(1, 2, 4)", "(1, 2, 4)"), ("(1, 8)", "(1, 8)")]
     {
         let error = message(&npy("<f4", false, shape_of, &[0; 32]), None);
         assert_eq!(error, format!("the array has the shape {found}, but {shape}"));
     }
-    for dtype in ["<f2", "<i4", "|u1", "<c8", "|O", "|b1", "<U3", "<f16"] {
-        let error = message(&npy(dtype, false, "(2, 4)", &[0; 32]), None);
+    assert!(message(&npy("<f4", false, "()", &[0; 4]), None).contains("the shape ()"));
+    for (dtype, size) in [("<c8", 8), ("|O", 8), ("|b1", 1), ("<U3", 12), ("<f16", 16), ("|V3", 3)]
+    {
+        let error = message(&npy(dtype, false, "(2, 4)", &vec![0; 8 * size]), None);
         let expected = format!(
-            "the array has the type {dtype}, but it must be float32 or float64; save it as a.astype('float32')"
+            "the array has the type {dtype}, but it must be of floating-point numbers or integers; save it as \
+             a.astype('float32')"
         );
         assert_eq!(error, expected);
     }
-    let structure = file_with_header(
-        "{'descr': [('x', '<f4'), ('y', '<f4')], 'fortran_order': False, 'shape': (2, 4)}",
-    );
-    assert!(message(&structure, None).contains("the type a structure of fields"));
+    let structure = |shape| {
+        file_with_header(&format!(
+            "{{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': {shape}}}"
+        ))
+    };
+    let square = [structure("(1, 2)"), vec![0; 8]].concat();
     assert_eq!(
-        message(&npy("<f4", false, "(2, 3)", &[0; 24]), None),
-        "the array has the shape (2, 3) without radii; give one radius for all spheres"
+        message(&square, None),
+        "the array of structures has the shape (1, 2), but it must be (n,); save it as a.ravel()"
+    );
+    assert_eq!(
+        message(&[structure("(2,)"), vec![0; 8]].concat(), None),
+        "there are no columns x, y and z; the columns are x"
     );
     assert_eq!(
         message(&file(), Some(1.0)),
@@ -160,14 +179,15 @@ fn archives() {
     for deflated in [false, true] {
         for names in [&["arr_0.npy"][..], &["spheres.npy", "b.npy"], &["a.txt", "positions.npy"]] {
             let entries: Vec<_> = names.iter().map(|name| (*name, &file[..])).collect();
-            let spheres = npz::read_spheres(&zip(&entries, deflated), None);
+            let spheres = read_archive(&zip(&entries, deflated), None);
             assert_eq!(spheres, Ok(SphereArray::F32(ROWS.to_vec())), "{names:?} {deflated}");
         }
     }
-    let error = |archive: &[u8]| npz::read_spheres(archive, None).unwrap_err().to_string();
+    let error = |archive: &[u8]| read_archive(archive, None).unwrap_err().to_string();
     assert_eq!(
         error(&zip(&[("a.npy", &file), ("b.npy", &file)], true)),
-        "the archive has the arrays `a`, `b`; name the one to read `spheres` or `positions`, or save it alone"
+        "the archive has the arrays `a`, `b`; name the one with the centers `positions`, or `spheres` if it has radii \
+         as well"
     );
     assert_eq!(
         error(&zip(&[("a.txt", &file)], true)),
@@ -188,13 +208,173 @@ fn archives() {
     assert!(error(&whole[..whole.len() - 1]).starts_with("this is not a complete .npz file: "));
 }
 
+fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
+    match loaded.column(name) {
+        Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+fn colors(loaded: &Loaded) -> Vec<[u8; 3]> {
+    loaded.colors.as_ref().unwrap().iter().map(|color| color.to_srgb8()).collect()
+}
+
+/// Every type of numbers gives the same spheres, in both layouts.
+#[test]
+fn every_type_of_numbers() {
+    const WHOLE: [[u8; 4]; 2] = [[1, 2, 3, 4], [5, 6, 7, 8]];
+    let by_column: Vec<u8> =
+        (0..4).flat_map(|column| WHOLE.iter().map(move |row| row[column])).collect();
+    let expected = SphereArray::F64(WHOLE.map(|row| row.map(f64::from)).to_vec());
+    for (is_by_column, numbers) in [(false, WHOLE.as_flattened()), (true, &by_column)] {
+        let all =
+            |encode: &dyn Fn(u8) -> Vec<u8>| numbers.iter().flat_map(|x| encode(*x)).collect();
+        let half = |x: u8| {
+            let exponent = x.ilog2() as u16;
+            (exponent + 15) << 10 | (u16::from(x) << (10 - exponent)) & 0x3ff
+        };
+        let files: [(&str, Vec<u8>); 10] = [
+            ("|u1", all(&|x| vec![x])),
+            ("|i1", all(&|x| vec![x])),
+            ("<u2", all(&|x| u16::from(x).to_le_bytes().to_vec())),
+            (">i2", all(&|x| i16::from(x).to_be_bytes().to_vec())),
+            ("<i4", all(&|x| i32::from(x).to_le_bytes().to_vec())),
+            (">u4", all(&|x| u32::from(x).to_be_bytes().to_vec())),
+            ("<i8", all(&|x| i64::from(x).to_le_bytes().to_vec())),
+            (">u8", all(&|x| u64::from(x).to_be_bytes().to_vec())),
+            ("<f2", all(&|x| half(x).to_le_bytes().to_vec())),
+            (">f2", all(&|x| half(x).to_be_bytes().to_vec())),
+        ];
+        for (dtype, data) in files {
+            let spheres = read_spheres(&npy(dtype, is_by_column, "(2, 4)", &data), None);
+            assert_eq!(spheres.as_ref(), Ok(&expected), "{dtype} {is_by_column}");
+        }
+    }
+}
+
+#[test]
+fn more_columns_are_a_value_or_colors() {
+    let of = |shape: &str, numbers: &[f32]| {
+        reader::read(&npy("<f4", false, shape, &bytes(numbers, f32::to_le_bytes)), None).unwrap()
+    };
+    let five = of("(2, 5)", &[0., 0., 0., 1., 7., 9., 0., 0., 2., 8.]);
+    assert_eq!(five.spheres, SphereArray::F64(vec![[0., 0., 0., 1.], [9., 0., 0., 2.]]));
+    assert_eq!(numbers(&five, "value"), [7.0, 8.0]);
+    let six = of("(2, 6)", &[0., 0., 0., 1., 0.5, 0., 4., 0., 0., 0., 0., 1.]);
+    assert_eq!(six.spheres, SphereArray::F64(vec![[0., 0., 0., 2.], [4., 0., 0., 2.]]));
+    assert_eq!(colors(&six), [[255, 128, 0], [0, 0, 255]]);
+    assert!(
+        six.notes[0].contains("the radius 2, with which neighbors about touch"),
+        "{:?}",
+        six.notes
+    );
+    let seven = of("(1, 7)", &[1., 2., 3., 4., 255., 0., 17.]);
+    assert_eq!((seven.spheres.len(), colors(&seven)), (1, vec![[255, 0, 17]]));
+    let three = of("(2, 3)", &[0., 0., 0., 0., 3., 0.]);
+    assert_eq!(three.spheres, SphereArray::F32(vec![[0., 0., 0., 1.5], [0., 3., 0., 1.5]]));
+    assert!(three.notes[0].contains("--radius sets it"), "{:?}", three.notes);
+    let bad = npy("<f8", false, "(1, 7)", &[0xff; 56]);
+    assert_eq!(message(&bad, None), "row 0: x is NaN; a position must be finite");
+    let seven = npy("|u1", false, "(1, 7)", &[1; 7]);
+    let error = message(&seven, Some(2.0));
+    assert!(error.starts_with("the array has the shape (1, 7) with radii"), "{error}");
+}
+
+/// Two structures with positions, colours, opacities, text and what is not used.
+fn structured() -> Vec<u8> {
+    let header = "{'descr': [('pos', '<f4', (3,)), ('', '|V2'), ('diameter', '>f8'), ('rgba', '|u1', (4,)), \
+                  ('kind', '<U2'), ('phase', '<c8'), ('alive', '|b1')], 'fortran_order': False, 'shape': (2,)}";
+    let mut file = file_with_header(header);
+    for (x, kind) in [(1.0_f32, "Ab"), (2.0, "z")] {
+        file.extend(bytes(&[x, 10.0 * x, 0.0], f32::to_le_bytes));
+        file.extend([9, 9]);
+        file.extend(f64::from(x).to_be_bytes());
+        file.extend([255, 0, 51, 51 * x as u8]);
+        let codes: Vec<u32> = kind.chars().map(u32::from).chain([0; 2]).take(2).collect();
+        file.extend(codes.into_iter().flat_map(u32::to_le_bytes));
+        file.extend([0; 8]);
+        file.push(u8::from(x > 1.5));
+    }
+    file
+}
+
+#[test]
+fn fields_have_names() {
+    let loaded = reader::read(&structured(), None).unwrap();
+    assert_eq!(loaded.spheres, SphereArray::F64(vec![[1., 10., 0., 0.5], [2., 20., 0., 1.0]]));
+    assert_eq!(colors(&loaded), [[255, 0, 51]; 2]);
+    assert_eq!(loaded.opacities, Some(vec![0.2, 0.4]));
+    assert_eq!(loaded.labels("kind").unwrap().names, ["Ab", "z"]);
+    assert_eq!(numbers(&loaded, "alive"), [0.0, 1.0]);
+    assert_eq!(
+        loaded.notes,
+        ["these fields are not used, because they are neither numbers nor text: phase"]
+    );
+}
+
+#[test]
+fn archives_of_several_arrays() {
+    let file = |dtype, shape, data: &[u8]| npy(dtype, false, shape, data);
+    let floats = |shape, numbers: &[f32]| file("<f4", shape, &bytes(numbers, f32::to_le_bytes));
+    let positions = floats("(2, 3)", &[0., 0., 0., 5., 0., 0.]);
+    let radii = floats("(2,)", &[1.5, 2.5]);
+    for deflated in [false, true] {
+        let loaded = npz::read(
+            &zip(
+                &[
+                    ("radii.npy", &radii),
+                    ("positions.npy", &positions),
+                    ("colors.npy", &file("|u1", "(2, 4)", &[255, 0, 0, 255, 0, 255, 0, 51])),
+                    ("velocity.npy", &floats("(2, 3)", &[1., 2., 3., 4., 5., 6.])),
+                    ("mask.npy", &file("|b1", "(2,)", &[0, 1])),
+                    ("times.npy", &floats("(3,)", &[0.; 3])),
+                    ("step.npy", &floats("()", &[0.])),
+                    ("wave.npy", &file("<c8", "(2,)", &[0; 16])),
+                ],
+                deflated,
+            ),
+            None,
+        )
+        .unwrap();
+        assert_eq!(loaded.spheres, SphereArray::F32(vec![[0., 0., 0., 1.5], [5., 0., 0., 2.5]]));
+        assert_eq!(colors(&loaded), [[255, 0, 0], [0, 255, 0]]);
+        assert_eq!(loaded.opacities, Some(vec![1.0, 0.2]));
+        assert_eq!(numbers(&loaded, "velocity.y"), [2.0, 5.0]);
+        assert_eq!(numbers(&loaded, "mask"), [0.0, 1.0]);
+        assert_eq!(
+            loaded.notes,
+            [
+                "these arrays are not used, because they do not have a row for each of the 2 spheres, or are not numbers: \
+              `times` has the shape (3,), `step` has the shape (), `wave` has the type <c8"
+            ]
+        );
+    }
+    // One coordinate in each array; the radius follows from the spacing, or is given.
+    let axis = |values: [i16; 2]| file("<i2", "(2,)", &values.map(i16::to_le_bytes).concat());
+    let (x, y, z) = (axis([0, 0]), axis([0, 7]), axis([1, 1]));
+    let archive = zip(&[("x.npy", &x), ("y.npy", &y), ("z.npy", &z)], false);
+    let expected = |r| Ok(SphereArray::F64(vec![[0., 0., 1., r], [0., 7., 1., r]]));
+    assert_eq!(read_archive(&archive, None), expected(3.5));
+    assert_eq!(read_archive(&archive, Some(2.0)), expected(2.0));
+    let both = zip(&[("positions.npy", &positions), ("radii.npy", &radii)], false);
+    let error = npz::read(&both, Some(1.0)).unwrap_err().to_string();
+    assert!(error.contains("the column radii has radii; remove the radius"), "{error}");
+    let zero =
+        zip(&[("positions.npy", &positions), ("radius.npy", &floats("(2,)", &[1., 0.]))], false);
+    let error = npz::read(&zero, None).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "array `positions`: row 1: radius is 0; a radius must be finite and greater than 0"
+    );
+}
+
 /// A flipped bit in the numbers is found by the archive's checksum.
 #[test]
 fn damaged_archives() {
     for deflated in [false, true] {
         let mut archive = zip(&[("a.npy", &file())], deflated);
         archive[if deflated { 60 } else { 170 }] ^= 1;
-        let error = npz::read_spheres(&archive, None).unwrap_err().to_string();
+        let error = read_archive(&archive, None).unwrap_err().to_string();
         assert!(error.starts_with("array `a`: "), "{error}");
     }
 }
@@ -216,8 +396,10 @@ fn noise_never_panics() {
         file_with_header("{'descr': [('a', [('b', '<f4', (1, 2))])], 'shape': ((((1,),),),)}");
     let stored = zip(&[("a.npy", &file), ("spheres.npy", &file)], false);
     let deflated = zip(&[("a.npy", &file)], true);
+    let many =
+        zip(&[("positions.npy", &file), ("colors.npy", &structured()), ("z.npy", &file)], false);
     let mut random = fastrand::Rng::with_seed(18);
-    for seed in [&file, &deep, &stored, &deflated] {
+    for seed in [&file, &deep, &stored, &deflated, &many, &structured()] {
         for _ in 0..5_000 {
             let mut bytes = seed.clone();
             for _ in 0..random.usize(1..6) {
@@ -230,8 +412,8 @@ fn noise_never_panics() {
                 }
             }
             let radius = random.bool().then_some(1.0);
-            let _ = read_spheres(&bytes, radius);
-            let _ = npz::read_spheres(&bytes, radius);
+            let _ = reader::read(&bytes, radius);
+            let _ = npz::read(&bytes, radius);
             let _ = raw::read_spheres(&bytes);
         }
     }

@@ -140,7 +140,7 @@ fn errors_name_position_and_remedy() {
         ),
         (
             "[camera.pinhole]\nfocus = 3\n",
-            "line 2, column 1: unknown key `focus`; valid here: eye, look_at, direction, up, distance, half_extent, vertical_fov, stereo",
+            "line 2, column 1: unknown key `focus`; valid here: eye, look_at, direction, up, distance, half_extent, vertical_fov, margin, zoom, stereo",
         ),
         ("[camera.pinhol]\n", "line 1, column 9: unknown name `pinhol`; did you mean `pinhole`?"),
         (
@@ -177,7 +177,7 @@ fn errors_name_position_and_remedy() {
             "line 1, column 2: the eye and the look-at point are both at [1.0, 1.0, 1.0]; move one of them",
         ),
         (
-            "[camera.pinhole]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\n",
+            "[camera.pinhole]\neye = [0, 5, 0]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n",
             "line 1, column 2: up [0.0, 1.0, 0.0] is parallel to the direction of view; tilt it",
         ),
         (

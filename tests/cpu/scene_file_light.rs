@@ -164,7 +164,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     let apply =
         |text: &str| parse(&format!("data = 'a.pdb'\n{text}")).data().unwrap().apply(molecule());
     let radii = |text: &str| {
-        let (atoms, notes) = apply(text).unwrap();
+        let (atoms, _, notes) = apply(text).unwrap();
         let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
         (atoms.iter().map(|atom| atom.radius).collect::<Vec<_>>(), notes)
     };
@@ -209,7 +209,7 @@ fn data_gets_common_properties_or_those_of_its_species() {
          [elements.O]\nradius = 3\ncolor = 'red'\n[elements.C1]\nmaterial = 'glass'\n[elements.X]\n",
     );
     let data = file.data().unwrap();
-    let (atoms, notes) = data.apply(molecule()).unwrap();
+    let (atoms, _, notes) = data.apply(molecule()).unwrap();
     assert_eq!(
         notes,
         ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]

@@ -242,7 +242,7 @@ fn given_up(_: &'static Headless) {
     for (count, expected) in [(10, 0), (30_000, u32::from(is_software)), (10, 0)] {
         let spheres = spheres::nearly_coincident(count);
         let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-        let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
         let film = Film::new(24, 16).unwrap();
         let accel = AccelPlan::new(scene.spheres(), AccelChoice::Grid, 1 << 27);
         let accel = accel.build(scene.spheres());

@@ -19,7 +19,7 @@ fn bounds(headless: &'static Headless) {
     for kind in [Kind::Random, Kind::Clusters] {
         let scene = Scene::from_f32(kind.spheres(5000, 1).unwrap(), grey).unwrap();
         let camera =
-            PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), film.aspect()).unwrap();
+            PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), film.aspect()).unwrap();
         let view = View::new(&camera, film);
         for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
             let settings = RenderSettings::default();

@@ -109,7 +109,7 @@ fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
 fn views(scene: &Scene) -> Vec<(Box<dyn Camera>, Film)> {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
-    let from_front = PinholeCamera::framing_from_the_front(&bounds, 1.5).unwrap();
+    let from_front = PinholeCamera::framing_from_the_front(bounds, 1.5).unwrap();
     let pose = Pose::looking_along(center, [0.3, -0.4, 0.8], [0.0, 1.0, 0.1]).unwrap();
     let from_within = PinholeCamera::with_vertical_fov(pose, 1.9, 1.0).unwrap();
     let eye = center + glam::DVec3::X * size;
@@ -188,7 +188,7 @@ fn coincident(headless: &'static Headless) {
 fn slices(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres::clusters(10, 200), LinearRgb::WHITE).unwrap();
     let bounds = scene.bounds_to_frame();
-    let camera = PinholeCamera::framing_from_the_front(&bounds, 1.0).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(bounds, 1.0).unwrap();
     let film = Film::new(1103, 997).unwrap();
     let mut rng = Rng::with_seed(1);
     let mut first = None;
@@ -303,7 +303,7 @@ fn assert_is_reference(view: &View, image: &Image) {
 fn long_list(headless: &'static Headless) {
     let spheres = spheres::random(120_000, 26, |_| 0.005);
     let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
     let film = Film::new(24, 16).unwrap();
     let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
     assert_eq!((list.structure(), list.bricks().len()), (Structure::List, 3));
@@ -325,7 +325,7 @@ fn long_list(headless: &'static Headless) {
 /// software device; all other devices must render the same picture as the list.
 fn too_many_steps(headless: &'static Headless) {
     let scene = Scene::from_f32(spheres::nearly_coincident(30_000), LinearRgb::WHITE).unwrap();
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.5).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.5).unwrap();
     let film = Film::new(24, 16).unwrap();
     let list = headless.plan_accel(&scene, AccelChoice::List).build(scene.spheres());
     let expected = render_view(headless, &scene, &list, &camera, &film).unwrap();

@@ -5,7 +5,6 @@ pub(crate) mod appearances;
 pub(crate) mod compare;
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod maps;
-#[cfg(feature = "gpu")]
 #[allow(dead_code, reason = "each test program uses some of them")]
 pub(crate) mod random_light;
 #[allow(dead_code, reason = "each test program uses some of them")]

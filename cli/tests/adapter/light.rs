@@ -62,7 +62,7 @@ fn same_bytes(headless: &'static Headless) {
 fn noise(headless: &'static Headless) {
     let folder = folder();
     let render = |flags: &str| {
-        let flags = format!("render scene.toml -o out.png --layer samples=s.npy {flags}");
+        let flags = format!("render scene.toml -o out.png --quiet --layer samples=s.npy {flags}");
         let said = run(folder.path(), headless, &flags);
         (samples(folder.path()), said)
     };
@@ -99,7 +99,7 @@ fn time(headless: &'static Headless) {
 }
 
 fn interrupted(folder: &Path, headless: &Headless, flags: &str, after: Duration) -> Output {
-    let flags = format!("render scene.toml -o out.png --layer samples=s.npy {flags}");
+    let flags = format!("render scene.toml -o out.png --quiet --layer samples=s.npy {flags}");
     let mut command = command_on(headless, folder, &flags);
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(after);

@@ -37,11 +37,11 @@ fn folder_with(count: u32) -> TempDir {
 
 fn printed(headless: &'static Headless) {
     let folder = folder_with(2000);
-    let text = stdout(&folder, "plan a.npy --accel tree --size 640x480");
+    let text = stdout(&folder, "plan a.npy --accel tree --size 640x480 --style fast");
     for words in ["spheres: 2000", "8-wide tree (asked for)", "640x480", "hits", "fits\n"] {
         assert!(text.contains(words), "{text} lacks {words}");
     }
-    let text = stdout(&folder, "plan a.npy --size 9000x9000 --layer depth --json");
+    let text = stdout(&folder, "plan a.npy --size 9000x9000 --layer depth --json --style fast");
     let plan: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(plan["fits"], true);
     assert_eq!(plan["problem"], serde_json::Value::Null);

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use pinhole::image::color;
+use pinhole::scene_file::SceneFile;
 use pinhole::{Encoding, LayerSet, write};
 
 use crate::program::{command, command_on, succeed};
@@ -24,11 +25,15 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn demo(headless: &'static Headless) {
     let folder = tempfile::tempdir().unwrap();
     succeed(&mut command(&folder, "demo --backend gpu"));
-    let view = View::three_spheres();
-    let expected =
-        headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR).unwrap();
+    let file = SceneFile::parse(include_str!("../../../examples/demo.toml")).unwrap();
+    let scene = file.scene(&[]).unwrap();
+    let camera = file.camera(&file.film, &scene).unwrap();
+    let kind = file.integrator().unwrap();
+    let settings = file.settings(kind, &scene, camera.as_ref(), None).unwrap();
+    let view = pinhole::View::new(camera.as_ref(), file.film);
+    let expected = headless.render(&scene, &view, &settings, LayerSet::COLOR).unwrap();
     let expected: Vec<u8> = expected.color().iter().flat_map(|c| color::to_srgb8(*c)).collect();
-    let picture = image::open(folder.path().join("three-spheres.png")).unwrap().to_rgb8();
+    let picture = image::open(folder.path().join("demo.png")).unwrap().to_rgb8();
     assert!(picture.into_raw() == expected, "the demo's picture is not the library's");
 }
 

@@ -321,8 +321,8 @@ fn usage_with_adapters() {
 
 #[test]
 fn the_demo_does_not_overwrite_a_changed_scene() {
-    let files = [("three-spheres.toml", "# mine\n")];
-    refused(&files, "demo --backend cpu", 2, &["three-spheres.toml", "rename it"]);
+    let files = [("demo.toml", "# mine\n")];
+    refused(&files, "demo --backend cpu", 2, &["demo.toml", "rename it"]);
 }
 
 #[test]

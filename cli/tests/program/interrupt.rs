@@ -10,7 +10,8 @@ use crate::support::Folder;
 const LATER: Duration = Duration::from_millis(700);
 
 /// A command that takes the CPU reference hours.
-const LONG: &str = "render many.npy -o out.png --layer id=id.npy --backend cpu --size 4000x4000";
+const LONG: &str =
+    "render many.npy -o out.png --layer id=id.npy --backend cpu --size 4000x4000 --samples 999";
 
 fn start(folder: &Folder, arguments: &str) -> Child {
     let mut command = folder.command(arguments);

@@ -8,10 +8,13 @@ mod npy_files;
 
 mod arrays;
 mod bad_input;
+mod colors;
+mod file_info;
 mod generate;
 mod good_input;
 mod interrupt;
 mod light;
+mod looks;
 mod pictures;
 #[cfg(feature = "gpu")]
 mod shaders;

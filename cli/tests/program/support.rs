@@ -20,7 +20,10 @@ pub(crate) struct Folder {
 pub(crate) struct Run {
     pub(crate) code: i32,
     pub(crate) stdout: Vec<u8>,
+    /// Standard error without the line about the picture.
     pub(crate) stderr: String,
+    /// The line about the picture: what was rendered, with which look, and how long it took.
+    pub(crate) said: Option<String>,
 }
 
 impl Folder {
@@ -82,10 +85,19 @@ impl Folder {
 
 impl Run {
     fn new(output: Output) -> Self {
+        let text = String::from_utf8(output.stderr).unwrap();
+        let is_said = |line: &&str| {
+            !line.starts_with("note: ")
+                && line.ends_with(" s")
+                && (line.contains(" sphere") || line.contains(" atom"))
+        };
+        let said = text.lines().last().filter(is_said).map(str::to_owned);
+        let length = said.as_ref().map_or(0, |line| line.len() + 1);
         Self {
             code: output.status.code().unwrap_or_else(|| panic!("killed by a signal")),
             stdout: output.stdout,
-            stderr: String::from_utf8(output.stderr).unwrap(),
+            stderr: text[..text.len() - length].to_owned(),
+            said,
         }
     }
 

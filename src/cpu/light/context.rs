@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::source::Sources;
 use super::surface_ray::Surface;
 use crate::camera::Camera;
+use crate::cpu::search::Search;
 use crate::geometry::math::{unit, wide};
 use crate::image::color::{LUMINANCE, LinearRgb};
 use crate::light::emitters::Emitters;
@@ -17,6 +18,8 @@ use crate::scene::material::Material;
 
 #[derive(Debug)]
 pub(super) struct LightingContext<'a> {
+    /// How rays find spheres.
+    pub(super) search: Search<'a>,
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a RenderSettings,
     pub(super) ground: Option<Plane>,
@@ -46,7 +49,12 @@ pub(super) struct SkyImage<'a> {
 }
 
 impl<'a> LightingContext<'a> {
-    pub(super) fn new(scene: &'a Scene, camera: &dyn Camera, settings: &'a RenderSettings) -> Self {
+    pub(super) fn new(
+        search: Search<'a>,
+        camera: &dyn Camera,
+        settings: &'a RenderSettings,
+    ) -> Self {
+        let scene = search.scene();
         let origin = scene.origin();
         let lights = settings.lights.iter().filter_map(|light| light.in_world(camera));
         let lights = lights.map(|light| match light {
@@ -84,6 +92,7 @@ impl<'a> LightingContext<'a> {
             }
         };
         Self {
+            search,
             scene,
             settings,
             ground,
@@ -99,11 +108,6 @@ impl<'a> LightingContext<'a> {
     pub(super) fn sphere(&self, id: u32) -> (DVec3, f64) {
         let [x, y, z, radius] = self.scene.spheres()[id as usize].map(f64::from);
         (DVec3::new(x, y, z), radius)
-    }
-
-    /// Whether two spheres have the same centre and radius.
-    pub(super) fn is_same(&self, one: u32, other: u32) -> bool {
-        self.sphere(one) == self.sphere(other)
     }
 
     pub(super) fn color(&self, surface: Surface) -> DVec3 {

@@ -1,7 +1,9 @@
-//! Lighting of the CPU reference, in f64: for every ray, every sphere is tested.
+//! Lighting of the CPU reference, in f64.
 //!
 //! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
 //! sample. Only the input is shared with them.
+
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 
@@ -9,13 +11,13 @@ use self::context::{LightingContext, luminance};
 use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
 use self::studio::follow as follow_in_studio;
-use super::{denoise, for_each_pixel, primary_pixel, render_primary};
+use super::search::Search;
+use super::{RenderError, Watch, denoise, for_each_pixel, primary_pixel, render_primary};
 use crate::camera::View;
 use crate::geometry::math::wide;
 use crate::image::outline;
-use crate::image::{Averages, Image, ImageTooLarge, LayerSet, NO_ID, Pixel};
+use crate::image::{Averages, Image, LayerSet, NO_ID, Pixel};
 use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
-use crate::scene::Scene;
 
 mod bsdf;
 mod context;
@@ -38,21 +40,23 @@ pub struct SampledPicture<'a> {
 }
 
 impl<'a> SampledPicture<'a> {
-    /// Checks the settings, and prepares the data that all samples share.
+    /// Checks the settings, and prepares the data that all samples share. With a reference to a scene, rays test every
+    /// sphere.
     ///
     /// # Errors
     /// Returns an error if [`RenderSettings::check`] fails.
     pub fn new(
-        scene: &'a Scene,
+        search: impl Into<Search<'a>>,
         view: &View<'a>,
         settings: &'a RenderSettings,
     ) -> Result<Self, SettingsError> {
-        settings.check(scene)?;
+        let search = search.into();
+        settings.check(search.scene())?;
         let offsets = settings.sampling.filter.offset_table();
         Ok(Self {
-            context: LightingContext::new(scene, view.camera, settings),
+            context: LightingContext::new(search, view.camera, settings),
             view: *view,
-            lens: Lens::new(view, offsets, scene.origin()),
+            lens: Lens::new(view, offsets, search.scene().origin()),
         })
     }
 
@@ -80,7 +84,7 @@ impl<'a> SampledPicture<'a> {
     fn primary(&self, pixel: [u32; 2]) -> Found {
         let primary = self.context.settings.primary().unwrap_or_default();
         let Pixel { color, albedo, id, .. } =
-            primary_pixel(self.context.scene, &self.view, &primary, pixel);
+            primary_pixel(self.context.search, &self.view, &primary, pixel);
         let alpha = if id == NO_ID { 0.0 } else { 1.0 };
         Found { color: wide(color), alpha, albedo: wide(albedo) }
     }
@@ -89,17 +93,31 @@ impl<'a> SampledPicture<'a> {
     ///
     /// # Errors
     /// Returns an error if the image does not fit into memory.
-    pub fn render(&self, layers: LayerSet) -> Result<Image, ImageTooLarge> {
+    pub fn render(&self, layers: LayerSet) -> Result<Image, RenderError> {
+        self.render_watched(layers, &|_| ControlFlow::Continue(()))
+    }
+
+    /// Renders all pixels, and tells how much of the picture is done; see [`super::render_watched`].
+    ///
+    /// # Errors
+    /// Returns an error if the image does not fit into memory, or if `watch` ends the work.
+    pub fn render_watched(
+        &self,
+        layers: LayerSet,
+        watch: &Watch<'_>,
+    ) -> Result<Image, RenderError> {
         let settings = self.context.settings;
         if let Some(primary) = settings.primary() {
-            return render_primary(self.context.scene, &self.view, &primary, layers);
+            return render_primary(self.context.search, &self.view, &primary, layers, watch);
         }
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
-        for_each_pixel(&mut image, |pixel, i, row| {
-            row.set(i, &self.data(pixel));
+        for_each_pixel(&mut image, watch, |pixel, i, row| {
+            if row.has_data() {
+                row.set(i, &self.data(pixel));
+            }
             row.set_averages(i, &self.averages(pixel));
-        });
+        })?;
         if settings.is_denoised {
             // This cannot fail, because `layers_for` includes all guides.
             image = denoise(&image).unwrap_or(image);
@@ -137,7 +155,7 @@ impl<'a> SampledPicture<'a> {
 
     /// The data layers of a pixel, from the ray through its centre.
     fn data(&self, pixel: [u32; 2]) -> Pixel {
-        primary_pixel(self.context.scene, &self.view, &PrimarySettings::default(), pixel)
+        primary_pixel(self.context.search, &self.view, &PrimarySettings::default(), pixel)
     }
 }
 
@@ -145,12 +163,12 @@ impl<'a> SampledPicture<'a> {
 ///
 /// # Errors
 /// Returns an error if [`RenderSettings::check`] fails.
-pub fn radiance(
-    scene: &Scene,
+pub fn radiance<'a>(
+    search: impl Into<Search<'a>>,
     view: &View<'_>,
     settings: &RenderSettings,
     pixel: [u32; 2],
     sample: u32,
 ) -> Result<Sample, SettingsError> {
-    Ok(SampledPicture::new(scene, view, settings)?.sample(pixel, sample))
+    Ok(SampledPicture::new(search.into(), view, settings)?.sample(pixel, sample))
 }

@@ -1,6 +1,6 @@
 //! Rays that know on which surface they start, so that they need no offset and no smallest distance.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 use super::context::LightingContext;
 use crate::cpu::sphere::intersect;
@@ -85,13 +85,9 @@ pub(super) fn nearest(
     surface_ray: &SurfaceRay,
 ) -> Option<Interaction> {
     let ray = &surface_ray.ray;
-    let mut nearest: Option<(u32, SphereHit)> = None;
-    for id in 0..context.scene.len() as u32 {
-        let Some(hit) = sphere(context, surface_ray, id) else { continue };
-        if nearest.is_none_or(|(_, nearest)| hit.distance < nearest.distance) {
-            nearest = Some((id, hit));
-        }
-    }
+    let start = StartSphere::of(context, surface_ray.start);
+    let test = |_, sphere| hit_of(ray, start, sphere).map(|hit| (hit.distance, hit));
+    let nearest = context.search.nearest(ray, test).map(|nearest| (nearest.id, nearest.hit));
     let is_nearest = |t: &f64| nearest.is_none_or(|(_, hit)| *t < hit.distance);
     if let Some(distance) = ground(context, surface_ray).filter(is_nearest) {
         let plane = context.ground.as_ref()?;
@@ -124,20 +120,56 @@ pub(super) fn is_occluded(
     hiding: Hiding,
     exempt: Option<u32>,
 ) -> bool {
+    let ray = &surface_ray.ray;
+    let start = StartSphere::of(context, surface_ray.start);
     let hides = |id: u32| match hiding {
         Hiding::All => true,
         Hiding::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
     // If several spheres equal the one on which the ray starts, only that one counts.
-    let is_there = |id: u32| match surface_ray.start {
-        Start::Inside(own) => id == own || !context.is_same(own, id),
+    let is_there = |id: u32, sphere| match surface_ray.start {
+        Start::Inside(own) => id == own || !start.is_same(sphere),
         Start::Free | Start::Outside(_) | Start::Ground => true,
     };
+    let exempt = exempt.map(|id| context.scene.spheres()[id as usize]);
     ground(context, surface_ray).is_some_and(|t| t < t_max)
-        || (0..context.scene.len() as u32)
-            .filter(|id| !exempt.is_some_and(|own| context.is_same(own, *id)))
-            .filter(|id| hides(*id) && is_there(*id))
-            .any(|id| sphere(context, surface_ray, id).is_some_and(|hit| hit.distance < t_max))
+        || context.search.any(ray, t_max, |id, sphere| {
+            hit_of(ray, start, sphere).is_some_and(|hit| hit.distance < t_max)
+                && !exempt.is_some_and(|own| is_same(own, sphere))
+                && is_there(id, sphere)
+                && hides(id)
+        })
+}
+
+/// Whether two spheres have the same centre and radius.
+fn is_same(one: [f32; 4], other: [f32; 4]) -> bool {
+    Vec4::from(one) == Vec4::from(other)
+}
+
+/// The sphere on which a ray starts.
+#[derive(Clone, Copy)]
+enum StartSphere {
+    None,
+    /// The ray starts outwards on this sphere.
+    Outside([f32; 4]),
+    /// The ray starts inwards on this sphere.
+    Inside([f32; 4]),
+}
+
+impl StartSphere {
+    fn of(context: &LightingContext<'_>, start: Start) -> Self {
+        let sphere = |id: u32| context.scene.spheres()[id as usize];
+        match start {
+            Start::Free | Start::Ground => Self::None,
+            Start::Outside(id) => Self::Outside(sphere(id)),
+            Start::Inside(id) => Self::Inside(sphere(id)),
+        }
+    }
+
+    /// Whether it has the centre and radius of another sphere.
+    fn is_same(self, sphere: [f32; 4]) -> bool {
+        matches!(self, Self::Outside(own) | Self::Inside(own) if is_same(own, sphere))
+    }
 }
 
 /// The intersection of a ray and a sphere.
@@ -151,13 +183,13 @@ struct SphereHit {
     is_outside: bool,
 }
 
-fn sphere(context: &LightingContext<'_>, surface_ray: &SurfaceRay, id: u32) -> Option<SphereHit> {
-    let (center, radius) = context.sphere(id);
-    let SurfaceRay { ray, start } = surface_ray;
+fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> {
+    let [x, y, z, radius] = sphere.map(f64::from);
+    let center = DVec3::new(x, y, z);
     let from_center = ray.origin - center;
-    match *start {
-        Start::Outside(own) if context.is_same(own, id) => None,
-        Start::Inside(own) if context.is_same(own, id) => {
+    match start {
+        StartSphere::Outside(own) if is_same(own, sphere) => None,
+        StartSphere::Inside(own) if is_same(own, sphere) => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
             Some(SphereHit { distance, outward, is_outside: false })
@@ -185,6 +217,7 @@ fn ground(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<f64
 mod tests {
     use super::*;
     use crate::camera::{PinholeCamera, Pose};
+    use crate::cpu::search::Search;
     use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;
     use crate::scene::Scene;
@@ -194,7 +227,7 @@ mod tests {
         let scene = Scene::new(spheres).unwrap();
         let pose = Pose::looking_at([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::new(pose, 1.0, [1.0, 1.0]).unwrap();
-        test(&LightingContext::new(&scene, &camera, &RenderSettings::studio()));
+        test(&LightingContext::new(Search::from(&scene), &camera, &RenderSettings::studio()));
     }
 
     fn direction(random: &mut fastrand::Rng) -> DVec3 {

@@ -10,7 +10,7 @@ use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::lit::sums::{self, Totals};
 use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Round,
+    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, Round,
 };
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -39,24 +39,17 @@ impl Headless {
         let wanted = settings.layers_for(layers);
         let mut image = self.data_layers(scene, view, settings, wanted, watch)?;
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
-        let (samples, totals) = self.with_lit_passes(scenes.key(view, &lighting), |passes| {
-            let work = Work {
-                headless: self,
-                passes,
-                scenes,
-                view,
-                settings,
-                lighting: &lighting,
-                at_once: AT_ONCE,
-            };
-            match work.gather(&mut image, watch) {
-                // Several directions of ambient light in one invocation need more steps than one direction.
-                Err(GpuError::Steps) if lighting.parameters.occlusion_samples > 1 => {
-                    Work { at_once: 1, ..work }.gather(&mut image, watch)
-                }
-                done => done,
+        let key = scenes.key(view, &lighting, &self.device().limits());
+        let steps = LitKey { one_pass: None, ..key };
+        let key = if self.is_one_pass() { key } else { steps };
+        let gathered = self.gather(key, scenes, view, settings, &lighting, &mut image, watch);
+        let (samples, totals) = match gathered {
+            // Several rays in one invocation need more steps than one ray.
+            Err(GpuError::Steps) if key != steps => {
+                self.gather(steps, scenes, view, settings, &lighting, &mut image, watch)?
             }
-        })?;
+            done => done?,
+        };
         if settings.is_denoised {
             image = self.denoise(&image)?;
         }
@@ -66,6 +59,34 @@ impl Headless {
         image.keep(layers);
         let noise = totals.noise(samples);
         Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+    }
+
+    /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples
+    /// that every pixel has.
+    #[expect(clippy::too_many_arguments, reason = "they are those of one picture")]
+    fn gather(
+        &self,
+        key: LitKey,
+        scenes: LitScene<'_>,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        lighting: &LightingData,
+        image: &mut Image,
+        watch: &mut Watch<'_>,
+    ) -> Result<(u32, Totals), GpuError> {
+        self.with_lit_passes(key, |passes| {
+            let work =
+                Work { headless: self, passes, scenes, view, settings, lighting, at_once: AT_ONCE };
+            match work.gather(image, watch) {
+                // Several directions of ambient light in one invocation need more steps than one direction.
+                Err(GpuError::Steps)
+                    if key.one_pass.is_none() && lighting.parameters.occlusion_samples > 1 =>
+                {
+                    Work { at_once: 1, ..work }.gather(image, watch)
+                }
+                done => done,
+            }
+        })
     }
 
     /// Renders the layers that are not averaged over samples, but belong to the ray through the centre of each pixel.

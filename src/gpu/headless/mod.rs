@@ -57,6 +57,7 @@ pub struct Headless {
     queue: Queue,
     timeout: Duration,
     is_indirect: bool,
+    is_one_pass: bool,
     faults: Arc<Faults>,
     /// The renderers that were built so far. The mutex is locked during a whole render, because faults that wgpu
     /// reports cannot be attributed to a render.
@@ -112,7 +113,8 @@ impl Headless {
         let is_indirect =
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let renderers = Mutex::new(Renderers::new(options.edits.clone()));
-        Ok(Self { info, device, queue, timeout, is_indirect, faults, renderers })
+        let is_one_pass = options.one_pass;
+        Ok(Self { info, device, queue, timeout, is_indirect, is_one_pass, faults, renderers })
     }
 
     /// Returns name, driver and kind of the adapter in use.
@@ -130,6 +132,11 @@ impl Headless {
     /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     pub(in crate::gpu) fn is_indirect(&self) -> bool {
         self.is_indirect
+    }
+
+    /// Whether one pass takes whole samples where it can.
+    pub(in crate::gpu) fn is_one_pass(&self) -> bool {
+        self.is_one_pass
     }
 
     /// Returns the queue, for callers that record their own commands.

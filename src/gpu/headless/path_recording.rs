@@ -136,7 +136,8 @@ impl Headless {
         let scenes = LitScene { all: scene, occluders: scene };
         let tile = middle_of(&view.film);
         let mut recording = new_recording(scene.space(), view, settings, &lighting);
-        self.with_lit_passes(scenes.key(view, &lighting), |passes| {
+        let key = scenes.key(view, &lighting, &self.device().limits());
+        self.with_lit_passes(key, |passes| {
             let (region, limit) =
                 (scenes.visible_region(view, settings), iteration_limit(self.device()));
             let frames = scenes.frames(view, region, tile, limit);

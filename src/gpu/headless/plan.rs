@@ -307,7 +307,7 @@ mod tests {
         .unwrap();
         let accel = AccelPlan::new(scene.spheres(), AccelChoice::List, 1 << 27);
         let film = Film::new(size, size).unwrap();
-        let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
         let request = PictureRequest {
             scene: &scene,
             view: View::new(&camera, film),

@@ -55,7 +55,7 @@ impl HostedPicture {
         settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
-        let passes = LitPasses::new(device, scenes.key(view, &lighting), &[])?;
+        let passes = LitPasses::new(device, scenes.key(view, &lighting, &device.limits()), &[])?;
         let samples = settings.sampling.samples;
         let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, samples);
         let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));

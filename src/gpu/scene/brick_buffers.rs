@@ -21,6 +21,8 @@ pub(in crate::gpu) struct BrickBuffers {
     pub(in crate::gpu) trace_group: BindGroup,
     /// Bind group 1 of `shade`.
     pub(in crate::gpu) surface_group: BindGroup,
+    /// Bind group 3 of kernels that search the brick and shade its shapes.
+    pub(in crate::gpu) appearance_group: BindGroup,
     /// The id of every sphere, in the order of the structure.
     pub(in crate::gpu) ids: Buffer,
     /// The appearance words of the spheres.
@@ -144,6 +146,11 @@ impl Upload<'_> {
                     "pinhole surface",
                     layouts.surface_of(kind.primitive),
                     &[&record, &shapes, &appearances, palette],
+                ),
+                appearance_group: group(
+                    "pinhole appearance",
+                    &layouts.appearance,
+                    &[&appearances, palette],
                 ),
                 ids,
                 appearances,

@@ -18,6 +18,8 @@ pub(in crate::gpu) struct Layouts {
     pub(in crate::gpu) brick: Vec<(BrickKind, BindGroupLayout)>,
     /// Layout of bind group 1 of `shade`, for spheres.
     pub(in crate::gpu) surface: BindGroupLayout,
+    /// Layout of bind group 3 of kernels that search a brick and shade its shapes: their appearance.
+    pub(in crate::gpu) appearance: BindGroupLayout,
     /// Layout of bind group 2 of `shade`.
     pub(in crate::gpu) targets: BindGroupLayout,
 }
@@ -61,6 +63,10 @@ impl Layouts {
                     storage::<u32>(true),
                     storage::<records::Color>(true),
                 ],
+            ),
+            appearance: layout(
+                "pinhole appearance",
+                &[storage::<u32>(true), storage::<records::Color>(true)],
             ),
             targets: layout("pinhole targets", &targets),
         }

@@ -108,6 +108,7 @@ pub(in crate::gpu) fn shade_kernel(
 ) -> Kernel {
     let mut parts = common_parts(camera, primitive);
     parts.extend([
+        part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
         part!("primary/shade.wgsl"),
         part!("primary/shading.wgsl"),

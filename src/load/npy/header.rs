@@ -7,6 +7,8 @@
 use py_literal::Value;
 
 use super::SpheresError;
+use super::dtype::Dtype;
+use crate::load::binary::component_names;
 use crate::text::{one_line, shortened};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
@@ -18,12 +20,111 @@ const MAX_TEXT: usize = 10_000;
 /// An array of plain numbers needs two levels, and a structured array a few more.
 const MAX_DEPTH: usize = 8;
 
+/// The most columns that an array makes.
+const MAX_COLUMNS: usize = 1024;
+
 /// The contents of a header.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
-    pub(super) dtype: String,
+    pub(super) elements: Elements,
     pub(super) fortran_order: bool,
     pub(super) shape: Vec<u64>,
+}
+
+/// What the elements of an array are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Elements {
+    /// Values of one type, by its name.
+    Plain(String),
+    /// Structures with named fields.
+    Structures {
+        fields: Vec<Field>,
+        /// Bytes of a structure.
+        size: usize,
+    },
+}
+
+/// A field of a structure. Fields of several values or fields are as many fields, such as `pos.x`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) dtype: Dtype,
+    /// Bytes before it in its structure.
+    pub(super) offset: usize,
+}
+
+impl Elements {
+    /// Name of the type, for messages.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Plain(name) => name.clone(),
+            Self::Structures { .. } => "a structure of fields".to_owned(),
+        }
+    }
+}
+
+/// Adds the fields of a structure that begins at `offset`, and returns where it ends; an error is the end of a sentence.
+fn add_fields(
+    list: &[Value],
+    prefix: &str,
+    mut offset: usize,
+    steps: &mut usize,
+    fields: &mut Vec<Field>,
+) -> Result<usize, String> {
+    for field in list {
+        let bad = || "has a field without a name or a valid type".to_owned();
+        let Value::Tuple(parts) = field else { return Err(bad()) };
+        let (name, of, shape) = match parts.as_slice() {
+            [name, of] => (name, of, None),
+            [name, of, shape] => (name, of, Some(shape)),
+            _ => return Err(bad()),
+        };
+        let name = match name {
+            Value::String(name) => name,
+            // A title stands before the name.
+            Value::Tuple(both) => both.get(1).and_then(Value::as_string).ok_or_else(bad)?,
+            _ => return Err(bad()),
+        };
+        let count = match shape {
+            None => Some(1),
+            Some(Value::Tuple(dimensions)) => {
+                dimensions.iter().try_fold(1, |all: usize, dimension| {
+                    all.checked_mul(usize::try_from(dimension.as_integer()?).ok()?)
+                })
+            }
+            Some(dimension) => dimension.as_integer().and_then(|count| usize::try_from(count).ok()),
+        };
+        let too_many = || format!("has more than {MAX_COLUMNS} columns");
+        let count = count.filter(|count| *count <= MAX_COLUMNS).ok_or_else(too_many)?;
+        for name in component_names(name, count) {
+            // Fields without fields of their own count too.
+            *steps += 1;
+            if *steps > 2 * MAX_COLUMNS {
+                return Err(too_many());
+            }
+            let full = format!("{prefix}{name}");
+            match of {
+                Value::String(of) => {
+                    let dtype = Dtype::parse(of).ok_or_else(bad)?;
+                    let size = dtype.size;
+                    // What has no name only fills a gap.
+                    if !name.is_empty() {
+                        let name = shortened(&one_line(&full));
+                        fields.push(Field { name, dtype, offset });
+                    }
+                    offset = offset.checked_add(size).ok_or_else(bad)?;
+                }
+                Value::List(list) => {
+                    offset = add_fields(list, &format!("{full}."), offset, steps, fields)?;
+                }
+                _ => return Err(bad()),
+            }
+            if fields.len() > MAX_COLUMNS {
+                return Err(too_many());
+            }
+        }
+    }
+    Ok(offset)
 }
 
 /// Splits a file into its header and the data after it.
@@ -67,10 +168,13 @@ fn parse(text: &str) -> Result<Header, String> {
             entries.iter().filter(|(key, _)| key.as_string().is_some_and(|k| k == name));
         named.next().map(|(_, value)| value).ok_or_else(|| format!("has no key `{name}`"))
     };
-    let dtype = match value("descr")? {
-        Value::String(dtype) => dtype.clone(),
-        // A list of fields and their types. Such arrays are refused, so the fields do not matter.
-        Value::List(_) => "a structure of fields".to_owned(),
+    let elements = match value("descr")? {
+        Value::String(dtype) => Elements::Plain(dtype.clone()),
+        Value::List(list) => {
+            let mut fields = Vec::new();
+            let size = add_fields(list, "", 0, &mut 0, &mut fields)?;
+            Elements::Structures { fields, size }
+        }
         _ => return Err("has a `descr` that is not a valid type".to_owned()),
     };
     let Value::Boolean(fortran_order) = *value("fortran_order")? else {
@@ -83,7 +187,7 @@ fn parse(text: &str) -> Result<Header, String> {
     let shape: Option<Vec<u64>> = dimensions.iter().map(count).collect();
     let shape =
         shape.ok_or("has a `shape` with a dimension that is not a valid number of elements")?;
-    Ok(Header { dtype, fortran_order, shape })
+    Ok(Header { elements, fortran_order, shape })
 }
 
 /// Returns the deepest nesting of brackets. Brackets within strings count too.
@@ -107,10 +211,29 @@ mod tests {
     #[test]
     fn headers_as_numpy_writes_them() {
         let header = parse("{'descr': '<f4', 'fortran_order': False, 'shape': (10, 4), }     \n");
-        let expected = Header { dtype: "<f4".to_owned(), fortran_order: false, shape: vec![10, 4] };
+        let elements = Elements::Plain("<f4".to_owned());
+        let expected = Header { elements, fortran_order: false, shape: vec![10, 4] };
         assert_eq!(header, Ok(expected));
         let header = parse("{'shape': (), 'fortran_order': True, 'descr': [('a', '<f4', (2,))]}");
-        assert_eq!(header.unwrap().dtype, "a structure of fields");
+        assert_eq!(header.unwrap().elements.name(), "a structure of fields");
+        let text = "{'descr': [('id', '<i8'), ('', '|V4'), (('title', 'pos'), '<f4', (3,)), ('c', [('r', '|u1'), \
+                    ('g', '|u1')]), ('m', '<f8', (2, 2))], 'fortran_order': False, 'shape': (3,), }";
+        let Elements::Structures { fields, size } = parse(text).unwrap().elements else { panic!() };
+        let found: Vec<_> =
+            fields.iter().map(|f| (f.name.as_str(), f.dtype.size, f.offset)).collect();
+        let expected = [
+            ("id", 8, 0),
+            ("pos.x", 4, 12),
+            ("pos.y", 4, 16),
+            ("pos.z", 4, 20),
+            ("c.r", 1, 24),
+            ("c.g", 1, 25),
+            ("m.0", 8, 26),
+            ("m.1", 8, 34),
+            ("m.2", 8, 42),
+            ("m.3", 8, 50),
+        ];
+        assert_eq!((found, size), (expected.to_vec(), 58));
     }
 
     #[test]
@@ -120,6 +243,22 @@ mod tests {
             ("{'descr': '<f4'", "is not a valid Python dictionary: `{'descr': '<f4'`"),
             ("[1, 2]", "is not a valid Python dictionary: `[1, 2]`"),
             ("{}", "has no key `descr`"),
+            (
+                "{'descr': [('a', '<f4', (1025,))], 'fortran_order': True, 'shape': (1,)}",
+                "has more than 1024 columns",
+            ),
+            (
+                "{'descr': [('a', [('b', '<f4', (500,))], (1000,))], 'fortran_order': True, 'shape': (1,)}",
+                "has more than 1024 columns",
+            ),
+            (
+                "{'descr': [('a', [('b', [], (1000,))], (1000,))], 'fortran_order': True, 'shape': (1,)}",
+                "has more than 1024 columns",
+            ),
+            (
+                "{'descr': [('a', 'four')], 'fortran_order': True, 'shape': (1,)}",
+                "has a field without a name or a valid type",
+            ),
             ("{'descr': '<f4', 'shape': (1, 4)}", "has no key `fortran_order`"),
             (
                 "{'descr': 4, 'fortran_order': True, 'shape': ()}",

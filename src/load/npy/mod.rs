@@ -1,10 +1,32 @@
-//! Reads spheres from NumPy arrays (`.npy`) of shape (n, 4) or (n, 3).
+//! Reads spheres from NumPy arrays (`.npy`): plain ones of 3 to 7 columns, and structured ones, whose fields have names.
 
+mod dtype;
 mod header;
 
+use std::collections::TryReserveError;
+
+use dtype::{Dtype, Place};
+use header::{Elements, Header};
+
+use super::binary::component_names;
+use super::format::Options;
+use super::loaded::Loaded;
 use super::numbers::{Layout, rows};
+use super::table::{Table, TableColumn, TableError};
 use crate::scene::sphere_array::SphereArray;
 use crate::text::{one_line, shortened};
+
+/// Names of the columns of plain arrays with these numbers of columns.
+const COLUMNS: [&[&str]; 5] = [
+    &["x", "y", "z"],
+    &["x", "y", "z", "radius"],
+    &["x", "y", "z", "radius", "value"],
+    &["x", "y", "z", "red", "green", "blue"],
+    &["x", "y", "z", "radius", "red", "green", "blue"],
+];
+
+/// More components of a vector than this are not made columns.
+const MOST_COMPONENTS: u64 = 64;
 
 /// An error of reading spheres from an `.npy` file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,37 +43,47 @@ pub enum SpheresError {
         /// What is wrong with the header, as the end of a sentence.
         message: String,
     },
-    /// The numbers are neither float32 nor float64.
+    /// The elements are not real numbers.
     #[error(
-        "the array has the type {}, but it must be float32 or float64; save it as a.astype('float32')",
+        "the array has the type {}, but it must be of floating-point numbers or integers; save it as \
+         a.astype('float32')",
         shortened(&one_line(found))
     )]
     Type {
         /// NumPy's name of the type of the array.
         found: String,
     },
-    /// The shape is neither (n, 4) nor (n, 3).
+    /// The shape is not that of a list of spheres.
     #[error(
-        "the array has the shape {}, but it must be (n, 4) for x, y, z, radius or (n, 3) for x, y, z",
+        "the array has the shape {}, but it must be (n, 3) for x, y, z; (n, 4) for x, y, z, radius; (n, 5) with a value \
+         after that; (n, 6) for x, y, z, red, green, blue; or (n, 7) for x, y, z, radius, red, green, blue",
         tuple(shape)
     )]
     Shape {
         /// The shape of the array.
         shape: Vec<u64>,
     },
-    /// The array has no radii, and no radius was given.
-    #[error("the array has the shape ({rows}, 3) without radii; give one radius for all spheres")]
-    NoRadius {
-        /// Number of spheres.
-        rows: u64,
+    /// The shape of a structured array is not that of a list.
+    #[error(
+        "the array of structures has the shape {}, but it must be (n,); save it as a.ravel()",
+        tuple(shape)
+    )]
+    StructureShape {
+        /// The shape of the array.
+        shape: Vec<u64>,
     },
+    /// The columns of the array do not make spheres.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// The array has radii, and a radius was given as well.
     #[error(
-        "the array has the shape ({rows}, 4) with radii; remove the radius that is given for all spheres"
+        "the array has the shape ({rows}, {columns}) with radii; remove the radius that is given for all spheres"
     )]
     TwoRadii {
         /// Number of spheres.
         rows: u64,
+        /// Number of columns.
+        columns: usize,
     },
     /// The file has fewer or more bytes than its header says.
     #[error(
@@ -77,45 +109,194 @@ pub enum SpheresError {
     },
 }
 
-/// Reads an `.npy` file of shape (n, 4): x, y, z, radius; or of shape (n, 3): x, y, z, where all spheres get `radius`.
-/// The numbers are float32 or float64 in either byte order, in C or Fortran order. An array without rows gives no
-/// spheres.
+/// Reads an `.npy` file of any type of floating-point numbers or integers, in either byte order, in C or Fortran order.
+///
+/// The columns are those of [`SpheresError::Shape`]. An array of structures has named columns, of which all that make
+/// no spheres are kept. Spheres without a radius get `radius`, or else one that follows from their spacing, with a note.
 ///
 /// # Errors
 /// If the file is not such an array, or has fewer or more bytes than its header says.
-pub fn read_spheres(bytes: &[u8], radius: Option<f64>) -> Result<SphereArray, SpheresError> {
-    let (header, data) = header::split(bytes)?;
-    let shape = header.shape;
-    let (count, columns) = match *shape {
-        [rows, 4] if radius.is_some() => return Err(SpheresError::TwoRadii { rows }),
-        [rows, 3] if radius.is_none() => return Err(SpheresError::NoRadius { rows }),
-        [rows, columns @ (3 | 4)] => (rows, columns),
-        _ => return Err(SpheresError::Shape { shape }),
-    };
-    let width = match header.dtype.as_str() {
-        "<f4" | ">f4" => 4,
-        "<f8" | ">f8" => 8,
-        _ => return Err(SpheresError::Type { found: header.dtype }),
-    };
-    let wanted = u128::from(count) * u128::from(columns) * width;
-    if wanted != data.len() as u128 {
-        let (dtype, found) = (header.dtype, data.len() as u64);
-        return Err(SpheresError::Size { shape, dtype, wanted, found });
+pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Loaded, SpheresError> {
+    let array = Array::open(bytes)?;
+    let options = radius.map_or_else(Options::default, |r| Options::default().with_radius(r));
+    Ok(match array.spheres(radius)? {
+        Spheres::Ready { spheres, have_radii } => {
+            Table::default().dress(spheres, have_radii, &options)?
+        }
+        Spheres::Columns { columns, notes } => {
+            let mut loaded = Table { columns }.into_loaded(&options)?;
+            loaded.notes.extend(notes);
+            loaded
+        }
+    })
+}
+
+/// Returns how many bytes reading takes in addition to the file: columns are f64.
+pub(super) fn extra_bytes(bytes: &[u8]) -> u64 {
+    Array::open(bytes).map_or(0, |array| match &array.header.elements {
+        Elements::Plain(_) => 0,
+        Elements::Structures { fields, .. } => 8 * (array.rows() * fields.len()) as u64,
+    })
+}
+
+/// An array whose data are as long as its header says.
+pub(super) struct Array<'a> {
+    header: Header,
+    data: &'a [u8],
+    /// The type of the elements, unless they are structures.
+    dtype: Option<Dtype>,
+}
+
+/// What an array says of spheres.
+pub(super) enum Spheres {
+    /// Spheres, with radii or without.
+    Ready { spheres: SphereArray, have_radii: bool },
+    /// Columns of a table.
+    Columns { columns: Vec<TableColumn>, notes: Vec<String> },
+}
+
+impl<'a> Array<'a> {
+    /// Reads the header, and checks it against the length of the data.
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, SpheresError> {
+        let (header, data) = header::split(bytes)?;
+        let (dtype, size) = match &header.elements {
+            Elements::Plain(name) => {
+                let unknown = || SpheresError::Type { found: name.clone() };
+                let dtype = Dtype::parse(name).ok_or_else(unknown)?;
+                let size = dtype.size;
+                (Some(dtype), size)
+            }
+            Elements::Structures { size, .. } => (None, *size),
+        };
+        let shape = header.shape.iter();
+        let count = shape.fold(1_u128, |all, side| all.saturating_mul(u128::from(*side)));
+        let wanted = count.saturating_mul(size as u128);
+        if wanted != data.len() as u128 {
+            let (dtype, found) = (header.elements.name(), data.len() as u64);
+            return Err(SpheresError::Size { shape: header.shape, dtype, wanted, found });
+        }
+        Ok(Self { header, data, dtype })
     }
-    let layout = Layout {
-        // This fits into usize, because there are not fewer bytes than rows.
-        rows: count as usize,
-        columns: columns as usize,
-        by_column: header.fortran_order,
-    };
-    let r = radius.unwrap_or_default();
-    match header.dtype.as_str() {
-        "<f4" => rows(data, layout, f32::from_le_bytes, r as f32).map(SphereArray::F32),
-        ">f4" => rows(data, layout, f32::from_be_bytes, r as f32).map(SphereArray::F32),
-        "<f8" => rows(data, layout, f64::from_le_bytes, r).map(SphereArray::F64),
-        _ => rows(data, layout, f64::from_be_bytes, r).map(SphereArray::F64),
+
+    /// The first dimension, or 0 if there is none or elements take no bytes.
+    pub(super) fn rows(&self) -> usize {
+        if self.data.is_empty() {
+            return 0;
+        }
+        // This fits, because there are not fewer bytes than rows.
+        self.header.shape.first().map_or(0, |rows| *rows as usize)
     }
-    .map_err(|_| SpheresError::Memory { rows: count })
+
+    /// Whether it has at least one dimension.
+    pub(super) fn has_rows(&self) -> bool {
+        !self.header.shape.is_empty()
+    }
+
+    pub(super) fn shape(&self) -> String {
+        tuple(&self.header.shape)
+    }
+
+    /// The array as spheres.
+    pub(super) fn spheres(&self, radius: Option<f64>) -> Result<Spheres, SpheresError> {
+        let Some(dtype) = &self.dtype else {
+            let [_] = *self.header.shape else {
+                return Err(SpheresError::StructureShape { shape: self.header.shape.clone() });
+            };
+            let (columns, unused) = self.fields("");
+            let note = format!(
+                "these fields are not used, because they are neither numbers nor text: {}",
+                unused.join(", ")
+            );
+            let notes = if unused.is_empty() { vec![] } else { vec![note] };
+            return Ok(Spheres::Columns { columns, notes });
+        };
+        let names = match *self.header.shape {
+            [_, columns @ 3..=7] => COLUMNS[columns as usize - 3],
+            _ => return Err(SpheresError::Shape { shape: self.header.shape.clone() }),
+        };
+        if !dtype.is_real() {
+            return Err(SpheresError::Type { found: dtype.name.clone() });
+        }
+        let count = self.rows();
+        if radius.is_some() && names.contains(&"radius") {
+            let rows = count as u64;
+            return Err(SpheresError::TwoRadii { rows, columns: names.len() });
+        }
+        if names.len() <= 4
+            && let Some(spheres) = self.plain(dtype, names.len())
+        {
+            let have_radii = names.len() == 4;
+            let memory = |_| SpheresError::Memory { rows: count as u64 };
+            return spheres.map(|spheres| Spheres::Ready { spheres, have_radii }).map_err(memory);
+        }
+        let mut columns = self.matrix(dtype, names.iter().map(ToString::to_string));
+        // Positions and colours share a type here, so that its largest value says nothing about colours.
+        columns.iter_mut().for_each(|column| column.full = None);
+        Ok(Spheres::Columns { columns, notes: Vec::new() })
+    }
+
+    /// Rows of three or four numbers in f32 or f64, without a detour; `None` for other types. Without a fourth number,
+    /// radii are 0.
+    fn plain(&self, dtype: &Dtype, columns: usize) -> Option<Result<SphereArray, TryReserveError>> {
+        let layout = Layout { rows: self.rows(), columns, by_column: self.header.fortran_order };
+        let data = self.data;
+        Some(match dtype.name.as_str() {
+            "<f4" => rows(data, layout, f32::from_le_bytes, 0.0).map(SphereArray::F32),
+            ">f4" => rows(data, layout, f32::from_be_bytes, 0.0).map(SphereArray::F32),
+            "<f8" => rows(data, layout, f64::from_le_bytes, 0.0).map(SphereArray::F64),
+            ">f8" => rows(data, layout, f64::from_be_bytes, 0.0).map(SphereArray::F64),
+            _ => return None,
+        })
+    }
+
+    /// The columns of an array with one row, or one value, for each sphere; or what keeps it from having them.
+    pub(super) fn columns(&self, name: &str) -> Result<Vec<TableColumn>, String> {
+        let Some(dtype) = &self.dtype else {
+            return match *self.header.shape {
+                [_] => Ok(self.fields(&format!("{name}.")).0),
+                _ => Err(format!("has the shape {}", self.shape())),
+            };
+        };
+        if !dtype.is_column() {
+            return Err(format!("has the type {}", shortened(&one_line(&dtype.name))));
+        }
+        match *self.header.shape {
+            [_] => Ok(self.matrix(dtype, [name.to_owned()].into_iter())),
+            [_, count @ 1..=MOST_COMPONENTS] => {
+                Ok(self.matrix(dtype, component_names(name, count as usize).into_iter()))
+            }
+            _ => Err(format!("has the shape {}", self.shape())),
+        }
+    }
+
+    fn matrix(
+        &self,
+        dtype: &Dtype,
+        names: impl ExactSizeIterator<Item = String>,
+    ) -> Vec<TableColumn> {
+        let (rows, columns, size) = (self.rows(), names.len(), dtype.size);
+        let place = |column| match self.header.fortran_order {
+            true => Place { first: column * rows * size, stride: size, rows },
+            false => Place { first: column * size, stride: columns * size, rows },
+        };
+        let named = names.enumerate();
+        named.map(|(column, name)| dtype.column(name, self.data, place(column))).collect()
+    }
+
+    /// The fields of structures, and the names of those that cannot be columns.
+    fn fields(&self, prefix: &str) -> (Vec<TableColumn>, Vec<String>) {
+        let Elements::Structures { fields, size } = &self.header.elements else {
+            return Default::default();
+        };
+        let (used, unused): (Vec<_>, Vec<_>) =
+            fields.iter().partition(|field| field.dtype.is_column());
+        let column = |field: &header::Field| {
+            let place = Place { first: field.offset, stride: *size, rows: self.rows() };
+            field.dtype.column(format!("{prefix}{}", field.name), self.data, place)
+        };
+        let unused = unused.into_iter().map(|field| field.name.clone());
+        (used.into_iter().map(column).collect(), unused.collect())
+    }
 }
 
 /// Formats a shape as Python writes it.

@@ -24,7 +24,7 @@ use studio::StudioPlan;
 use super::SceneFile;
 use super::span::{Lines, SceneFileError, Span, WithSpan, range_of};
 use super::value::scaled;
-use crate::camera::Camera;
+use crate::camera::{Camera, View};
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::light::environment::Environment;
@@ -32,6 +32,7 @@ use crate::light::{Light, Sky, SkyLight};
 use crate::render::{Integrator, PathTracing, RenderSettings, Sampling, SettingsError};
 use crate::scene::Scene;
 use crate::scene::material::Material;
+use crate::style::{Given, fit};
 
 /// The integrators that a scene file can name. The integrator computes the colour of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -74,11 +75,55 @@ pub(super) struct SceneLighting {
     lights: Option<Vec<Light>>,
     sky: Option<SkyPlan>,
     ground: Option<WithSpan<GroundPlan>>,
+    /// What the file gives itself, so that a style does not choose it.
+    given: Given,
 }
 
 impl LightingTables {
-    pub(super) fn read(self, lines: &Lines<'_>) -> Result<SceneLighting, SceneFileError> {
-        let integrator = self.integrator(lines)?;
+    /// Reads the tables of a file, and those of its style where the file has none.
+    pub(super) fn read(
+        self,
+        style: Self,
+        lines: &Lines<'_>,
+    ) -> Result<SceneLighting, SceneFileError> {
+        let integrator = self.integrator(lines)?.or(style.integrator);
+        let given = self.given();
+        self.over(style).plans(integrator, given, lines)
+    }
+
+    /// Returns which values the file gives that a style would choose otherwise.
+    fn given(&self) -> Given {
+        let [occlusion_radius, outline, outline_depth] =
+            self.studio.as_ref().map_or([false; 3], |studio| studio.get_ref().0.given());
+        let light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        Given { occlusion_radius, outline, outline_depth, ground: self.ground.is_some(), light }
+    }
+
+    /// Takes the keys of these tables, and those of a style where there are none. A file that names lights, a sun or a
+    /// sky gets none of the style's.
+    fn over(self, style: Self) -> Self {
+        let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
+        Self {
+            shading: self.shading,
+            integrator: self.integrator.or(style.integrator),
+            studio: either(self.studio, style.studio, StudioTable::over),
+            path: either(self.path, style.path, PathTable::over),
+            sampling: either(self.sampling, style.sampling, SamplingTable::over),
+            lights: self.lights.or(style.lights.filter(|_| !names_light)),
+            sky: self.sky.or(style.sky.filter(|_| !names_light)),
+            sun: self.sun.or(style.sun.filter(|_| !names_light)),
+            ground: self.ground.or(style.ground),
+            has_materials: self.has_materials,
+        }
+    }
+
+    /// Reads the values of all tables.
+    fn plans(
+        self,
+        integrator: Option<IntegratorKind>,
+        given: Given,
+        lines: &Lines<'_>,
+    ) -> Result<SceneLighting, SceneFileError> {
         let names_light = self.lights.is_some() || self.sun.is_some() || self.sky.is_some();
         let sun = self.sun.map(|sun| lights::read_sun(sun, lines)).transpose()?;
         let lights = self.lights.into_iter().flatten().map(|light| lights::read(light, lines));
@@ -92,6 +137,7 @@ impl LightingTables {
             lights: names_light.then_some(lights),
             sky: self.sky.map(|sky| SkyPlan::read(sky, lines)).transpose()?,
             ground: self.ground.map(|ground| GroundPlan::read(ground, lines)).transpose()?,
+            given,
         })
     }
 
@@ -136,6 +182,21 @@ impl LightingTables {
             )),
             _ => Ok(kind),
         }
+    }
+}
+
+/// Joins a table of a file with that of its style.
+fn either<T>(
+    own: Option<Spanned<Table<T>>>,
+    style: Option<Spanned<Table<T>>>,
+    over: impl FnOnce(T, T) -> T,
+) -> Option<Spanned<Table<T>>> {
+    match (own, style) {
+        (Some(own), Some(style)) => {
+            let (span, style) = (own.span(), style.into_inner().0);
+            Some(Spanned::new(span, Table(over(own.into_inner().0, style))))
+        }
+        (own, style) => own.or(style),
     }
 }
 
@@ -184,10 +245,10 @@ impl SceneFile {
         let sky = match &says.sky {
             _ if kind == IntegratorKind::Studio => defaults.sky,
             Some(sky) => sky.sky(image)?,
-            None if says.lights.is_none() => defaults.sky,
+            None if says.lights.is_none() || !says.given.light => defaults.sky,
             None => Sky { light: SkyLight::Constant(LinearRgb::BLACK), is_visible: false },
         };
-        let settings = RenderSettings {
+        let mut settings = RenderSettings {
             integrator,
             sampling: says.sampling,
             lights: says.lights.clone().unwrap_or(defaults.lights),
@@ -198,6 +259,9 @@ impl SceneFile {
             is_denoised: says.is_denoised,
         };
         self.check_colors()?;
+        if let Some(style) = self.style {
+            fit(&mut settings, style, says.given, scene, &View::new(camera, self.film));
+        }
         settings.check(scene).map(|()| settings).map_err(|error| self.span_of(&error).error(error))
     }
 

@@ -17,6 +17,18 @@ pub(in crate::scene_file) struct SamplingTable {
     denoise: Option<bool>,
 }
 
+impl SamplingTable {
+    /// Takes the keys of this table, and those of a style where there are none.
+    pub(super) fn over(self, style: Self) -> Self {
+        Self {
+            samples: self.samples.or(style.samples),
+            seed: self.seed.or(style.seed),
+            filter: self.filter.or(style.filter),
+            denoise: self.denoise.or(style.denoise),
+        }
+    }
+}
+
 pub(super) fn is_denoised(table: &Option<Spanned<Table<SamplingTable>>>) -> bool {
     table.as_ref().and_then(|table| table.get_ref().0.denoise).unwrap_or(false)
 }
@@ -47,6 +59,17 @@ pub(in crate::scene_file) struct PathTable {
     max_depth: Option<Spanned<u32>>,
     roulette_from: Option<u32>,
     light_sampling: Option<LightSampling>,
+}
+
+impl PathTable {
+    /// Takes the keys of this table, and those of a style where there are none.
+    pub(super) fn over(self, style: Self) -> Self {
+        Self {
+            max_depth: self.max_depth.or(style.max_depth),
+            roulette_from: self.roulette_from.or(style.roulette_from),
+            light_sampling: self.light_sampling.or(style.light_sampling),
+        }
+    }
 }
 
 pub(super) fn read_path(

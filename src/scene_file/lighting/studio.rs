@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::either;
 use crate::camera::Camera;
 use crate::exact::Table;
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
@@ -46,6 +47,43 @@ struct OutlineTable {
     color: Option<ColorValue>,
     depth: Option<Number>,
     angle: Option<Number>,
+}
+
+impl StudioTable {
+    /// Takes the keys of this table, and those of a style where there are none.
+    pub(super) fn over(self, style: Self) -> Self {
+        Self {
+            ambient: self.ambient.or(style.ambient),
+            shadows: self.shadows.or(style.shadows),
+            max_surfaces: self.max_surfaces.or(style.max_surfaces),
+            occlusion: either(self.occlusion, style.occlusion, |own, style| OcclusionTable {
+                radius: own.radius.or(style.radius),
+                samples: own.samples.or(style.samples),
+            }),
+            depth_cue: either(self.depth_cue, style.depth_cue, |own, style| DepthCueTable {
+                near: own.near.or(style.near),
+                far: own.far.or(style.far),
+                color: own.color.or(style.color),
+            }),
+            outline: either(self.outline, style.outline, |own, style| OutlineTable {
+                width: own.width.or(style.width),
+                color: own.color.or(style.color),
+                depth: own.depth.or(style.depth),
+                angle: own.angle.or(style.angle),
+            }),
+        }
+    }
+
+    /// Returns whether the table gives the radius of the occlusion, an outline, and the depth of an outline.
+    pub(super) fn given(&self) -> [bool; 3] {
+        let occlusion = self.occlusion.as_ref().map(|table| &table.get_ref().0);
+        let outline = self.outline.as_ref().map(|table| &table.get_ref().0);
+        [
+            occlusion.is_some_and(|occlusion| occlusion.radius.is_some()),
+            outline.is_some(),
+            outline.is_some_and(|outline| outline.depth.is_some()),
+        ]
+    }
 }
 
 /// The studio as the file gives it; missing values of the depth cue follow from the scene.

@@ -150,7 +150,7 @@ fn translucent() -> Scene {
 
 fn occluders(device: &'static Headless) {
     let scene = translucent();
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
     let view = View::new(&camera, Film::new(32, 32).unwrap());
     let mut studio = RenderSettings::studio();
     studio.sampling.samples = 2;
@@ -188,7 +188,7 @@ fn occluders(device: &'static Headless) {
 
 fn no_occluders(device: &'static Headless) {
     let scene = translucent();
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
     let view = View::new(&camera, Film::new(8, 8).unwrap());
     let accel = device.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
     let buffers = device.upload(&scene, &accel.into()).unwrap();
@@ -209,7 +209,7 @@ fn no_occluders(device: &'static Headless) {
 
 fn not_recorded(device: &'static Headless) {
     let scene = translucent();
-    let camera = PinholeCamera::framing_from_the_front(&scene.bounds_to_frame(), 1.0).unwrap();
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
     let view = View::new(&camera, Film::new(8, 8).unwrap());
     let accel = device.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
     let buffers = device.upload(&scene, &accel.into()).unwrap();

@@ -20,6 +20,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::passes::a_host_records_a_studio_and_paths", hosted),
         trial("light::passes::too_much_for_one_recording_is_refused", too_much),
         trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
+        trial("light::passes::one_pass_makes_the_picture_of_several", one_pass),
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
@@ -131,6 +132,25 @@ fn direct(headless: &'static Headless) {
             device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
         });
         assert_eq!(with, without, "{name}");
+    }
+}
+
+/// In one pass, every ray is computed as in several passes, and light is added in the same order.
+fn one_pass(headless: &'static Headless) {
+    let options = HeadlessOptions { one_pass: false, ..HeadlessOptions::default() };
+    let several = Headless::open(&options).unwrap();
+    for (name, mut view) in scenes::all() {
+        view.settings.sampling.samples = 6;
+        let mut sharp = view.settings.clone();
+        if let Integrator::Studio(studio) = &mut sharp.integrator {
+            studio.has_shadows = false;
+        }
+        for settings in [&view.settings, &sharp] {
+            let [one, several] = [headless, &several].map(|device| {
+                device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).unwrap()
+            });
+            assert_eq!(one, several, "{name}");
+        }
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn folder() -> Folder {
         ("trajectory.toml", "data = 'water.xyz'\nframe = 5\n"),
         ("array.toml", "data = 'spheres.npy'\nframe = 2\n"),
         ("bright.toml", "data = 'spheres.npy'\ncolor = [2, 2, 2]\n[studio]\n"),
-        ("three-spheres.toml", "# mine\n"),
+        ("demo.toml", "# mine\n"),
     ]);
     std::fs::create_dir(folder.path("folder.toml")).unwrap();
     let bytes = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
@@ -34,8 +34,8 @@ pub(super) fn folder() -> Folder {
     for (name, contents) in [
         ("spheres.npy", array.clone()),
         ("no-radius.npy", npy("<f4", false, "(2, 3)", &spheres[..24])),
-        ("integers.npy", npy("<i4", false, "(2, 4)", &spheres)),
-        ("five-columns.npy", npy("<f4", false, "(2, 5)", &[0; 40])),
+        ("complex.npy", npy("<c8", false, "(1, 4)", &spheres)),
+        ("ten-columns.npy", npy("<f4", false, "(1, 10)", &[0; 40])),
         ("one-axis.npy", npy("<f4", false, "(8,)", &spheres)),
         ("cut.npy", array[..array.len() - 3].to_vec()),
         ("long.npy", [&*array, &[0; 4]].concat()),
@@ -47,10 +47,14 @@ pub(super) fn folder() -> Folder {
         ("text.npy", b"1 2 3 4\n".to_vec()),
         ("two.npz", zip(&[("a.npy", &array), ("b.npy", &array)], false)),
         ("empty.npz", zip(&[], false)),
-        ("integers.npz", zip(&[("spheres.npy", &npy("<i4", false, "(2, 4)", &spheres))], true)),
+        ("complex.npz", zip(&[("spheres.npy", &npy("<c8", false, "(1, 4)", &spheres))], true)),
         ("text.npz", b"1 2 3 4\n".to_vec()),
         ("spheres.bin", spheres.clone()),
         ("cut.bin", spheres[..20].to_vec()),
+        ("cut.gsd", vec![0xdf; 300]),
+        ("cut.dcd", b"\x54\0\0\0CORD".to_vec()),
+        ("cut.xtc", vec![0, 0, 7, 0xcb, 0, 0]),
+        ("cut.trr", vec![0; 99]),
         ("binary.toml", vec![0xff, 0xfe, 0x00]),
         ("binary.xyz", b"1\n\nO \xff 0 0\n".to_vec()),
         ("cut.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9 +X 9\n".to_vec()),
@@ -105,7 +109,7 @@ pub(super) fn arguments() -> Vec<Case> {
          render spheres.npy -o out.png --eye 0,0,5
          render spheres.npy -o out.png --eye 1,2
          render spheres.npy -o out.png --eye 1,1,1 --look-at 1,1,1
-         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0
+         render spheres.npy -o out.png --eye 0,5,0 --look-at 0,0,0 --up 0,1,0
          render spheres.npy -o out.png --eye nan,0,0 --direction 0,0,1
          render spheres.npy -o out.png --camera periscope
          render spheres.npy -o out.png --camera orthographic --fov 30
@@ -119,7 +123,7 @@ pub(super) fn arguments() -> Vec<Case> {
          verify
          verify scene.toml --replay run
          verify --replay run --size 8x6
-         demo --backend cpu --size 8x6
+         demo --backend cpu --size 8
          render scene.toml -o out.png --backend tpu
          render scene.toml -o out.png --backend cpu --adapter x
          render scene.toml -o out.png --backend cpu --accel grid
@@ -150,6 +154,15 @@ pub(super) fn files() -> Vec<Case> {
          render scene.toml -o out.png/
          render spheres.npy -o out.png --layer depth=spheres.npy
          generate random -n 10 -o no/out.npy
+         info no.xyz
+         info scene
+         info folder.toml
+         info spheres.bin
+         info no-radius.npy
+         info cut.npy
+         info water.xyz --frame 1
+         info scene.toml --frame 1
+         info --frame 1
          verify --replay no
          verify --replay scene.toml
          demo --backend cpu",
@@ -159,10 +172,9 @@ pub(super) fn files() -> Vec<Case> {
 /// NPY, NPZ and raw numbers.
 pub(super) fn arrays() -> Vec<Case> {
     lines(
-        "render no-radius.npy -o out.png --backend cpu
-         render spheres.npy -o out.png --backend cpu --radius 1
-         render integers.npy -o out.png --backend cpu
-         render five-columns.npy -o out.png --backend cpu
+        "render spheres.npy -o out.png --backend cpu --radius 1
+         render complex.npy -o out.png --backend cpu
+         render ten-columns.npy -o out.png --backend cpu
          render one-axis.npy -o out.png --backend cpu
          render cut.npy -o out.png --backend cpu
          render long.npy -o out.png --backend cpu
@@ -174,9 +186,16 @@ pub(super) fn arrays() -> Vec<Case> {
          render text.npy -o out.png --backend cpu
          render two.npz -o out.png --backend cpu
          render empty.npz -o out.png --backend cpu
-         render integers.npz -o out.png --backend cpu
+         render complex.npz -o out.png --backend cpu
          render text.npz -o out.png --backend cpu
-         render cut.bin -o out.png --backend cpu --format raw-f32x4",
+         render cut.bin -o out.png --backend cpu --format raw-f32x4
+         render cut.gsd -o out.png --backend cpu
+         render cut.dcd -o out.png --backend cpu
+         render cut.dcd -o out.png --backend cpu --topology no.pdb
+         render cut.dcd -o out.png --backend cpu --topology water.xyz
+         render cut.xtc -o out.png --backend cpu --topology water.xyz
+         render cut.trr -o out.png --backend cpu --topology water.xyz --frame 1
+         render water.xyz -o out.png --backend cpu --topology water.xyz",
     )
 }
 

@@ -28,7 +28,7 @@ pub(super) fn scene_files() -> Vec<Case> {
             "[output]\ntransparent = 1\n",
             "data = 'scene.toml'\n",
             "data = 'unknown.doc'\n",
-            "data = 'no-radius.npy'\n",
+            "data = 'ten-columns.npy'\n",
             "data = 'spheres.npy'\n[elements.O]\nopacity = 0.5\n",
             "data = 'water.xyz'\n[elements.O]\ncolor = 'gren'\n",
             "[[spheres]]\ncenter = [0, 0, 0]\n",

@@ -61,6 +61,8 @@ pub(in crate::gpu) struct LitTile {
     pub(super) advance: BindGroup,
     /// Bind group 0 of the passes that process sums.
     pub(super) sums: BindGroup,
+    /// Bind group 0 of the pass that takes whole samples.
+    pub(super) samples: BindGroup,
 }
 
 impl LitTile {
@@ -274,6 +276,16 @@ impl Make<'_> {
             frames,
             groups: [0, 1, 2]
                 .map(|area| self.group("pinhole frame", &layouts.frame, &common(area))),
+            samples: self.group(
+                "pinhole samples",
+                &layouts.samples,
+                &[
+                    (0, part(&records, 0, size_of::<FrameParameters>())),
+                    whole(2, shared.lists),
+                    (4, part(shared.parameters, 0, size_of::<DispatchParameters>())),
+                    whole(5, &film),
+                ],
+            ),
             advance: self.group("pinhole advance", &layouts.advance, &advance),
             sums: self.group("pinhole film", &layouts.film, &sums),
             film,

@@ -61,6 +61,15 @@ pub(in crate::gpu) enum SkyKind {
     Image,
 }
 
+/// The lamps of a studio that one pass computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum Lamps {
+    /// At the eye or infinitely far away, without a size and without shadows; and all surfaces are matt.
+    Sharp,
+    /// Any.
+    Any,
+}
+
 /// The paths that a dispatch processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Schedule {
@@ -160,9 +169,16 @@ fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
 
 fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     let mut parts = base(Schedule::Queue);
-    parts.extend(excluded_parts(exclude_by));
+    parts.push(part!("path/address.wgsl"));
+    parts.extend(light_search(structure, exclude_by));
+    parts.push(part!("studio/hide.wgsl"));
+    parts
+}
+
+/// The parts that find whether a light is hidden from a surface.
+fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
+    let mut parts = excluded_parts(exclude_by);
     parts.extend([
-        part!("path/address.wgsl"),
         part!("accel/spend.wgsl"),
         part!("accel/brick.wgsl"),
         part!("math/trigonometry.wgsl"),
@@ -176,13 +192,51 @@ fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     parts
 }
 
+/// The kernel of studios of opaque spheres in one brick, which takes whole samples.
+pub(super) fn one_pass_kernel(
+    camera: CameraKind,
+    structure: Structure,
+    exclude_by: ExcludeBy,
+    lamps: Lamps,
+) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend(light_search(structure, exclude_by));
+    parts.extend([part!("camera/filter.wgsl"), part!("camera/film_sample.wgsl")]);
+    // What cameras share is among the parts of lights.
+    let [_, _, camera] = camera_parts(camera);
+    parts.push(camera);
+    parts.extend([
+        part!("scene/appearance_words.wgsl", "beside-structure"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("studio/faded.wgsl"),
+        part!("studio/open_share.wgsl"),
+        part!("studio/one_pass.wgsl"),
+    ]);
+    parts.extend(match lamps {
+        Lamps::Sharp => vec![part!("studio/lamp_light.wgsl", "sharp")],
+        Lamps::Any => vec![
+            part!("path/microfacet.wgsl"),
+            part!("studio/reflected.wgsl"),
+            part!("studio/lamp_light.wgsl", "any"),
+        ],
+    });
+    Kernel { entry_point: "one_pass", parts }
+}
+
 /// The kernel of studios that computes surfaces from hits.
 pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
     let mut parts = shading(schedule);
     parts.extend([
+        part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
         part!("scene/material.wgsl"),
+        part!("studio/faded.wgsl"),
         part!("studio/surface.wgsl"),
     ]);
     Kernel { entry_point: "surface", parts }
@@ -192,10 +246,12 @@ pub(super) fn surface_kernel(schedule: Schedule) -> Kernel {
 pub(super) fn illuminate_kernel() -> Kernel {
     let mut parts = studio_light();
     parts.extend([
+        part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
         part!("scene/material.wgsl"),
         part!("path/microfacet.wgsl"),
+        part!("studio/reflected.wgsl"),
         part!("studio/illuminate.wgsl"),
     ]);
     Kernel { entry_point: "illuminate", parts }
@@ -220,6 +276,7 @@ pub(super) fn scatter_kernel(
         part!("math/sampling.wgsl"),
         part!("math/disk.wgsl"),
         part!("math/warp.wgsl"),
+        part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
         part!("scene/material.wgsl"),
@@ -359,6 +416,11 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
             kernels
                 .extend(SCHEDULES.map(|by| extend_kernel(structure, exclude_by, brick_pass, by)));
         }
+        let cameras = CameraKind::ALL.iter();
+        kernels.extend(cameras.flat_map(|camera| {
+            [Lamps::Sharp, Lamps::Any]
+                .map(|lamps| one_pass_kernel(*camera, structure, exclude_by, lamps))
+        }));
         let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
         kernels.extend(searches.map(|of| of(structure, exclude_by)));
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::kernels::{Materials, Mode, SkyKind, Sources};
+use super::kernels::{Lamps, Materials, Mode, SkyKind, Sources};
 use super::records::LightingParameters;
 use crate::camera::Camera;
 use crate::geometry::math::unit;
@@ -30,6 +30,10 @@ pub(in crate::gpu) struct LightingData {
     /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
     pub(super) max_surfaces: u32,
+    /// Whether all spheres are opaque.
+    is_opaque: bool,
+    /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
+    is_sharp: bool,
     /// Whether lights cast shadows in a studio.
     pub(super) has_shadows: bool,
     /// The image of the sky that illuminates paths.
@@ -85,6 +89,8 @@ impl LightingData {
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
                 Integrator::Path(path) => path.max_depth,
             },
+            is_opaque: scene.appearance.is_opaque(),
+            is_sharp: is_sharp(settings, scene, &lights),
             has_shadows: settings.studio_parameters().is_some_and(|studio| studio.has_shadows),
             sky: match (&settings.sky.light, &settings.integrator) {
                 (SkyLight::Image { environment, .. }, Integrator::Path(_)) => {
@@ -98,6 +104,19 @@ impl LightingData {
 }
 
 impl LightingData {
+    /// The lamps, if one pass can take whole samples of a scene of so many bricks.
+    pub(super) fn one_pass(&self, bricks: usize) -> Option<Lamps> {
+        let has_ground = self.parameters.flags & flags::GROUND != 0;
+        let is_one = self.mode == Mode::Studio && self.is_opaque && bricks == 1 && !has_ground;
+        is_one.then_some(if self.is_sharp { Lamps::Sharp } else { Lamps::Any })
+    }
+
+    /// Number of rays that a sample of a studio of opaque spheres takes at most.
+    pub(super) fn rays_of_sample(&self) -> u32 {
+        let shadows = self.casts_shadow.iter().filter(|casts| **casts && self.has_shadows).count();
+        1 + shadows as u32 + self.parameters.occlusion_samples
+    }
+
     /// Size of the tables on the device in bytes.
     pub(in crate::gpu) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
@@ -142,15 +161,21 @@ impl SourceList {
     }
 }
 
+/// Whether lights have no size, no place and no shadows, and all surfaces are matt.
+fn is_sharp(settings: &RenderSettings, scene: &SceneSummary, lights: &[LightKind]) -> bool {
+    let has_shadows = settings.studio_parameters().is_some_and(|studio| studio.has_shadows);
+    let is_sharp = |light: &LightKind| match light {
+        LightKind::Head { .. } => true,
+        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 && !has_shadows,
+        LightKind::Point { .. } | LightKind::Sphere { .. } => false,
+    };
+    lights.iter().all(is_sharp) && scene.appearance.surfaces().iter().all(is_matt)
+}
+
 fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {
     if settings.studio_parameters().is_some() {
         return Mode::Studio;
     }
-    let is_matt = |surface: &SurfaceProperties| match surface.material {
-        Material::Lambert { specular, .. } => specular == 0.0,
-        Material::Emissive { .. } => true,
-        Material::Conductor { .. } | Material::Dielectric { .. } => false,
-    };
     Mode::Path(
         if scene.appearance.surfaces().iter().all(is_matt) {
             Materials::Matt
@@ -163,6 +188,14 @@ fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList
             _ => SkyKind::Plain,
         },
     )
+}
+
+fn is_matt(surface: &SurfaceProperties) -> bool {
+    match surface.material {
+        Material::Lambert { specular, .. } => specular == 0.0,
+        Material::Emissive { .. } => true,
+        Material::Conductor { .. } | Material::Dielectric { .. } => false,
+    }
 }
 
 fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingParameters {

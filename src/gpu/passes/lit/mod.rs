@@ -47,7 +47,12 @@ pub(in crate::gpu) struct LitScene<'a> {
 
 impl LitScene<'_> {
     /// The key of the passes that the picture needs.
-    pub(in crate::gpu) fn key(&self, view: &View<'_>, lighting: &LightingData) -> LitKey {
+    pub(in crate::gpu) fn key(
+        &self,
+        view: &View<'_>,
+        lighting: &LightingData,
+        limits: &wgpu::Limits,
+    ) -> LitKey {
         LitKey {
             camera: view.camera.kind(),
             mode: lighting.mode,
@@ -55,6 +60,13 @@ impl LitScene<'_> {
             occluders: self.occluders.structure(),
             exclude_by: [self.all, self.occluders].map(SceneBuffers::exclude_by),
             several_bricks: self.all.bricks().len() > 1,
+            one_pass: lighting
+                .one_pass(self.all.bricks().len())
+                .filter(|_| passes::one_pass_fits(self.all.structure(), limits))
+                .filter(|_| {
+                    let rays = lighting.rays_of_sample();
+                    self.all.rays_at_once(rays) == rays
+                }),
         }
     }
 

@@ -27,8 +27,8 @@ pub(in crate::gpu) struct Bound<'a> {
     pub(super) brick: Option<&'a BindGroup>,
     /// Bind group 2: lights and materials.
     pub(super) lighting: &'a BindGroup,
-    /// Bind group 3: the image of the sky.
-    pub(super) sky: Option<&'a BindGroup>,
+    /// Bind group 3: the image of the sky, or the appearance of the shapes of the brick.
+    pub(super) last: Option<&'a BindGroup>,
 }
 
 /// The number of workgroups of a dispatch.
@@ -67,8 +67,8 @@ impl Pass {
         if let Some(brick) = bound.brick {
             pass.set_bind_group(1, brick, &[]);
             pass.set_bind_group(2, bound.lighting, &[]);
-            if let Some(sky) = bound.sky {
-                pass.set_bind_group(3, sky, &[]);
+            if let Some(last) = bound.last {
+                pass.set_bind_group(3, last, &[]);
             }
         }
         match extent {

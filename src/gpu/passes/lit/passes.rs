@@ -5,10 +5,10 @@ use std::num::NonZeroU64;
 
 use wgpu::{BindGroupLayout, BindingType, Device};
 
-use super::kernels::{self, Mode, Schedule, SkyKind};
+use super::kernels::{self, Lamps, Mode, Schedule, SkyKind};
 use super::pass::Pass;
 use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
-use crate::accel::Structure;
+use crate::accel::{ListLayout, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::{GpuError, scoped};
@@ -30,6 +30,21 @@ pub(in crate::gpu) struct LitKey {
     pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
+    /// The lamps, if one pass takes whole samples, which needs a studio of one brick in which all spheres are opaque.
+    pub(in crate::gpu) one_pass: Option<Lamps>,
+}
+
+/// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
+/// two of the appearance, and those of the structure.
+pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
+    let of_structure = match structure {
+        Structure::List => 2,
+        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
+            4
+        }
+        _ => 3,
+    };
+    5 + of_structure <= limits.max_storage_buffers_per_shader_stage
 }
 
 /// Layouts of bind group 0 of most passes (`frame`), of `advance`, and of passes over sums (`film`), and of groups 2
@@ -39,6 +54,8 @@ pub(in crate::gpu) struct LitLayouts {
     pub(super) frame: BindGroupLayout,
     pub(super) advance: BindGroupLayout,
     pub(super) film: BindGroupLayout,
+    /// Layout of bind group 0 of the pass that takes whole samples.
+    pub(super) samples: BindGroupLayout,
     pub(super) lighting: BindGroupLayout,
     pub(super) sky: BindGroupLayout,
 }
@@ -54,13 +71,28 @@ pub(super) struct BySchedule {
 #[derive(Debug)]
 pub(in crate::gpu) struct LitPasses {
     pub(super) layouts: LitLayouts,
+    pub(super) of_samples: SamplePasses,
+    pub(super) advance: Pass,
+    pub(super) noise: Pass,
+}
+
+/// The passes that take samples.
+#[derive(Debug)]
+pub(super) enum SamplePasses {
+    /// One pass takes whole samples.
+    One(Pass),
+    /// Several passes take samples step by step.
+    Steps(StepPasses),
+}
+
+/// The passes that take samples step by step.
+#[derive(Debug)]
+pub(super) struct StepPasses {
     pub(super) start: Pass,
     /// Passes for the first brick, and for later bricks.
     pub(super) extend: (BySchedule, Option<BySchedule>),
     pub(super) shade: ShadePasses,
-    pub(super) advance: Pass,
     pub(super) accumulate: Pass,
-    pub(super) noise: Pass,
 }
 
 #[derive(Debug)]
@@ -88,6 +120,7 @@ impl LitLayouts {
             frame: layout("pinhole frame", &common),
             advance: layout("pinhole advance", &with(&[(5, storage_of(GROUPS_NEEDED))])),
             film: layout("pinhole film", &with(&[(5, film), (6, storage::<[f32; 2]>(false))])),
+            samples: layout("pinhole samples", &[(0, frame), (2, queue), (4, dispatch), (5, film)]),
             lighting: layout(
                 "pinhole lighting",
                 &[(0, uniform::<LightingParameters>()), (1, read)],
@@ -130,8 +163,18 @@ impl LitPasses {
         };
         let brick = |index: usize| &scene.brick[index].1;
         let surfaces = &scene.surface;
-        let LitLayouts { frame, advance, film, lighting, sky } = &layouts;
+        let LitLayouts { frame, advance, film, samples, lighting, sky } = &layouts;
         let [exclude_by, light_exclude_by] = key.exclude_by;
+        if let Some(lamps) = key.one_pass {
+            let kernel = kernels::one_pass_kernel(key.camera, key.structure, exclude_by, lamps);
+            let groups = [samples, brick(0), lighting, &scene.appearance];
+            return Ok(Self {
+                of_samples: SamplePasses::One(build(kernel, &groups)?),
+                advance: build(kernels::advance_kernel(), &[advance])?,
+                noise: build(kernels::noise_kernel(), &[film])?,
+                layouts,
+            });
+        }
         let (occluders, lit_brick) = (key.occluders, [frame, brick(1), lighting]);
         let extend = |brick_pass| {
             let kernel = |by| kernels::extend_kernel(key.structure, exclude_by, brick_pass, by);
@@ -162,14 +205,16 @@ impl LitPasses {
         };
         let start = kernels::start_kernel(key.camera, key.mode);
         Ok(Self {
-            start: build(start, &[frame, surfaces, lighting])?,
-            extend: (
-                extend(BrickPass::First)?,
-                key.several_bricks.then(|| extend(BrickPass::Later)).transpose()?,
-            ),
-            shade,
+            of_samples: SamplePasses::Steps(StepPasses {
+                start: build(start, &[frame, surfaces, lighting])?,
+                extend: (
+                    extend(BrickPass::First)?,
+                    key.several_bricks.then(|| extend(BrickPass::Later)).transpose()?,
+                ),
+                shade,
+                accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
+            }),
             advance: build(kernels::advance_kernel(), &[advance])?,
-            accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
             noise: build(kernels::noise_kernel(), &[film])?,
             layouts,
         })
@@ -195,7 +240,6 @@ pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
 mod tests {
     use super::super::kernels::{Materials, Sources};
     use super::*;
-    use crate::accel::ListLayout;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
     /// device supports, without any driver.
@@ -218,9 +262,25 @@ mod tests {
                 let (occluders, several_bricks) = (structure, true);
                 for exclude_by in ExcludeBy::ALL {
                     let exclude_by = [exclude_by; 2];
-                    let key =
-                        LitKey { camera, mode, structure, occluders, exclude_by, several_bricks };
+                    let key = LitKey {
+                        camera,
+                        mode,
+                        structure,
+                        occluders,
+                        exclude_by,
+                        several_bricks,
+                        one_pass: None,
+                    };
                     LitPasses::new(&device, key, &[]).unwrap();
+                    // The structure with the most buffers leaves no room for those of the appearance.
+                    assert!(!one_pass_fits(structure, &device.limits()));
+                    let structure = Structure::NestedGrid(ListLayout::Copied);
+                    for lamps in [Lamps::Sharp, Lamps::Any] {
+                        let key = LitKey { structure, one_pass: Some(lamps), ..key };
+                        if mode == Mode::Studio {
+                            LitPasses::new(&device, key, &[]).unwrap();
+                        }
+                    }
                 }
             }
         }

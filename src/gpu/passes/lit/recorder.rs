@@ -52,7 +52,7 @@ impl<'a> Recorder<'a> {
                 Groups { first: [0, 0], size: [x * y * step.in_flight, 1] }
             }
             Work::Advance => Groups { first: [0, 0], size: [1, 1] },
-            Work::Sums => {
+            Work::Sums | Work::Samples => {
                 Groups { first: [0, 0], size: tile.frames[Area::Whole as usize].traced_size }
             }
         }
@@ -85,7 +85,14 @@ impl<'a> Recorder<'a> {
                     (true, Some(_)) => {
                         let slice = DispatchParameters { count: x, is_new: 0, ..dispatch };
                         let extent = Extent::Groups([1, 1, 1]);
-                        self.dispatch(encoder, self.advance, slice, &tile.advance, None, extent);
+                        self.dispatch(
+                            encoder,
+                            self.advance,
+                            slice,
+                            &tile.advance,
+                            [None; 2],
+                            extent,
+                        );
                         (group, Extent::Indirect(needed, GROUPS_OF_ONE))
                     }
                 }
@@ -93,8 +100,10 @@ impl<'a> Recorder<'a> {
             Work::Advance if !self.is_indirect && dispatch.is_new == 0 => return,
             Work::Advance => (&tile.advance, Extent::Groups([1, 1, 1])),
             Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
+            Work::Samples => (&tile.samples, Extent::Groups([x, y, 1])),
         };
-        self.dispatch(encoder, step.pass, dispatch, group, step.brick, extent);
+        let last = step.appearance.or(self.frame.sky.as_ref());
+        self.dispatch(encoder, step.pass, dispatch, group, [step.brick, last], extent);
     }
 
     /// Records the pass that sums variances and luminances of a tile whose pixels have `samples` samples each. Returns
@@ -110,7 +119,7 @@ impl<'a> Recorder<'a> {
         let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
         // There are fewer groups than pixels, so it fits into u32.
         let extent = Extent::Groups([groups as u32, 1, 1]);
-        self.dispatch(encoder, noise, dispatch, &tile.sums, None, extent);
+        self.dispatch(encoder, noise, dispatch, &tile.sums, [None; 2], extent);
         (groups * WORKGROUP_SIZE) as usize
     }
 
@@ -120,13 +129,13 @@ impl<'a> Recorder<'a> {
         pass: &Pass,
         dispatch: DispatchParameters,
         group: &wgpu::BindGroup,
-        brick: Option<&wgpu::BindGroup>,
+        [brick, last]: [Option<&wgpu::BindGroup>; 2],
         extent: Extent<'_>,
     ) {
         let offset = self.frame.parameter_offset(self.parameters.len());
         self.parameters.push(dispatch);
-        let LitFrame { lighting, sky, .. } = self.frame;
-        let bound = Bound { frame: group, dispatch: offset, brick, lighting, sky: sky.as_ref() };
+        let lighting = &self.frame.lighting;
+        let bound = Bound { frame: group, dispatch: offset, brick, lighting, last };
         pass.record(encoder, bound, extent);
     }
 }

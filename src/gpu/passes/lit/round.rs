@@ -7,7 +7,7 @@ use wgpu::BindGroup;
 use super::frame::Area;
 use super::lighting::LightingData;
 use super::pass::Pass;
-use super::passes::{BySchedule, LitPasses, ShadePasses};
+use super::passes::{BySchedule, LitPasses, SamplePasses, ShadePasses, StepPasses};
 use super::records::{DispatchParameters, LIST_OF_LIGHT};
 use crate::gpu::error::GpuError;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -22,6 +22,8 @@ pub(in crate::gpu) struct Step<'a> {
     pub(super) dispatch: DispatchParameters,
     /// Bind group 1, if the pass uses a brick.
     pub(super) brick: Option<&'a BindGroup>,
+    /// Bind group 3, if the pass needs the appearance of the shapes beside their structure.
+    pub(super) appearance: Option<&'a BindGroup>,
     pub(super) work: Work,
     /// Number of samples in flight.
     pub(super) in_flight: u32,
@@ -48,7 +50,7 @@ impl Step<'_> {
     pub(in crate::gpu) fn layers(&self) -> u32 {
         match self.work {
             Work::Pixels(_) => self.in_flight,
-            Work::List(_) | Work::Advance | Work::Sums => 1,
+            Work::List(_) | Work::Advance | Work::Sums | Work::Samples => 1,
         }
     }
 }
@@ -64,6 +66,8 @@ pub(super) enum Work {
     Advance,
     /// The sums of all pixels.
     Sums,
+    /// Whole samples of all pixels.
+    Samples,
 }
 
 /// Stages of a sample after which its state can be recorded.
@@ -94,6 +98,9 @@ pub(in crate::gpu) struct Round<'a> {
 /// state that it reads does not depend on the direction.
 pub(in crate::gpu) const AT_ONCE: u32 = 32;
 
+/// Number of samples that an invocation of the pass over whole samples takes.
+const SAMPLES_AT_ONCE: u32 = 8;
+
 impl<'a> Round<'a> {
     /// The dispatches of some samples, which are traced together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
@@ -104,20 +111,57 @@ impl<'a> Round<'a> {
             paths: self.room,
             ..bytemuck::Zeroable::zeroed()
         };
-        let mut steps = Steps { round: *self, in_flight: count, steps: Vec::new() };
+        let passes = match &self.passes.of_samples {
+            SamplePasses::One(pass) => return Ok(self.one_pass(pass, dispatch)),
+            SamplePasses::Steps(passes) => passes,
+        };
+        let mut steps = Steps { round: *self, passes, in_flight: count, steps: Vec::new() };
         let first = &self.scene.bricks()[0].surface_group;
-        steps.push(&self.passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
+        steps.push(&passes.start, dispatch, Some(first), Work::Pixels(Area::Whole));
         steps.mark(Moment::Started);
-        match &self.passes.shade {
+        match &passes.shade {
             ShadePasses::Studio { surface, shadow, illuminate, ambient, gather } => {
                 let passes = StudioPasses { surface, shadow, illuminate, ambient, gather };
                 steps.studio(dispatch, &passes)?;
             }
             ShadePasses::Path { scatter, occlude } => steps.path(dispatch, scatter, occlude)?,
         }
-        steps.push(&self.passes.accumulate, dispatch, None, Work::Sums);
+        steps.push(&passes.accumulate, dispatch, None, Work::Sums);
         steps.mark(Moment::Accumulated);
         Ok(steps.steps)
+    }
+
+    /// The dispatches of the pass that takes whole samples. Each takes a few, so that no invocation reaches the
+    /// iteration limit.
+    fn one_pass(&self, pass: &'a Pass, dispatch: DispatchParameters) -> Vec<Step<'a>> {
+        let brick = &self.scene.bricks()[0];
+        let rays = self.lighting.rays_of_sample();
+        let at_once = (self.scene.rays_at_once(SAMPLES_AT_ONCE * rays) / rays).max(1);
+        let starts = (0..dispatch.count).step_by(at_once as usize);
+        let mut steps: Vec<_> = starts
+            .map(|start| {
+                let count = at_once.min(dispatch.count - start);
+                Step {
+                    pass,
+                    dispatch: DispatchParameters {
+                        sample: dispatch.sample + start,
+                        count,
+                        ..dispatch
+                    },
+                    brick: Some(&brick.trace_group),
+                    appearance: Some(&brick.appearance_group),
+                    work: Work::Samples,
+                    in_flight: 1,
+                    rays: count * rays,
+                    is_search: true,
+                    moment: None,
+                }
+            })
+            .collect();
+        if let Some(last) = steps.last_mut() {
+            last.moment = Some(Moment::Accumulated);
+        }
+        steps
     }
 }
 
@@ -131,6 +175,7 @@ struct StudioPasses<'a> {
 
 struct Steps<'a> {
     round: Round<'a>,
+    passes: &'a StepPasses,
     in_flight: u32,
     steps: Vec<Step<'a>>,
 }
@@ -148,6 +193,7 @@ impl<'a> Steps<'a> {
             pass,
             dispatch,
             brick,
+            appearance: None,
             work,
             in_flight,
             rays: 1,
@@ -168,6 +214,7 @@ impl<'a> Steps<'a> {
             pass,
             dispatch,
             brick: Some(brick),
+            appearance: None,
             work,
             in_flight,
             rays: 1,
@@ -190,7 +237,7 @@ impl<'a> Steps<'a> {
 
     /// Adds the search for the hits of all rays: over pixels for camera rays, over lists for others.
     fn extend(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
-        let (first, later) = &self.round.passes.extend;
+        let (first, later) = &self.passes.extend;
         for (index, brick) in self.round.scene.bricks().iter().enumerate() {
             let by = match (index, later) {
                 (0, _) => first,

@@ -1,0 +1,243 @@
+//! The flags for legends, scale bars and labels. They take precedence over the keys of a scene file.
+
+use clap::{Args, ValueEnum};
+
+use super::failure::Failure;
+use super::input::Input;
+use super::picture::PictureFormat;
+use super::speak::tell;
+use pinhole::LinearRgb;
+use pinhole::annotate::{
+    AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
+};
+use pinhole::image::encoding::Encoding;
+
+const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
+
+#[derive(Debug, Args)]
+pub(super) struct AnnotationArgs {
+    /// Show what the colors of --color-by mean, at a position: top-left, top, top-right, left, right, bottom-left,
+    /// bottom, bottom-right, or fractions of the width and height such as 0.9,0.5 [without a position: right]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "POSITION",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "right"
+    )]
+    legend: Option<String>,
+    /// Title of the legend, which is shown if this is given [default: the name of the column]
+    #[arg(long, help_heading = HEADING, value_name = "TEXT")]
+    legend_title: Option<String>,
+    /// Show how long a length is; write the length, the unit, or both, such as --scale-bar="20 Å", and a position after
+    /// an @ [without a length: a round one] [without a position: bottom-left]
+    #[arg(
+        long,
+        help_heading = HEADING,
+        value_name = "LENGTH UNIT[@POSITION]",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = ""
+    )]
+    scale_bar: Option<String>,
+    /// Write a text at a position, such as "a@top-right"; may be repeated [without a position: top-left]
+    #[arg(long = "label", help_heading = HEADING, value_name = "TEXT[@POSITION]")]
+    labels: Vec<String>,
+    /// Size of the text, as a factor of 1/36 of the picture's height
+    #[arg(long, help_heading = HEADING, value_name = "F")]
+    text_scale: Option<f32>,
+    /// CSS color of text and lines [default: black or white, whichever can be read]
+    #[arg(long, help_heading = HEADING, value_name = "CSS")]
+    text_color: Option<String>,
+    /// Whether a translucent panel lies behind annotations [default: auto]
+    #[arg(long, help_heading = HEADING, value_enum)]
+    panel: Option<PanelArg>,
+    /// Pixels per inch at which a PNG is to be printed; changes no pixel [default: the scene's, or none]
+    #[arg(long, help_heading = HEADING, value_name = "N", allow_hyphen_values = true)]
+    dpi: Option<f32>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum PanelArg {
+    /// Where the picture behind is mixed
+    Auto,
+    /// Everywhere
+    Always,
+    /// Nowhere
+    Never,
+}
+
+impl From<PanelArg> for Panel {
+    fn from(panel: PanelArg) -> Self {
+        match panel {
+            PanelArg::Auto => Self::Auto,
+            PanelArg::Always => Self::Always,
+            PanelArg::Never => Self::Never,
+        }
+    }
+}
+
+/// The flags that were given, checked.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AnnotationFlags {
+    plan: AnnotationPlan,
+    dots_per_inch: Option<f32>,
+    format: Option<PictureFormat>,
+    /// Whether a flag names the column, so that the title in a scene file is that of another one.
+    has_new_column: bool,
+}
+
+impl AnnotationFlags {
+    pub(super) fn new(
+        args: &AnnotationArgs,
+        format: PictureFormat,
+        has_new_column: bool,
+    ) -> Result<Self, Failure> {
+        let refused = |flag: &str, error: &dyn std::fmt::Display| {
+            Failure::usage(format!("--{flag}: {error}"))
+        };
+        let position = |flag: &'static str, text: &str| {
+            text.parse::<Position>().map_err(|error| refused(flag, &error))
+        };
+        let legend = match (&args.legend, &args.legend_title) {
+            (None, None) => None,
+            (at, title) => {
+                let position = at.as_deref().map(|text| position("legend", text)).transpose()?;
+                Some(LegendPlan { title: title.clone(), position })
+            }
+        };
+        let [low, high] = Annotations::TEXT_SCALES;
+        if let Some(scale) = args.text_scale.filter(|scale| !(low..=high).contains(scale)) {
+            return Err(Failure::usage(format!(
+                "--text-scale {scale}: it must be from {low} to {high}"
+            )));
+        }
+        let color = args.text_color.as_deref().map(LinearRgb::from_css).transpose();
+        let color = color.map_err(|error| refused("text-color", &error))?;
+        let plan = AnnotationPlan {
+            legend,
+            scale_bar: args.scale_bar.as_deref().map(scale_bar),
+            labels: args.labels.iter().map(|text| label(text)).collect(),
+            text_scale: args.text_scale,
+            color: color.map(LinearRgb::to_srgb8),
+            panel: args.panel.map(Into::into),
+        };
+        if format == PictureFormat::Exr && !plan.is_empty() {
+            return Err(Failure::usage(
+                "--legend, --scale-bar and --label are drawn on PNG pictures; an EXR file stores the light unchanged; \
+                 remove them or give -o a name that ends with .png",
+            ));
+        }
+        let checked = Encoding::default().with_dots_per_inch(args.dpi);
+        checked.map_err(|error| refused("dpi", &error))?;
+        if format == PictureFormat::Exr && args.dpi.is_some() {
+            return Err(Failure::usage("--dpi applies only to PNG; remove --dpi"));
+        }
+        Ok(Self { plan, dots_per_inch: args.dpi, format: Some(format), has_new_column })
+    }
+
+    /// Applies the flags to the encoding of a scene. Flags take precedence.
+    pub(super) fn apply_to(&self, scene: Encoding) -> Encoding {
+        let dots_per_inch = self.dots_per_inch.or(scene.dots_per_inch());
+        // Both were checked, so this does not fail.
+        scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
+    }
+
+    /// The annotations of a picture. Notes are told to the user.
+    pub(super) fn for_input(&self, input: &Input) -> Result<Annotations, Failure> {
+        let (mut file, flags) = (input.annotations.clone(), self.plan.clone());
+        if let Some(legend) = file.legend.as_mut().filter(|_| self.has_new_column) {
+            legend.title = None;
+        }
+        let legend = match (flags.legend, file.legend) {
+            (Some(flag), Some(key)) => Some(LegendPlan {
+                title: flag.title.or(key.title),
+                position: flag.position.or(key.position),
+            }),
+            (flag, key) => flag.or(key),
+        };
+        let plan = AnnotationPlan {
+            legend,
+            scale_bar: flags.scale_bar.or(file.scale_bar),
+            labels: file.labels.into_iter().chain(flags.labels).collect(),
+            text_scale: flags.text_scale.or(file.text_scale),
+            color: flags.color.or(file.color),
+            panel: flags.panel.or(file.panel),
+        };
+        if plan.is_empty() {
+            return Ok(Annotations::default());
+        }
+        if self.format == Some(PictureFormat::Exr) {
+            tell(
+                "note: an EXR picture stores the light unchanged, so annotations are not drawn; write a .png for them",
+            );
+            return Ok(Annotations::default());
+        }
+        let middle = input.scene.bounds_to_frame();
+        let middle = 0.5 * (middle.min() + middle.max());
+        let made = plan.annotations(input.color_key.as_ref(), &input.view(), middle);
+        let (annotations, notes) = made.map_err(|error| match error {
+            AnnotationError::NoKey => Failure::usage(format!("{error}, with --color-by COLUMN")),
+            error => Failure::usage(error.to_string()),
+        })?;
+        notes.iter().for_each(|note| tell(format_args!("note: {note}")));
+        Ok(annotations)
+    }
+}
+
+/// Splits `TEXT@POSITION`. What follows the last @ belongs to the text unless it is a position.
+fn at_position(text: &str) -> (&str, Option<Position>) {
+    let split = text
+        .rsplit_once('@')
+        .and_then(|(text, position)| Some((text, Some(position.parse::<Position>().ok()?))));
+    split.unwrap_or((text, None))
+}
+
+fn label(text: &str) -> Label {
+    let (text, position) = at_position(text);
+    Label { text: text.to_owned(), position: position.unwrap_or(Position::TOP_LEFT) }
+}
+
+/// Reads a length, a unit, or both.
+fn scale_bar(text: &str) -> ScaleBarPlan {
+    let (text, position) = at_position(text);
+    let text = text.trim();
+    // The longest beginning that is a number.
+    let ends = text.char_indices().map(|(start, c)| start + c.len_utf8()).rev();
+    let number = ends.filter_map(|end| Some((text[..end].trim_end().parse::<f64>().ok()?, end)));
+    let number = number.into_iter().find(|(length, _)| length.is_finite());
+    let (length, unit) = match number {
+        Some((length, end)) => (Some(length), &text[end..]),
+        None => (None, text),
+    };
+    ScaleBarPlan { length, unit: unit.trim().to_owned(), position }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinhole::annotate::Anchor;
+
+    #[test]
+    fn a_scale_bar_has_a_length_and_a_unit() {
+        let bar = |text: &str| {
+            let ScaleBarPlan { length, unit, position } = scale_bar(text);
+            (length, unit, position)
+        };
+        assert_eq!(bar(""), (None, String::new(), None));
+        assert_eq!(bar("20 Å"), (Some(20.0), "Å".to_owned(), None));
+        assert_eq!(bar("2.5e3"), (Some(2500.0), String::new(), None));
+        assert_eq!(bar("5eV"), (Some(5.0), "eV".to_owned(), None));
+        let right = Position::Anchor(Anchor::BottomRight);
+        assert_eq!(bar("µm@bottom-right"), (None, "µm".to_owned(), Some(right)));
+        assert_eq!(bar("inf"), (None, "inf".to_owned(), None));
+    }
+
+    #[test]
+    fn a_label_ends_before_its_position() {
+        assert_eq!(label("me@home").text, "me@home");
+        let label = label("a@b@0.5,1");
+        assert_eq!((label.text.as_str(), label.position), ("a@b", Position::At([0.5, 1.0])));
+    }
+}

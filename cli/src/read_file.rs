@@ -1,0 +1,54 @@
+//! Reads whole files.
+
+use std::io::Read;
+use std::path::Path;
+
+use anyhow::{Context, Error, Result, bail};
+
+use super::memory;
+
+/// Whether a path means standard input.
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Whether a file starts as one that is compressed with gzip.
+pub(super) fn is_gzip(path: &Path) -> bool {
+    let mut start = [0; 2];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == [0x1f, 0x8b]
+}
+
+/// Bytes that are read first from a file whose size is not known, such as a pipe.
+const FIRST_PIECE: u64 = 1 << 20;
+
+/// Reads a whole file. A regular file is read into memory of exactly its size.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    if path.is_dir() {
+        bail!("{}: this is a folder; name a file", path.display());
+    }
+    let cannot_read = || format!("{}: cannot be read", path.display());
+    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
+        (Box::new(std::io::stdin().lock()), 0)
+    } else {
+        let file = std::fs::File::open(path).with_context(cannot_read)?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        (Box::new(file), size)
+    };
+    let what = format!("{}: reading {size} bytes needs", path.display());
+    memory::check_reading(&what, size).map_err(Error::msg)?;
+    let mut bytes = Vec::new();
+    usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok()).with_context(
+        || format!("{}: there is not enough memory for {size} bytes", path.display()),
+    )?;
+    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
+    let mut piece = size.saturating_add(1).max(FIRST_PIECE);
+    while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64
+        == piece
+    {
+        piece = bytes.len() as u64;
+        let what = format!("{}: reading more than {piece} bytes needs", path.display());
+        memory::check_reading(&what, 2 * piece).map_err(Error::msg)?;
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,69 @@
+//! What `render` says about a picture, beside the picture.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use pinhole::style::Style;
+
+/// Flags for what the program says.
+#[derive(Debug, Args)]
+pub(super) struct ReportArgs {
+    /// Write the whole scene file that this command means to standard output, and render nothing
+    #[arg(long, conflicts_with_all = ["output", "time", "noise", "layers", "stereo"])]
+    pub(super) print_scene: bool,
+    /// Say nothing but warnings and errors: no line about the picture, no notes, no progress
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+/// What the line about a picture says.
+#[derive(Clone, Debug)]
+pub(super) struct Report {
+    /// The file that was rendered.
+    pub(super) path: String,
+    /// The number of spheres in the scene.
+    pub(super) spheres: usize,
+    pub(super) has_atoms: bool,
+    pub(super) style: Option<Style>,
+    /// The flags for the view, if there are such.
+    pub(super) view: Option<String>,
+}
+
+impl Report {
+    /// Returns the line about a picture that took this time: what was read, and the flags for the same look.
+    pub(super) fn line(&self, elapsed: Duration) -> String {
+        let noun = if self.has_atoms { "atom" } else { "sphere" };
+        let plural = if self.spheres == 1 { "" } else { "s" };
+        let style = self.style.map(|style| format!("--style {}", style.name()));
+        let flags: Vec<String> = style.into_iter().chain(self.view.clone()).collect();
+        let flags = if flags.is_empty() { String::new() } else { format!("; {}", flags.join(" ")) };
+        let (path, count) = (&self.path, grouped(self.spheres));
+        format!("{path}: {count} {noun}{plural}{flags}; {:.1} s", elapsed.as_secs_f64())
+    }
+}
+
+/// Writes a number with a comma before each group of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_grouped() {
+        for (number, text) in [(0, "0"), (999, "999"), (4779, "4,779"), (1_234_567, "1,234,567")] {
+            assert_eq!(grouped(number), text);
+        }
+    }
+}

@@ -1,0 +1,92 @@
+// Takes some samples of every pixel of a studio, each from the camera to its light, in one dispatch. It is for scenes of
+// one brick in which all spheres are opaque, so that a ray has one surface; no state is kept between dispatches.
+// Twin: src/cpu/light/studio.rs.
+// dispatched: for some samples of all pixels of a tile.
+// provides: one_pass
+// needs: CameraRay, Departure, EMISSIVE, Hit, LIGHTING_TRANSPARENT, Material, NO_EMITTER, NO_HIT, NO_ID, PATH_BACK,
+//   Ray, Seen, Start, Sum, Vertex, camera_ray, dispatch, enter_scene, excluded_by, exit_distance_of, faded, film,
+//   filter_offset, frame, lamp_light, lighting, lighting_has, luminance, material_of, nearest_hit, open_share,
+//   pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex, start_fences, unit2
+
+struct Sample {
+    // Colour and opacity.
+    radiance: vec4f,
+    // Albedo of the surface.
+    albedo: vec3f,
+}
+
+// The light of a surface that reflects it, and does not emit.
+fn reflected_light(vertex: Vertex, material: Material, ray: Ray, lit: f32, seed: u32, number: u32) -> vec3f {
+    let albedo = vertex.color * lit;
+    let start = Start(vertex.position, select(0u, PATH_BACK, vertex.is_back));
+    let departure = Departure(vertex.id, vertex.shape_index, exit_distance_of(vertex, ray.direction), NO_EMITTER);
+    let excluded = excluded_by(departure);
+    let seen = Seen(vertex, material, start, excluded, -ray.direction, albedo, lit);
+    var radiance = lamp_light(seen, seed, number);
+    if ((number >> 31u) + lighting.occlusion_samples > 0u) {
+        radiance += albedo * lighting.ambient * open_share(seen, seed, number);
+    }
+    return radiance;
+}
+
+// The sample of a ray that hits a surface.
+fn surface_sample(made: CameraRay, hit: Hit, seed: u32, number: u32) -> Sample {
+    let vertex = sphere_vertex(made.ray, hit, false);
+    let material = material_of(vertex);
+    let is_emitter = material.kind == EMISSIVE;
+    let fade = faded(made.distance + vertex.distance);
+    let lit = 1.0 - fade;
+    let open = select(lighting.ambient, vec3f(0.0), lighting.occlusion_samples > 0u);
+    let own = select(open, vec3f(material.parameter), is_emitter);
+    var radiance = fade * lighting.cue_color + lit * vertex.color * own;
+    if (!is_emitter) {
+        radiance += reflected_light(vertex, material, made.ray, lit, seed, number);
+    }
+    return Sample(vec4f(radiance, 1.0), min(vertex.color, vec3f(1.0)));
+}
+
+// There is no early return: with one, Mesa 22.3 fails to compile the kernel.
+fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
+    let offset = filter_offset(sample_pair(seed, number, 0u));
+    let lens = unit2(sample_pair(seed, number, 1u));
+    let made = camera_ray(sample_location(pixel, offset), lens);
+    let shown = select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
+    var sample = Sample(vec4f(shown, 0.0), vec3f(0.0));
+    let entry = enter_scene(CameraRay(made.ray, 0.0, made.is_seen));
+    let nothing = Departure(NO_ID, 0u, 0.0, NO_EMITTER);
+    let hit = nearest_hit(entry, excluded_by(nothing), Hit(NO_HIT, NO_ID, 0u, 0.0));
+    if (hit.id != NO_ID) {
+        sample = surface_sample(made, hit, seed, number);
+    }
+    return sample;
+}
+
+@compute @workgroup_size(64)
+fn one_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    start_fences();
+    let pixel = pixel_in_tile(dispatch.first + group.xy, lane);
+    if (any(pixel >= frame.tile_size)) {
+        return;
+    }
+    let index = pixel.y * frame.tile_size.x + pixel.x;
+    let in_film = frame.tile_origin + pixel;
+    let seed = pixel_seed(in_film, lighting.seed);
+    let color = film[3u * index];
+    let others = film[3u * index + 2u];
+    var sum = Sum(vec4f(color.rgb, others.w), film[3u * index + 1u]);
+    var alpha = color.w;
+    var albedo = others.rgb;
+    // If this number depended on a uniform only, Mesa's lavapipe would compile the kernel again for every dispatch.
+    let count = dispatch.count + (index >> 31u);
+    for (var i = 0u; i < count; i++) {
+        let sample = take_sample(in_film, seed, dispatch.sample + i + (index >> 31u));
+        let light = luminance(sample.radiance.rgb);
+        sum = plus(sum, vec4f(sample.radiance.rgb, light * light));
+        alpha += sample.radiance.w;
+        albedo += sample.albedo;
+    }
+    film[3u * index] = vec4f(sum.value.rgb, alpha);
+    film[3u * index + 1u] = sum.rest;
+    film[3u * index + 2u] = vec4f(albedo, sum.value.w);
+    report_spent();
+}

@@ -1,0 +1,180 @@
+//! A walk of the compressed 8-wide tree in f64, which leaves the test of spheres to the caller.
+//!
+//! # Why it leaves out no sphere
+//! A caller tests spheres with `intersect` of `src/cpu/sphere.rs`, in f64. Let u be 2⁻⁵³, l the vector from the ray's
+//! origin o to a centre, r the radius, d the direction, β how far |d|² is from one, and D the distance from o to the
+//! farthest point of the box of all spheres. Every sphere lies in that box, so that |l| + r ≤ D. For a ray, all boxes
+//! are wider than they are by the margin, (256 u + 16 β) D. If β is 1/16 or more, they all contain o, and nothing is
+//! left out. Let it be less. If the test accepts the distance t, then the ray is in the sphere, with its radius widened
+//! by (48 u + 4 β) D, at t or enters it before:
+//!
+//! 1. *The line comes near enough.* With the computed b ≈ l·d, the foot vector f = l − b d leads from a point of the
+//!    line to the centre, whatever the error of b. Only the roundings of l, of b d and of the difference are errors:
+//!    less than 4 u |l|. The test accepts no |f| greater than r (1 + 4 u).
+//! 2. *The point at b ± h is near the sphere.* With h = √(r² − |f|²), computed from the same f, that point is at the root
+//!    of |f|² + h² |d|² ∓ 2 h f·d from the centre, and |f·d| is at most (β + 6 u) |l|. So it is off by less than
+//!    (2 β + 8 u) D, although near a tangent h has a large error.
+//! 3. *The quotient does no harm.* A ray that starts outside gets t = c/(b + h) instead of b − h, where r ≤ |l| and b > 0.
+//!    The computed c is off from b² − h² by at most k = (β + 16 u) |l|². If b ≥ |l|/2, then t is off by at most
+//!    2 k/|l|, which is (2 β + 32 u) |l|. Otherwise r ≥ |f| > 0.8 |l|. A sphere that is wider by w is entered at
+//!    (c − 2 r w)/(b + h'), where h' ≥ h by more than the error of b. With w = k/|l| this is no later than the
+//!    computed t, or o is in that sphere.
+//! 4. *A ray that starts inside*, by the sign of the computed c, starts in the widened sphere. So does one that starts
+//!    on a sphere, whose distance the caller does not compute by the test.
+//!
+//! The box test moves a plane by at most 16 u D: the distance to it is a sum of two products, with six roundings of
+//! numbers that stand for lengths up to 2 D. All this together is less than half of the margin, so that the computed
+//! entry of every box around an accepted sphere is at most its exit and at most t. A box is left out only if its entry
+//! is greater than its exit or than the limit. A search among rays that graze spheres, up to 10¹⁶ radii away, found that
+//! less than 4 u D is needed.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::wide_group::octant_order;
+use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
+use super::wide_tree::{WIDE_LEVELS, WideTree};
+
+/// The margin relative to the longest vector, for a direction of exactly unit length.
+const BESIDE: f64 = 128.0 * f64::EPSILON;
+
+/// The smallest magnitude of a direction's component in box tests; smaller ones are replaced by it. Over the longest
+/// distance it moves a ray by far less than the margin.
+const SMALLEST: f64 = 1e-60;
+
+/// The most nodes that wait: of each level but the last, all children but the one that is visited.
+const MOST_WAITING: usize = 7 * WIDE_LEVELS as usize + 1;
+
+/// A ray prepared for box tests.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoxRay {
+    origin: DVec3,
+    inverse: DVec3,
+    /// By how much boxes are wider for the ray than they are.
+    pub(crate) margin: f64,
+}
+
+impl BoxRay {
+    /// Prepares a ray for the tree whose spheres lie between two corners. `None` if the ray is not finite, or so far
+    /// away that lengths overflow: no box can be left out then.
+    pub(crate) fn new(origin: DVec3, direction: DVec3, [low, high]: [DVec3; 2]) -> Option<Self> {
+        let farthest = (low - origin).abs().max((high - origin).abs()).length();
+        let bend = (1.0 - direction.length_squared()).abs();
+        let margin = (BESIDE + 16.0 * bend) * farthest;
+        let size = direction.abs().max(DVec3::splat(SMALLEST));
+        let inverse = 1.0 / size.copysign(direction);
+        margin.is_finite().then_some(Self { origin, inverse, margin })
+    }
+}
+
+/// A node that waits for its visit, and a distance before which the ray does not enter it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Waiting {
+    entry: f32,
+    node: u32,
+}
+
+impl WideTree {
+    /// Two opposite corners of a box around all boxes of the tree; `None` if there are no spheres.
+    pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
+        let root = &self.nodes[0];
+        let boxes =
+            (0..8).filter(|slot| root.inner_mask() >> slot & 1 == 1 || root.byte(6, *slot) > 0);
+        boxes
+            .map(|slot| root.slot_box(slot).map(DVec3::from))
+            .reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])
+    }
+
+    /// Calls `offer` with ranges of spheres, in the order of [`WideTree::ids`], that together contain every sphere for
+    /// which `intersect` in f64 finds a distance of at most `limit`. The return value of `offer` is the new limit,
+    /// below zero to end the walk. Near spheres tend to come first.
+    #[inline]
+    pub(crate) fn visit(
+        &self,
+        ray: &BoxRay,
+        mut limit: f64,
+        mut offer: impl FnMut(Range<usize>) -> f64,
+    ) {
+        let octant =
+            (0..3).fold(0, |bits, axis| bits | usize::from(ray.inverse[axis] < 0.0) << axis);
+        let mut waiting = [Waiting::default(); MOST_WAITING];
+        let mut count = 0;
+        let mut index = 0;
+        loop {
+            let node = &self.nodes[index as usize];
+            let (entries, hits) = node.entries(ray, limit);
+            let inner = node.inner_mask();
+            let mut leaves = octant_order(hits & !inner, octant as u32);
+            while leaves != 0 {
+                let slot = leaves.trailing_zeros() as usize ^ octant;
+                leaves &= leaves - 1;
+                let leaf = u32::from(node.byte(6, slot));
+                if leaf != 0 && entries[slot] <= limit {
+                    let first = (node.0[5] + (leaf & LEAF_FIRST)) as usize;
+                    limit = offer(first..first + (leaf >> LEAF_COUNT_SHIFT) as usize);
+                }
+            }
+            let mut left = hits & inner;
+            let before = count;
+            while left != 0 {
+                let slot = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if entries[slot] > limit {
+                    continue;
+                }
+                let child = node.0[4] + (inner & ((1 << slot) - 1)).count_ones();
+                let new = Waiting { entry: (entries[slot] as f32).next_down(), node: child };
+                // The nearest comes last.
+                let mut place = count;
+                while place > before && waiting[place - 1].entry < new.entry {
+                    waiting[place] = waiting[place - 1];
+                    place -= 1;
+                }
+                waiting[place] = new;
+                count += 1;
+            }
+            loop {
+                if count == 0 || limit < 0.0 {
+                    return;
+                }
+                count -= 1;
+                if f64::from(waiting[count].entry) <= limit {
+                    index = waiting[count].node;
+                    break;
+                }
+            }
+        }
+    }
+}
+
+impl WideNode {
+    /// The distance at which the ray enters the box of each slot, widened by the margin; and a mask of the slots whose
+    /// boxes it enters at or before `limit`.
+    #[inline]
+    fn entries(&self, ray: &BoxRay, limit: f64) -> ([f64; 8], u32) {
+        let mut entry = [0.0_f64; 8];
+        let mut exit = [limit; 8];
+        for axis in 0..3 {
+            let inverse = ray.inverse[axis];
+            let [origin, cell] = self.grid(axis);
+            let step = cell * inverse;
+            let start = (origin - ray.origin[axis]) * inverse;
+            let wider = ray.margin * inverse.abs();
+            let (low, high) = (8 + 2 * axis, 14 + 2 * axis);
+            let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
+            let planes = |word: usize, start: f64| {
+                let bytes = u64::from(self.0[word + 1]) << 32 | u64::from(self.0[word]);
+                bytes.to_le_bytes().map(|cells| f64::from(cells) * step + start)
+            };
+            let (near, far) = (planes(near, start - wider), planes(far, start + wider));
+            // Comparisons rather than `max` and `min`, which take longer because they know NaN.
+            for slot in 0..8 {
+                entry[slot] = if near[slot] > entry[slot] { near[slot] } else { entry[slot] };
+                exit[slot] = if far[slot] < exit[slot] { far[slot] } else { exit[slot] };
+            }
+        }
+        let hits = (0..8).fold(0, |mask, slot| mask | u32::from(entry[slot] <= exit[slot]) << slot);
+        (entry, hits)
+    }
+}

@@ -1,0 +1,154 @@
+//! Legends, scale bars and labels, drawn over an encoded picture.
+//!
+//! Annotations are drawn on the samples of a PNG, after exposure and tone curve, so that neither changes them: the bar
+//! of a legend has exactly the colours that the map gives. Light does change the colours of spheres, which are brighter
+//! or darker than the bar; with flat shading they are equal. Layers of data and EXR pictures are never drawn on.
+//!
+//! ```
+//! use pinhole::annotate::{Annotations, Canvas, Label, Position};
+//! use pinhole::image::encoding::Bits;
+//!
+//! let mut rgb = vec![255; 3 * 200 * 100];
+//! let mut canvas = Canvas::new([200, 100], 3, Bits::Eight, &mut rgb).unwrap();
+//! let label = Label { text: "t = 5 µs".to_owned(), position: Position::TOP_LEFT };
+//! Annotations::default().with(label).draw(&mut canvas);
+//! assert!(rgb.iter().any(|sample| *sample < 128));
+//! ```
+
+mod canvas;
+mod font;
+mod label;
+mod legend;
+mod legend_categories;
+mod legend_scale;
+mod place;
+mod plan;
+mod position;
+mod scale_bar;
+mod shape;
+mod ticks;
+
+pub use canvas::Canvas;
+pub use font::missing_characters;
+pub use label::Label;
+pub use legend::Legend;
+pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan};
+pub use position::{Anchor, Position, PositionError};
+pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
+
+use shape::Block;
+
+/// What is drawn over a picture.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Annotation {
+    /// What colours mean.
+    Legend(Legend),
+    /// How long a length is.
+    ScaleBar(ScaleBar),
+    /// A text.
+    Label(Label),
+}
+
+impl From<Legend> for Annotation {
+    fn from(legend: Legend) -> Self {
+        Self::Legend(legend)
+    }
+}
+
+impl From<ScaleBar> for Annotation {
+    fn from(bar: ScaleBar) -> Self {
+        Self::ScaleBar(bar)
+    }
+}
+
+impl From<Label> for Annotation {
+    fn from(label: Label) -> Self {
+        Self::Label(label)
+    }
+}
+
+/// Whether a translucent panel lies behind an annotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene-file", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
+pub enum Panel {
+    /// Where the picture behind it is too mixed for black or white text.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// All annotations of a picture. Those with the same [`Anchor`] are stacked in this order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Annotations {
+    /// What is drawn.
+    pub items: Vec<Annotation>,
+    /// The size of text relative to the default, which is 1/36 of the picture's height and at least 10 pixels.
+    pub text_scale: f32,
+    /// The colour of text and lines in 8-bit sRGB. Without one, it is black or white, whichever is easier to read.
+    pub color: Option<[u8; 3]>,
+    /// Whether panels lie behind annotations.
+    pub panel: Panel,
+}
+
+impl Default for Annotations {
+    fn default() -> Self {
+        Self { items: Vec::new(), text_scale: 1.0, color: None, panel: Panel::Auto }
+    }
+}
+
+impl Annotations {
+    /// The smallest and the largest [`Annotations::text_scale`].
+    pub const TEXT_SCALES: [f32; 2] = [0.2, 10.0];
+
+    /// These annotations and one more.
+    #[must_use]
+    pub fn with(mut self, item: impl Into<Annotation>) -> Self {
+        self.items.push(item.into());
+        self
+    }
+
+    /// Whether nothing is drawn.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// All texts that the user chose, to look for characters that the font lacks; see [`missing_characters`].
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.items.iter().map(|item| match item {
+            Annotation::Legend(legend) => legend.title(),
+            Annotation::ScaleBar(bar) => &bar.unit,
+            Annotation::Label(label) => &label.text,
+        })
+    }
+
+    /// Draws the annotations over a picture.
+    pub fn draw(&self, canvas: &mut Canvas<'_>) {
+        let size = canvas.size();
+        let em = self.em(size);
+        let blocks: Vec<(Position, Block)> = self
+            .items
+            .iter()
+            .map(|item| match item {
+                Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
+                Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
+                Annotation::Label(label) => (label.position, label.block(em)),
+            })
+            .collect();
+        place::draw(&blocks, em, self, canvas);
+    }
+
+    /// The size of text in pixels: that of the letter M is about 0.7 of it.
+    fn em(&self, [width, height]: [u32; 2]) -> f32 {
+        let [low, high] = Self::TEXT_SCALES;
+        let scale = if self.text_scale.is_nan() { 1.0 } else { self.text_scale.clamp(low, high) };
+        // A picture that is much higher than wide has text that fits its width.
+        let height = (height as f32).min(1.5 * width as f32);
+        scale * (height / 36.0).max(10.0)
+    }
+}

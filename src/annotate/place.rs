@@ -1,0 +1,119 @@
+//! Gives annotations their places, and colours that can be read there.
+
+use super::canvas::Canvas;
+use super::position::{Anchor, Position};
+use super::shape::{Block, fill};
+use super::{Annotations, Panel};
+
+/// The distance from the edges of the picture, relative to the size of text.
+const MARGIN: f32 = 1.2;
+
+/// The distance between annotations of one corner, relative to the size of text.
+const GAP: f32 = 0.9;
+
+/// How far a panel reaches beyond its annotation, relative to the size of text.
+const PADDING: f32 = 0.6;
+
+/// How opaque a panel is.
+const PANEL_OPACITY: f32 = 0.8;
+
+const BLACK: [u8; 3] = [0; 3];
+const WHITE: [u8; 3] = [255; 3];
+
+/// Places and draws all blocks.
+pub(super) fn draw(
+    blocks: &[(Position, Block)],
+    em: f32,
+    look: &Annotations,
+    canvas: &mut Canvas<'_>,
+) {
+    for (index, (position, block)) in blocks.iter().enumerate() {
+        let origin = origin(blocks, index, *position, em, canvas.size());
+        draw_block(block, origin, em, look, canvas);
+    }
+}
+
+/// The top left corner of a block in whole pixels.
+fn origin(
+    blocks: &[(Position, Block)],
+    index: usize,
+    position: Position,
+    em: f32,
+    [width, height]: [u32; 2],
+) -> [i64; 2] {
+    let (margin, gap) = (MARGIN * em, GAP * em);
+    let [width, height] = [width as f32, height as f32];
+    let block = &blocks[index].1;
+    let [fx, fy] = match position {
+        Position::Anchor(anchor) => anchor.fractions(),
+        Position::At(fractions) => fractions,
+    };
+    let x = margin + fx * (width - 2.0 * margin - block.width);
+    let heights = |blocks: &[(Position, Block)]| {
+        let here = blocks.iter().filter(|(other, _)| *other == position);
+        here.map(|(_, block)| block.height + gap).sum::<f32>()
+    };
+    let y = match position {
+        Position::At(_) => margin + fy * (height - 2.0 * margin - block.height),
+        Position::Anchor(Anchor::BottomLeft | Anchor::Bottom | Anchor::BottomRight) => {
+            height - margin - heights(&blocks[..index]) - block.height
+        }
+        Position::Anchor(_) => {
+            let all = heights(blocks) - gap;
+            margin + fy * (height - 2.0 * margin - all) + heights(&blocks[..index])
+        }
+    };
+    // What is too large for the picture is cut at its right and bottom.
+    [x, y].map(|place| place.max(0.0).round() as i64)
+}
+
+fn draw_block(
+    block: &Block,
+    origin: [i64; 2],
+    em: f32,
+    look: &Annotations,
+    canvas: &mut Canvas<'_>,
+) {
+    let (left, top, padding) = (origin[0] as f32, origin[1] as f32, (PADDING * em).round());
+    let behind = [
+        left - padding,
+        top - padding,
+        (left + block.width + padding).ceil(),
+        (top + block.height + padding).ceil(),
+    ];
+    let lumas = lumas(behind, canvas);
+    let mean = lumas.iter().sum::<f32>() / lumas.len().max(1) as f32;
+    // With little light and with much of it, one of the two is easy to read; grey counts as light.
+    let ink = look.color.unwrap_or(if mean < 0.45 { WHITE } else { BLACK });
+    let ink_luma =
+        (0.2126 * f32::from(ink[0]) + 0.7152 * f32::from(ink[1]) + 0.0722 * f32::from(ink[2]))
+            / 255.0;
+    let unreadable = lumas.iter().filter(|luma| (*luma - ink_luma).abs() < 0.4).count();
+    let has_panel = match look.panel {
+        Panel::Always => true,
+        Panel::Never => false,
+        Panel::Auto => unreadable * 50 > lumas.len(),
+    };
+    if has_panel {
+        let panel = if ink_luma > 0.5 { BLACK } else { WHITE };
+        fill(behind, panel, PANEL_OPACITY, canvas);
+    }
+    block.draw(origin, ink, canvas);
+}
+
+/// The lumas of the pixels behind an annotation, or of every n-th of them if they are many.
+fn lumas([left, top, right, bottom]: [f32; 4], canvas: &Canvas<'_>) -> Vec<f32> {
+    let [width, height] = canvas.size();
+    let clamped = |x: f32, most: u32| (x.max(0.0) as u32).min(most);
+    let (columns, rows) = (
+        clamped(left, width)..clamped(right, width),
+        clamped(top, height)..clamped(bottom, height),
+    );
+    let pixels = columns.len() as f32 * rows.len() as f32;
+    let step = (pixels / 40_000.0).sqrt().ceil().max(1.0) as usize;
+    let mut lumas = Vec::new();
+    for y in rows.step_by(step) {
+        lumas.extend(columns.clone().step_by(step).map(|x| canvas.luma(x, y)));
+    }
+    lumas
+}

@@ -1,0 +1,160 @@
+//! Colours of categories: texts, and few different whole numbers.
+
+use super::error::ColorByError;
+use super::key::{Category, ColorKey, KeyKind};
+use super::maps::MapName;
+use super::number::short;
+use super::scale::entry;
+use super::{ColorBy, Coloring, Limits, is_kept};
+use crate::image::color::LinearRgb;
+use crate::load::Labels;
+use crate::text::one_line;
+
+/// Different numbers that a palette may be used for.
+const MOST_NUMBERS: usize = 256;
+
+/// The index of no category.
+const NONE: u32 = u32::MAX;
+
+impl ColorBy {
+    /// Colours texts. Their order is that of whole numbers, if all are, and otherwise alphabetic, so that a text has the
+    /// same colour in every frame that has the same texts. Empty texts are missing values.
+    pub(super) fn color_labels(
+        &self,
+        column: &str,
+        labels: &Labels,
+        left_out: &[bool],
+    ) -> Result<Coloring, ColorByError> {
+        self.refuse_scale(|| format!("`{column}` holds text"))?;
+        let mut counts = vec![0_usize; labels.names.len()];
+        for (index, label) in labels.indices.iter().enumerate() {
+            if let Some(count) =
+                counts.get_mut(*label as usize).filter(|_| is_kept(left_out, index))
+            {
+                *count += 1;
+            }
+        }
+        let is_used = |label: &usize| counts[*label] > 0 && !labels.names[*label].trim().is_empty();
+        let mut used: Vec<usize> = (0..labels.names.len()).filter(is_used).collect();
+        let whole = |label: &usize| labels.names[*label].parse::<i64>().ok();
+        if used.iter().all(|label| whole(label).is_some()) {
+            used.sort_by_key(whole);
+        } else {
+            used.sort_by(|a, b| labels.names[*a].cmp(&labels.names[*b]));
+        }
+        let mut category_of = vec![NONE; labels.names.len()];
+        for (category, label) in used.iter().enumerate() {
+            category_of[*label] = category as u32;
+        }
+        let of = |label: &u32| category_of.get(*label as usize).copied().unwrap_or(NONE);
+        let categories =
+            used.iter().map(|label| (one_line(&labels.names[*label]), counts[*label])).collect();
+        let indices = labels.indices.iter().map(of).collect();
+        self.color_categories(column, categories, indices, left_out)
+    }
+
+    /// Colours whole numbers, each as a category.
+    pub(super) fn color_whole_numbers(
+        &self,
+        column: &str,
+        values: &[f64],
+        left_out: &[bool],
+    ) -> Result<Coloring, ColorByError> {
+        let palette = self.map.unwrap_or(MapName::OKABE_ITO).name();
+        self.refuse_scale(|| format!("`{palette}` is a palette for categories"))?;
+        let refused = |why| ColorByError::NotForPalette { palette, why };
+        let mut categories: Vec<(f64, usize)> = Vec::new();
+        for (index, value) in values.iter().enumerate() {
+            if value.is_nan() || !is_kept(left_out, index) {
+                continue;
+            }
+            if value.fract() != 0.0 || value.is_infinite() {
+                return Err(refused(format!("`{column}` contains {}", short(*value))));
+            }
+            match categories.binary_search_by(|(known, _)| known.total_cmp(&(value + 0.0))) {
+                Ok(place) => categories[place].1 += 1,
+                Err(_) if categories.len() == MOST_NUMBERS => {
+                    return Err(refused(format!(
+                        "`{column}` has more than {MOST_NUMBERS} different numbers"
+                    )));
+                }
+                Err(place) => categories.insert(place, (value + 0.0, 1)),
+            }
+        }
+        let index_of = |value: &f64| {
+            let place = categories.binary_search_by(|(known, _)| known.total_cmp(&(value + 0.0)));
+            place.map_or(NONE, |place| place as u32)
+        };
+        let indices = values.iter().map(index_of).collect();
+        let named = categories.iter().map(|(value, count)| (format!("{value}"), *count)).collect();
+        self.color_categories(column, named, indices, left_out)
+    }
+
+    /// Refuses options that need a scale.
+    fn refuse_scale(&self, why: impl Fn() -> String) -> Result<(), ColorByError> {
+        let given =
+            [("a logarithmic scale", self.is_log), ("a range", self.limits != Limits::default())];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((what, _)) => Err(ColorByError::NotForCategories { what, why: why() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives colours to categories, each a name and the number of its spheres. `indices` has the category of each
+    /// sphere, or [`NONE`].
+    fn color_categories(
+        &self,
+        column: &str,
+        categories: Vec<(String, usize)>,
+        mut indices: Vec<u32>,
+        left_out: &[bool],
+    ) -> Result<Coloring, ColorByError> {
+        let mut notes = Vec::new();
+        if categories.is_empty() {
+            let column = column.to_owned();
+            return Err(ColorByError::NoValue { column, what: "value" });
+        }
+        let map = self.map.unwrap_or(MapName::OKABE_ITO).reversed_if(self.is_reversed);
+        let (colors, count) = (map.colors(), categories.len());
+        let color_of = |category: usize| {
+            if map.is_palette() {
+                return colors[category % colors.len()];
+            }
+            // Spread over the whole map; a single category has its middle.
+            let position = if count > 1 { category as f64 / (count - 1) as f64 } else { 0.5 };
+            colors[entry(position, colors.len())]
+        };
+        if map.is_palette() && count > colors.len() {
+            notes.push(format!(
+                "`{column}` has {count} different values and the palette {} only {} colors, so colors repeat; a color \
+                 map such as batlow gives each its own",
+                map.name(),
+                colors.len()
+            ));
+        }
+        let mut missing = 0;
+        for (index, category) in indices.iter_mut().enumerate() {
+            if *category == NONE {
+                *category = count as u32;
+                missing += usize::from(is_kept(left_out, index));
+            }
+        }
+        self.note_missing(column, missing, false, &mut notes);
+        let categories: Vec<Category> = categories
+            .into_iter()
+            .enumerate()
+            .map(|(index, (name, count))| Category { name, color: color_of(index), count })
+            .collect();
+        let colors = categories.iter().map(|category| category.color).chain([self.missing]);
+        Ok(Coloring {
+            palette: colors.map(LinearRgb::from_srgb8).collect(),
+            indices,
+            key: ColorKey {
+                title: column.to_owned(),
+                kind: KeyKind::Categories(categories),
+                missing: (missing > 0).then_some(self.missing),
+            },
+            notes,
+        })
+    }
+}

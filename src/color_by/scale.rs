@@ -1,0 +1,167 @@
+//! From numbers to positions on a colour map, and back.
+
+use super::number::short;
+
+/// A linear or logarithmic scale: it maps the numbers of a range to positions from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    low: f64,
+    high: f64,
+    is_log: bool,
+}
+
+/// Why a range does not make a scale.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScaleError {
+    /// An end is not finite, or the first is not less than the second.
+    #[error(
+        "it is {} to {}; its ends must be finite, and the first less than the second (to turn the colors around, \
+         reverse the map)",
+        short(*.low), short(*.high)
+    )]
+    Range {
+        /// The low end.
+        low: f64,
+        /// The high end.
+        high: f64,
+    },
+    /// A logarithmic scale has an end that is not positive.
+    #[error("it is {} to {}; the ends of a logarithmic scale must be greater than 0", short(*.low), short(*.high))]
+    Log {
+        /// The low end.
+        low: f64,
+        /// The high end.
+        high: f64,
+    },
+    /// A percentile does not lie between 0 and 100.
+    #[error("the percentile {}% does not lie between 0% and 100%", short(*.percent))]
+    Percentile {
+        /// The percentile as given.
+        percent: f64,
+    },
+}
+
+impl Scale {
+    /// A scale from `low`, at the position 0, to `high`, at the position 1.
+    ///
+    /// # Errors
+    /// Returns an error if an end is not finite, if `low` is not less than `high`, or if the scale is logarithmic and an
+    /// end is not positive.
+    pub fn new([low, high]: [f64; 2], is_log: bool) -> Result<Self, ScaleError> {
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            return Err(ScaleError::Range { low, high });
+        }
+        if is_log && low <= 0.0 {
+            return Err(ScaleError::Log { low, high });
+        }
+        Ok(Self { low, high, is_log })
+    }
+
+    /// The numbers at the positions 0 and 1.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// Whether positions follow the logarithm of the numbers.
+    #[must_use]
+    pub fn is_log(&self) -> bool {
+        self.is_log
+    }
+
+    /// The position of a number: from 0 to 1, and that of the nearer end for numbers outside the range. `None` for NaN,
+    /// and on a logarithmic scale for numbers that are not positive.
+    #[must_use]
+    pub fn position(&self, value: f64) -> Option<f64> {
+        if !is_shown(value, self.is_log) {
+            return None;
+        }
+        if value <= self.low || value >= self.high {
+            return Some(if value <= self.low { 0.0 } else { 1.0 });
+        }
+        let along = if self.is_log {
+            (value.ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
+        } else {
+            // Half of each, because the difference of the ends may be too large for f64.
+            (0.5 * value - 0.5 * self.low) / (0.5 * self.high - 0.5 * self.low)
+        };
+        Some(along.clamp(0.0, 1.0))
+    }
+
+    /// The number at a position from 0 to 1, the inverse of [`Scale::position`].
+    #[must_use]
+    pub fn value_at(&self, position: f64) -> f64 {
+        let [low, high] = if self.is_log { [self.low.ln(), self.high.ln()] } else { self.range() };
+        let value = low * (1.0 - position) + high * position;
+        let value = if self.is_log { value.exp() } else { value };
+        value.clamp(self.low, self.high)
+    }
+}
+
+/// Whether a number has a position: it is not NaN and, on a logarithmic scale, is positive.
+pub(super) fn is_shown(value: f64, is_log: bool) -> bool {
+    !value.is_nan() && (!is_log || value > 0.0)
+}
+
+/// The entry of a table of `count` colours for a position from 0 to 1, as [`ColorMap`](crate::ColorMap) chooses it:
+/// the nearest, when the first is at 0 and the last at 1.
+pub(super) fn entry(position: f64, count: usize) -> usize {
+    let last = count.saturating_sub(1);
+    ((position * last as f64 + 0.5).floor() as usize).min(last)
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "what is compared is exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_a_linear_scale() {
+        let scale = Scale::new([-1.0, 3.0], false).unwrap();
+        for (value, position) in [
+            (-1.0, 0.0),
+            (0.0, 0.25),
+            (1.0, 0.5),
+            (3.0, 1.0),
+            (-9.0, 0.0),
+            (9.0, 1.0),
+            (f64::INFINITY, 1.0),
+            (f64::NEG_INFINITY, 0.0),
+        ] {
+            assert_eq!(scale.position(value), Some(position), "{value}");
+        }
+        assert_eq!(scale.position(f64::NAN), None);
+        assert_eq!([0.0, 0.25, 1.0].map(|at| scale.value_at(at)), [-1.0, 0.0, 3.0]);
+        let widest = Scale::new([f64::MIN, f64::MAX], false).unwrap();
+        assert_eq!(widest.position(0.0), Some(0.5));
+        assert_eq!(widest.value_at(0.5), 0.0);
+    }
+
+    #[test]
+    fn positions_of_a_logarithmic_scale() {
+        let scale = Scale::new([0.01, 100.0], true).unwrap();
+        for (value, position) in [(0.01, 0.0), (0.1, 0.25), (1.0, 0.5), (10.0, 0.75), (1e9, 1.0)] {
+            assert!((scale.position(value).unwrap() - position).abs() < 1e-15, "{value}");
+            let back = scale.value_at(position);
+            assert!((back / value.min(100.0) - 1.0).abs() < 1e-14, "{value}: {back}");
+        }
+        for value in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+            assert_eq!(scale.position(value), None, "{value}");
+        }
+    }
+
+    #[test]
+    fn ranges_that_are_none_are_refused() {
+        for [low, high] in [[1.0, 1.0], [2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::INFINITY]] {
+            assert!(matches!(Scale::new([low, high], false), Err(ScaleError::Range { .. })));
+        }
+        assert!(matches!(Scale::new([0.0, 1.0], true), Err(ScaleError::Log { .. })));
+    }
+
+    #[test]
+    fn the_ends_of_a_table_are_the_ends_of_the_scale() {
+        assert_eq!([0.0, 0.24, 0.25, 0.5, 0.75, 1.0].map(|at| entry(at, 3)), [0, 0, 1, 1, 2, 2]);
+        assert_eq!([entry(0.0, 256), entry(1.0, 256), entry(0.7, 1)], [0, 255, 0]);
+    }
+}

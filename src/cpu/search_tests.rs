@@ -1,0 +1,174 @@
+//! The tree against testing every sphere, ray by ray, to the bit; and without the margin, so that a loss is seen.
+
+use fastrand::Rng;
+use glam::DVec3;
+
+use super::search::{Search, SearchTree};
+use super::sphere::intersect;
+use crate::accel::wide_tree_visit::BoxRay;
+use crate::geometry::math::wide;
+use crate::geometry::ray::Ray;
+use crate::image::color::LinearRgb;
+use crate::scene::sphere_array::SphereArray;
+use crate::scene::{Appearance, Colors, Scene};
+
+#[allow(dead_code, reason = "some of its scenes are for other tests")]
+#[path = "../../tests/support/spheres.rs"]
+mod spheres;
+
+fn scenes() -> Vec<(&'static str, spheres::Spheres)> {
+    let sizes = |rng: &mut Rng| 10_f32.powf(-6.0 * rng.f32()) * 0.3;
+    vec![
+        ("random", spheres::random(3000, 1, |_| 0.02)),
+        ("six decades", spheres::random(800, 2, sizes)),
+        ("twice", spheres::twice(300)),
+        ("coincident", spheres::coincident(200)),
+        ("concentric", spheres::concentric(300)),
+        ("nested", spheres::nested(300)),
+        ("mirrored", spheres::mirrored(300)),
+        ("geometric", spheres::geometric(300)),
+        ("one around all", spheres::one_around_all(500)),
+        ("clusters", spheres::clusters(8, 80)),
+        ("far", spheres::far(400)),
+        ("flat", spheres::flat(400)),
+        ("line", spheres::line(300)),
+        ("outlier", spheres::outlier(500)),
+        ("huge", spheres::scaled(&spheres::random(400, 3, |_| 0.05), 2_f32.powi(55))),
+        ("tiny", spheres::scaled(&spheres::random(400, 4, |_| 0.05), 2_f32.powi(-50))),
+        ("few", spheres::random(17, 5, |_| 0.3)),
+    ]
+}
+
+fn scene(spheres: &spheres::Spheres) -> Scene {
+    let appearance = Appearance::new(Colors::One(LinearRgb::WHITE));
+    Scene::from_parts(SphereArray::F32(spheres.clone()), appearance).unwrap()
+}
+
+fn direction(random: &mut Rng) -> DVec3 {
+    let axis = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
+    match random.u32(0..6) {
+        0 => axis[random.usize(0..6)],
+        1 => (axis[random.usize(0..3)] + 1e-9 * axis[random.usize(0..6)]).normalize_or(DVec3::X),
+        _ => DVec3::from([0; 3].map(|_| random.f64() - 0.5)).normalize_or(DVec3::X),
+    }
+}
+
+/// A ray along a sphere's silhouette, from its surface, from within or from anywhere, up to 10¹⁶ radii away.
+fn ray(random: &mut Rng, spheres: &[[f32; 4]]) -> Ray {
+    let [x, y, z, radius] = spheres[random.usize(0..spheres.len())];
+    let (center, radius) = (wide([x, y, z]), f64::from(radius));
+    let outward = direction(random);
+    let toward = direction(random);
+    let along =
+        (toward - outward * toward.dot(outward)).normalize_or(outward.any_orthonormal_vector());
+    let away = radius * 10_f64.powf(18.0 * random.f64() - 2.0);
+    match random.u32(0..8) {
+        0 => Ray { origin: center + radius * outward, direction: toward },
+        1 => Ray { origin: center + radius * outward, direction: along },
+        2 => Ray { origin: center + radius * random.f64() * outward, direction: toward },
+        3 => Ray { origin: center, direction: outward },
+        4 => Ray { origin: center - away * toward, direction: toward },
+        _ => {
+            let beside = radius * (1.0 + (random.f64() - 0.5) * 10_f64.powf(-16.0 * random.f64()));
+            Ray { origin: center + beside * outward - away * along, direction: along }
+        }
+    }
+}
+
+fn test(ray: &Ray) -> impl Fn(u32, [f32; 4]) -> Option<(f64, DVec3)> {
+    |_, [x, y, z, radius]| intersect(ray, wide([x, y, z]), radius.into())
+}
+
+/// The id and the bits of the distance.
+fn nearest(search: Search<'_>, ray: &Ray) -> Option<(u32, u64)> {
+    search.nearest(ray, test(ray)).map(|nearest| (nearest.id, nearest.t.to_bits()))
+}
+
+#[test]
+fn the_tree_has_the_answers_of_testing_every_sphere() {
+    let mut random = Rng::with_seed(31);
+    let mut misses = 0;
+    for (name, spheres) in scenes() {
+        let scene = scene(&spheres);
+        let tree = SearchTree::new(&scene).unwrap();
+        assert!(tree.corners.is_some(), "{name}");
+        tree.tree.validate(scene.spheres()).unwrap();
+        let searches = [Search::from(&scene), Search::from(&tree)];
+        let mut hits = 0;
+        for _ in 0..1500 {
+            let ray = ray(&mut random, scene.spheres());
+            let [wanted, found] = searches.map(|search| nearest(search, &ray));
+            assert_eq!(wanted, found, "{name}: {ray:?}");
+            let t = wanted.map_or(random.f64(), |(_, t)| f64::from_bits(t));
+            for t_max in [t, t.next_up(), t * 3.0 * random.f64(), f64::INFINITY] {
+                let hit = test(&ray);
+                let is_before = |id, sphere| hit(id, sphere).is_some_and(|(t, _)| t < t_max);
+                let [wanted, found] = searches.map(|search| search.any(&ray, t_max, is_before));
+                assert_eq!(wanted, found, "{name}: {ray:?} before {t_max}");
+            }
+            *if wanted.is_some() { &mut hits } else { &mut misses } += 1;
+        }
+        assert!(hits > 300, "{name}: {hits}");
+    }
+    assert!(misses > 3000, "{misses}");
+}
+
+/// A ray whose direction is not of unit length, and one with NaN or infinities, has the same answers too.
+#[test]
+fn odd_rays_have_the_same_answers() {
+    let mut random = Rng::with_seed(32);
+    let scene = scene(&spheres::random(300, 7, |_| 0.05));
+    let tree = SearchTree::new(&scene).unwrap();
+    let odd = [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e200, -0.0];
+    for i in 0..2000 {
+        let mut ray = ray(&mut random, scene.spheres());
+        let axis = random.usize(0..3);
+        match i % 3 {
+            0 => ray.direction *= 10_f64.powf(2.0 * random.f64() - 1.0),
+            1 => ray.origin[axis] = odd[random.usize(0..5)],
+            _ => ray.direction[axis] = odd[random.usize(0..5)],
+        }
+        let [wanted, found] = [Search::from(&scene), Search::from(&tree)].map(|s| nearest(s, &ray));
+        assert_eq!(wanted, found, "{ray:?}");
+    }
+}
+
+/// With a part of the margin, the share of rays that lose the sphere that they hit first.
+fn lost(part: f64) -> f64 {
+    let mut random = Rng::with_seed(33);
+    let (mut hits, mut losses) = (0, 0);
+    for (_, spheres) in scenes() {
+        let scene = scene(&spheres);
+        let tree = SearchTree::new(&scene).unwrap();
+        for _ in 0..1500 {
+            let ray = ray(&mut random, scene.spheres());
+            let Some((id, t)) = nearest(Search::from(&scene), &ray) else { continue };
+            let mut boxes = BoxRay::new(ray.origin, ray.direction, tree.corners.unwrap()).unwrap();
+            boxes.margin *= part;
+            let mut is_found = false;
+            let limit = f64::from_bits(t);
+            tree.tree.visit(&boxes, limit, |range| {
+                is_found |= tree.tree.ids()[range].contains(&id);
+                limit
+            });
+            hits += 1;
+            losses += u32::from(!is_found);
+        }
+    }
+    f64::from(losses) / f64::from(hits)
+}
+
+/// The margin is needed, and has some to spare.
+#[test]
+fn without_the_margin_spheres_are_lost() {
+    assert!(lost(0.0) > 1e-3, "{}", lost(0.0));
+    assert!(lost(1.0 / 64.0) <= 0.0, "{}", lost(1.0 / 64.0));
+}
+
+#[test]
+fn an_empty_scene_has_no_hits() {
+    let scene = scene(&Vec::new());
+    let tree = SearchTree::new(&scene).unwrap();
+    let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
+    assert_eq!(nearest(Search::from(&tree), &ray), None);
+}

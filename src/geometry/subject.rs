@@ -1,0 +1,109 @@
+//! What a camera frames: spheres, or a box.
+
+use glam::DVec3;
+
+use crate::geometry::bounds::Bounds;
+use crate::parallel;
+
+/// What a camera frames so that all of it is in the picture: spheres, or a box.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The origin of the frame of the spheres, in world space.
+    origin: DVec3,
+    /// Centres in that frame, and radii. If there are none, the box is framed.
+    spheres: &'a [[f32; 4]],
+    bounds: Bounds,
+}
+
+impl From<Bounds> for Subject<'_> {
+    fn from(bounds: Bounds) -> Self {
+        Self { origin: DVec3::ZERO, spheres: &[], bounds }
+    }
+}
+
+impl From<&Bounds> for Subject<'_> {
+    fn from(bounds: &Bounds) -> Self {
+        (*bounds).into()
+    }
+}
+
+impl<'a> Subject<'a> {
+    /// Spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which is framed if
+    /// there are no spheres.
+    pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
+        Self { origin, spheres, bounds }
+    }
+
+    /// The axis-aligned box in world space.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Whether there are no spheres, so that the box itself is framed.
+    pub(crate) fn is_box(&self) -> bool {
+        self.spheres.is_empty()
+    }
+
+    /// How far the subject reaches along each direction, measured from the middle of its box: the largest n·p of all
+    /// its points p. The directions need not have unit length.
+    ///
+    /// This is the support function; of a sphere with the centre c and the radius r it is n·c + |n|·r.
+    #[must_use]
+    pub fn supports<const N: usize>(&self, directions: [DVec3; N]) -> [f64; N] {
+        let center = self.bounds.center();
+        let lengths = directions.map(DVec3::length);
+        let most = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i].max(b[i]));
+        let nothing = [f64::NEG_INFINITY; N];
+        if self.spheres.is_empty() {
+            let corners = self.bounds.corners().map(|corner| corner - center);
+            return corners
+                .map(|corner| directions.map(|n| n.dot(corner)))
+                .into_iter()
+                .fold(nothing, most);
+        }
+        let shift = self.origin - center;
+        let of_chunk = |_, chunk: &[[f32; 4]]| {
+            chunk.iter().fold(nothing, |reach, sphere| {
+                let [x, y, z, radius] = sphere.map(f64::from);
+                let c = shift + DVec3::new(x, y, z);
+                most(reach, std::array::from_fn(|i| directions[i].dot(c) + lengths[i] * radius))
+            })
+        };
+        parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most)
+    }
+
+    /// The axis (0, 1 or 2) along which all centres of the spheres lie in one plane, if there is exactly one.
+    #[must_use]
+    pub fn flat_axis(&self) -> Option<usize> {
+        let of_chunk = |_, chunk: &[[f32; 4]]| {
+            chunk.iter().fold([[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]], |[low, high], c| {
+                [
+                    std::array::from_fn(|i| low[i].min(c[i])),
+                    std::array::from_fn(|i| high[i].max(c[i])),
+                ]
+            })
+        };
+        let extents = parallel::map_chunks(self.spheres, of_chunk).into_iter().reduce(
+            |[low, high], [l, h]| {
+                [
+                    std::array::from_fn(|i| low[i].min(l[i])),
+                    std::array::from_fn(|i| high[i].max(h[i])),
+                ]
+            },
+        );
+        let [low, high] = extents?;
+        let sizes: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
+        let widest = sizes.into_iter().fold(0.0, f32::max);
+        let mut flat = (0..3).filter(|i| sizes[*i] <= 1e-6 * widest);
+        flat.next().filter(|_| flat.next().is_none())
+    }
+
+    /// The mean radius of the spheres; `None` for a box.
+    #[must_use]
+    pub fn mean_radius(&self) -> Option<f64> {
+        let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|s| f64::from(s[3])).sum::<f64>();
+        let sum: f64 = parallel::map_chunks(self.spheres, of_chunk).into_iter().sum();
+        (!self.spheres.is_empty()).then(|| sum / self.spheres.len() as f64)
+    }
+}

@@ -1,0 +1,187 @@
+//! What readers of binary trajectories share: numbers from bytes, errors with a byte offset, and reading no more than
+//! the file has.
+
+use std::io::{self, SeekFrom};
+
+use super::error::LoadError;
+use super::source::Bytes;
+use crate::text::{one_line, shortened};
+
+/// An error of reading a binary file. Offsets are in bytes from the start of the file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BinaryError {
+    /// The file does not start as a file of its format does.
+    #[error("this is not a {format} file: {message}")]
+    Start {
+        /// Name of the format.
+        format: &'static str,
+        /// What is wrong with the first bytes.
+        message: String,
+    },
+    /// The file ends before something does.
+    #[error(
+        "byte {offset}: {what} takes {wanted} bytes, but the file ends after {left}; it is cut off or still being written"
+    )]
+    CutOff {
+        /// Where it begins.
+        offset: u64,
+        /// What is cut off.
+        what: String,
+        /// How many bytes it takes.
+        wanted: u64,
+        /// How many bytes the file has from there on.
+        left: u64,
+    },
+    /// A value cannot be right.
+    #[error("byte {offset}: {message}")]
+    Value {
+        /// Where the value is.
+        offset: u64,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// A position is not finite.
+    #[error(
+        "byte {offset}: frame {frame}: the {axis} coordinate of atom {atom} is {found}; a position must be finite"
+    )]
+    Position {
+        /// Where the coordinate is, or where the positions begin if they are compressed.
+        offset: u64,
+        /// Index of the frame, from 0.
+        frame: usize,
+        /// Index of the atom, from 0.
+        atom: usize,
+        /// Name of the axis.
+        axis: char,
+        /// The value.
+        found: f64,
+    },
+}
+
+impl BinaryError {
+    pub(super) fn value(offset: u64, message: impl Into<String>) -> Self {
+        Self::Value { offset, message: message.into() }
+    }
+}
+
+/// The order of the bytes of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    Little,
+    Big,
+}
+
+/// A number in a file.
+pub(super) trait Number: Copy {
+    const WIDTH: usize;
+    fn decode(bytes: &[u8], order: Order) -> Self;
+}
+
+macro_rules! number {
+    ($($name:ty)*) => {$(
+        impl Number for $name {
+            const WIDTH: usize = size_of::<Self>();
+
+            fn decode(bytes: &[u8], order: Order) -> Self {
+                let array = bytes.first_chunk().copied().unwrap_or_default();
+                match order {
+                    Order::Little => Self::from_le_bytes(array),
+                    Order::Big => Self::from_be_bytes(array),
+                }
+            }
+        }
+    )*};
+}
+
+number!(u8 i8 u16 i16 u32 i32 u64 i64 f32 f64);
+
+/// Decodes all numbers of a piece of a file.
+pub(super) fn numbers<T: Number>(bytes: &[u8], order: Order) -> impl ExactSizeIterator<Item = T> {
+    bytes.chunks_exact(T::WIDTH).map(move |bytes| T::decode(bytes, order))
+}
+
+/// A file of binary data, read from a place on.
+pub(super) struct Reader<'a> {
+    source: &'a mut dyn Bytes,
+    pub(super) order: Order,
+    /// Size of the file in bytes.
+    pub(super) size: u64,
+    /// How many bytes are before what is read next.
+    pub(super) offset: u64,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads from the start of a file.
+    pub(super) fn new(source: &'a mut dyn Bytes, order: Order) -> Result<Self, LoadError> {
+        let size = source.seek(SeekFrom::End(0))?;
+        source.rewind()?;
+        Ok(Self { source, order, size, offset: 0 })
+    }
+
+    /// Goes to a place, which may be after the end.
+    pub(super) fn seek(&mut self, offset: u64) -> Result<(), LoadError> {
+        // Places nearby are often in memory.
+        match i64::try_from(i128::from(offset) - i128::from(self.offset)) {
+            Ok(by) if by.unsigned_abs() < 1 << 10 => self.source.seek_relative(by)?,
+            _ => _ = self.source.seek(SeekFrom::Start(offset))?,
+        }
+        self.offset = offset;
+        Ok(())
+    }
+
+    /// How many bytes follow.
+    pub(super) fn left(&self) -> u64 {
+        self.size.saturating_sub(self.offset)
+    }
+
+    /// Checks that `wanted` bytes follow.
+    pub(super) fn check(&self, wanted: u64, what: impl Into<String>) -> Result<(), BinaryError> {
+        let (offset, left) = (self.offset, self.left());
+        if wanted <= left {
+            return Ok(());
+        }
+        Err(BinaryError::CutOff { offset, what: what.into(), wanted, left })
+    }
+
+    /// Reads bytes, which the file must have.
+    pub(super) fn bytes(
+        &mut self,
+        count: u64,
+        what: impl Into<String>,
+    ) -> Result<Vec<u8>, LoadError> {
+        self.check(count, what)?;
+        let mut bytes = Vec::new();
+        let reserved = usize::try_from(count).ok().and_then(|n| bytes.try_reserve_exact(n).ok());
+        reserved.ok_or(io::Error::from(io::ErrorKind::OutOfMemory))?;
+        // The count fits, because memory for it was reserved.
+        bytes.resize(count as usize, 0);
+        self.source.read_exact(&mut bytes)?;
+        self.offset += count;
+        Ok(bytes)
+    }
+
+    /// Reads one number.
+    pub(super) fn number<T: Number>(&mut self, what: &str) -> Result<T, LoadError> {
+        self.check(T::WIDTH as u64, what)?;
+        let mut bytes = [0; 8];
+        self.source.read_exact(&mut bytes[..T::WIDTH])?;
+        self.offset += T::WIDTH as u64;
+        Ok(T::decode(&bytes, self.order))
+    }
+}
+
+/// Text of a file, as far as the first NUL, to be shown in a message.
+pub(super) fn shown(bytes: &[u8]) -> String {
+    let text = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
+    shortened(&one_line(&String::from_utf8_lossy(text)))
+}
+
+/// Names of the components of a vector: `velocity.x` and so on; the name itself if there is one component.
+pub(super) fn component_names(name: &str, count: usize) -> Vec<String> {
+    match count {
+        1 => vec![name.to_owned()],
+        2 | 3 => ["x", "y", "z"][..count].iter().map(|axis| format!("{name}.{axis}")).collect(),
+        _ => (0..count).map(|index| format!("{name}.{index}")).collect(),
+    }
+}

@@ -1,0 +1,76 @@
+//! Reads trajectories of GROMACS: `.trr` (full precision) and `.xtc` (compressed). Both are in XDR, which is big-endian
+//! with everything padded to 4 bytes. Lengths are nm in the file and Å in the result, so that they fit other files of
+//! atoms.
+
+mod trr;
+mod unpack;
+mod xtc;
+
+use super::binary::{BinaryError, Reader};
+use super::error::LoadError;
+use super::trajectory::{FrameIndex, FrameSpan};
+
+pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
+pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
+
+/// Å in a nm.
+const ANGSTROMS: f64 = 10.0;
+
+/// Finds frames one after the other: `next` checks a frame's header, and returns where the frame ends and whether it has
+/// positions.
+fn find_frames(
+    reader: &mut Reader<'_>,
+    last: Option<usize>,
+    mut next: impl FnMut(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>,
+) -> Result<FrameIndex, LoadError> {
+    let mut found = FrameIndex::default();
+    let mut without = 0_u64;
+    loop {
+        let start = reader.offset;
+        let index = found.frames.len();
+        if reader.left() == 0 {
+            found.is_whole = true;
+            break;
+        }
+        if last.is_some_and(|last| index > last) {
+            break;
+        }
+        match next(reader, index) {
+            Ok((end, has_positions)) => {
+                if has_positions {
+                    found.frames.push(FrameSpan { bytes: start..end, lines_before: 0 });
+                } else {
+                    without += 1;
+                }
+                reader.seek(end)?;
+            }
+            Err(LoadError::Io(error)) => return Err(error.into()),
+            Err(problem) => {
+                found.problem = Some(problem);
+                break;
+            }
+        }
+    }
+    if without > 0 {
+        found.notes.push(format!("{without} frames without positions are left out"));
+    }
+    if found.frames.is_empty() && found.problem.is_none() {
+        let message = "no frame has positions";
+        found.problem = Some(BinaryError::value(0, message).into());
+    }
+    Ok(found)
+}
+
+/// The edges of a cell, in nm; `None` if they are 0, as where there is no cell.
+fn cell_of(
+    edges: [f64; 9],
+    offset: u64,
+    frame: usize,
+) -> Result<Option<[[f64; 3]; 3]>, BinaryError> {
+    if edges.iter().any(|value| !value.is_finite()) {
+        let message = format!("frame {frame}: the cell has a number that is not finite");
+        return Err(BinaryError::value(offset, message));
+    }
+    let [a, b, c, d, e, f, g, h, i] = edges.map(|edge| edge * ANGSTROMS);
+    Ok(edges.iter().any(|edge| *edge != 0.0).then_some([[a, b, c], [d, e, f], [g, h, i]]))
+}

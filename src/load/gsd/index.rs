@@ -1,0 +1,242 @@
+//! The file layer of GSD: which chunks of data each frame has, and where they are.
+//!
+//! A file has a header of 256 bytes, a list of names, an index with an entry of 32 bytes for each chunk, ascending by
+//! frames, and the chunks, all in little endian. Versions 1 and 2 differ in how the list of names is filled: every name
+//! in 64 bytes, or one after the other. <https://gsd.readthedocs.io/en/stable/file-layer.html>
+
+use std::collections::HashMap;
+
+use crate::load::binary::{BinaryError, Order, Reader, numbers, shown};
+use crate::load::error::LoadError;
+
+const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
+const HEADER_BYTES: u64 = 256;
+const ENTRY_BYTES: u64 = 32;
+const NAME_BYTES: u64 = 64;
+
+/// Whether the first bytes are those of a GSD file.
+pub(in crate::load) fn starts(bytes: &[u8]) -> bool {
+    bytes.starts_with(&MAGIC.to_le_bytes())
+}
+
+/// All chunks of a file.
+#[derive(Debug)]
+pub(super) struct Index {
+    names: Vec<String>,
+    ids: HashMap<String, u16>,
+    chunks: Vec<Chunk>,
+    /// What is wrong after the last frame whose chunks are all there.
+    pub(super) problem: Option<LoadError>,
+}
+
+/// A chunk: a table of numbers of one type.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunk {
+    pub(super) frame: u64,
+    pub(super) rows: u64,
+    pub(super) columns: u32,
+    /// Where its numbers are.
+    pub(super) location: u64,
+    id: u16,
+    kind: u8,
+}
+
+impl Chunk {
+    /// Bytes of each of its numbers; `None` if its type is not known.
+    fn width(self) -> Option<u64> {
+        match self.kind {
+            1 | 5 | 11 => Some(1),
+            2 | 6 => Some(2),
+            3 | 7 | 9 => Some(4),
+            4 | 8 | 10 => Some(8),
+            _ => None,
+        }
+    }
+
+    /// Bytes of all of its numbers; `None` if the type is not known or there are more than any file has.
+    pub(super) fn bytes(self) -> Option<u64> {
+        self.rows.checked_mul(self.columns.into())?.checked_mul(self.width()?)
+    }
+
+    /// Reads its numbers, row by row.
+    pub(super) fn numbers(
+        self,
+        reader: &mut Reader<'_>,
+        name: &str,
+    ) -> Result<Vec<f64>, LoadError> {
+        let bytes = self.raw(reader, name)?;
+        let order = Order::Little;
+        Ok(match self.kind {
+            1 | 11 => numbers::<u8>(&bytes, order).map(f64::from).collect(),
+            2 => numbers::<u16>(&bytes, order).map(f64::from).collect(),
+            3 => numbers::<u32>(&bytes, order).map(f64::from).collect(),
+            4 => numbers::<u64>(&bytes, order).map(|number| number as f64).collect(),
+            5 => numbers::<i8>(&bytes, order).map(f64::from).collect(),
+            6 => numbers::<i16>(&bytes, order).map(f64::from).collect(),
+            7 => numbers::<i32>(&bytes, order).map(f64::from).collect(),
+            8 => numbers::<i64>(&bytes, order).map(|number| number as f64).collect(),
+            9 => numbers::<f32>(&bytes, order).map(f64::from).collect(),
+            _ => numbers::<f64>(&bytes, order).collect(),
+        })
+    }
+
+    /// Reads its rows of text, each of which ends with a NUL unless it fills its row.
+    pub(super) fn texts(
+        self,
+        reader: &mut Reader<'_>,
+        name: &str,
+    ) -> Result<Vec<String>, LoadError> {
+        let bytes = self.raw(reader, name)?;
+        Ok(bytes.chunks_exact((self.columns as usize).max(1)).map(shown).collect())
+    }
+
+    fn raw(self, reader: &mut Reader<'_>, name: &str) -> Result<Vec<u8>, LoadError> {
+        reader.seek(self.location)?;
+        reader.bytes(self.bytes().unwrap_or(u64::MAX), format!("the chunk {name}"))
+    }
+}
+
+impl Index {
+    /// Reads the index of a file.
+    pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, LoadError> {
+        let start =
+            |message: &str| BinaryError::Start { format: "gsd", message: message.to_owned() };
+        if reader.left() < HEADER_BYTES {
+            return Err(start("it is shorter than the header of 256 bytes").into());
+        }
+        if reader.number::<u64>("the header")? != MAGIC {
+            return Err(start("it does not start with the signature of the format").into());
+        }
+        let index_location: u64 = reader.number("the header")?;
+        let index_entries: u64 = reader.number("the header")?;
+        let names_location: u64 = reader.number("the header")?;
+        let names_entries: u64 = reader.number("the header")?;
+        reader.seek(reader.offset + 4)?;
+        let version: u32 = reader.number("the header")?;
+        // Version 0.3 was the last before 1.0, and is the same.
+        if !matches!(version >> 16, 1 | 2) && version != 3 {
+            let message = format!(
+                "the file has the version {}.{}; 1 and 2 can be read",
+                version >> 16,
+                version & 0xffff
+            );
+            return Err(BinaryError::value(44, message).into());
+        }
+        reader.seek(reader.offset + 64)?;
+        let schema = shown(&reader.bytes(64, "the header")?);
+        if schema != "hoomd" {
+            let message = format!(
+                "the file has the schema `{schema}`; only that of HOOMD-blue, `hoomd`, can be read"
+            );
+            return Err(BinaryError::value(112, message).into());
+        }
+        reader.seek(names_location)?;
+        let bytes = names_entries.saturating_mul(NAME_BYTES);
+        let names: Vec<_> = reader
+            .bytes(bytes, "the list of names")?
+            .split(|byte| *byte == 0)
+            .filter(|name| !name.is_empty())
+            .map(|name| String::from_utf8_lossy(name).into_owned())
+            .take(1 << 16)
+            .collect();
+        // Ids are 16 bits wide.
+        let ids = names.iter().enumerate().map(|(id, name)| (name.clone(), id as u16)).collect();
+        let mut index = Self { names, ids, chunks: Vec::new(), problem: None };
+        reader.seek(index_location)?;
+        reader.check(index_entries.saturating_mul(ENTRY_BYTES), "the index")?;
+        for _ in 0..index_entries {
+            let offset = reader.offset;
+            match index.next(reader)? {
+                Ok(Some(chunk)) => index.chunks.push(chunk),
+                Ok(None) => break,
+                Err((frame, message)) => {
+                    // A frame without one of its chunks is not complete.
+                    index.chunks.retain(|chunk| chunk.frame < frame);
+                    index.problem = Some(BinaryError::value(offset, message).into());
+                    break;
+                }
+            }
+        }
+        Ok(index)
+    }
+
+    /// Reads the next entry; `None` at the end. What is wrong with it comes with the frame that it belongs to.
+    #[allow(clippy::type_complexity, reason = "used once")]
+    fn next(
+        &self,
+        reader: &mut Reader<'_>,
+    ) -> Result<Result<Option<Chunk>, (u64, String)>, LoadError> {
+        let size = reader.size;
+        let frame: u64 = reader.number("the index")?;
+        let rows = reader.number("the index")?;
+        let location: u64 = reader.number("the index")?;
+        let columns = reader.number("the index")?;
+        let id = reader.number("the index")?;
+        let kind = reader.number("the index")?;
+        let _flags: u8 = reader.number("the index")?;
+        let chunk = Chunk { frame, rows, columns, location, id, kind };
+        if location == 0 {
+            return Ok(Ok(None));
+        }
+        let previous = self.chunks.last().map_or(0, |chunk| chunk.frame);
+        let Some(name) = self.names.get(usize::from(id)) else {
+            return Ok(Err((
+                frame,
+                format!(
+                    "this entry of the index has the name {id}, but there are {}",
+                    self.names.len()
+                ),
+            )));
+        };
+        let name = shown(name.as_bytes());
+        // A frame can have no chunk at all, if nothing changed, but no more frames than bytes are plausible.
+        if frame < previous || frame > size {
+            return Ok(Err((
+                frame.min(previous),
+                format!(
+                    "this entry of the index belongs to frame {frame}, but follows one of frame {previous}"
+                ),
+            )));
+        }
+        let fits = chunk
+            .bytes()
+            .and_then(|bytes| location.checked_add(bytes))
+            .is_some_and(|end| end <= size);
+        Ok(if chunk.width().is_none() {
+            Err((frame, format!("frame {frame}: the chunk {name} has the unknown type {kind}")))
+        } else if fits {
+            Ok(Some(chunk))
+        } else {
+            Err((
+                frame,
+                format!(
+                    "frame {frame}: the chunk {name} has {rows} × {columns} numbers from byte {location} on, but the file \
+                 has {size} bytes; it is cut off or still being written"
+                ),
+            ))
+        })
+    }
+
+    /// Number of frames.
+    pub(super) fn frames(&self) -> u64 {
+        self.chunks.last().map_or(0, |chunk| chunk.frame + 1)
+    }
+
+    /// The chunks of a frame, with their names.
+    pub(super) fn chunks(&self, frame: u64) -> impl Iterator<Item = (&str, Chunk)> {
+        let first = self.chunks.partition_point(|chunk| chunk.frame < frame);
+        let of_frame = self.chunks[first..].iter().take_while(move |chunk| chunk.frame == frame);
+        of_frame.map(|chunk| (self.names[usize::from(chunk.id)].as_str(), *chunk))
+    }
+
+    /// Whether any frame has a chunk with this name.
+    pub(super) fn has_name(&self, name: &str) -> bool {
+        self.ids.contains_key(name)
+    }
+
+    /// The chunk of a frame with this name.
+    pub(super) fn chunk(&self, frame: u64, name: &str) -> Option<Chunk> {
+        let id = *self.ids.get(name)?;
+        self.chunks(frame).find(|(_, chunk)| chunk.id == id).map(|(_, chunk)| chunk)
+    }
+}

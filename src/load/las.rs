@@ -1,0 +1,330 @@
+//! Reads LAS files, clouds of points of laser scanners (LAS 1.0 to 1.4, point formats 0 to 10).
+//!
+//! Of a point its position, intensity, number and count of returns, class, time and colour are read. LAZ, which is LAS
+//! compressed, is refused with advice: with the crates las 0.11 and laz 0.13, a damaged file of a few kilobytes asks for
+//! 50 GB of memory, which ends the program.
+
+use super::error::LoadError;
+use super::format::Options;
+use super::loaded::Loaded;
+use super::table::{Table, TableColumn};
+use crate::parallel;
+
+/// An error of reading a LAS file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LasError {
+    /// The file does not start as LAS.
+    #[error("this is not a LAS file: it does not start with LASF")]
+    NoLas,
+    /// The file ends within its header.
+    #[error("the header is cut off: the file has {found} bytes, but a header has 227 or more")]
+    Header {
+        /// Number of bytes in the file.
+        found: usize,
+    },
+    /// The points are compressed.
+    #[error(
+        "the points are compressed (LAZ), which is not read; decompress the file, such as with `laszip -i a.laz -o \
+         a.las` or `pdal translate a.laz a.las`"
+    )]
+    Compressed,
+    /// The format of the points is not known.
+    #[error("byte 104: the point format is {found}, but those of LAS are 0 to 10")]
+    Format {
+        /// The number that was found.
+        found: u8,
+    },
+    /// Points are shorter than their format needs.
+    #[error("byte 105: a point has {found} bytes, but point format {format} takes {least}")]
+    Length {
+        /// The point format.
+        format: u8,
+        /// Number of bytes by the file.
+        found: usize,
+        /// Number of bytes of the format.
+        least: usize,
+    },
+    /// The file has fewer points than its header says.
+    #[error(
+        "byte {start}: the header declares {wanted} points of {length} bytes, but only {found} bytes follow; the file is \
+         cut off"
+    )]
+    CutOff {
+        /// Where the points start.
+        start: u64,
+        /// Number of points by the header.
+        wanted: u64,
+        /// Bytes of a point.
+        length: usize,
+        /// Number of bytes after the start.
+        found: usize,
+    },
+    /// There is not enough memory for the points.
+    #[error("there is not enough memory for {count} points")]
+    Memory {
+        /// Number of points.
+        count: u64,
+    },
+}
+
+/// Bytes of a point of each format, by the specification of LAS 1.4 (R15, tables 7 to 17).
+const LENGTHS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+
+/// The most that a colour of eight bits is, which many programs write into the sixteen bits of LAS.
+const EIGHT_BITS: f64 = 255.0;
+
+/// Whether the first bytes are those of LAS or LAZ.
+pub(super) fn starts(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"LASF")
+}
+
+/// Reads the points of a file.
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+    let points = Points::new(bytes)?;
+    let mut notes = Vec::new();
+    let columns = points.columns(&mut notes)?;
+    let mut loaded = Table { columns }.into_loaded(options)?;
+    loaded.notes.extend(notes);
+    Ok(loaded)
+}
+
+/// The points of a file, and what its header says of them.
+struct Points<'a> {
+    bytes: &'a [u8],
+    count: usize,
+    length: usize,
+    format: u8,
+    scale: [f64; 3],
+    offset: [f64; 3],
+}
+
+impl<'a> Points<'a> {
+    fn new(bytes: &'a [u8]) -> Result<Self, LasError> {
+        if !starts(bytes) {
+            return Err(LasError::NoLas);
+        }
+        if bytes.len() < 227 {
+            return Err(LasError::Header { found: bytes.len() });
+        }
+        let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
+        let format = byte(104);
+        // Compressors set the highest bits.
+        if format & 0xc0 != 0 {
+            return Err(LasError::Compressed);
+        }
+        let least = LENGTHS.get(usize::from(format)).copied();
+        let least = least.ok_or(LasError::Format { found: format })?;
+        let length = usize::from(u16::from_le_bytes(chunk(bytes, 105)));
+        if length < least {
+            return Err(LasError::Length { format, found: length, least });
+        }
+        let start = u64::from(u32::from_le_bytes(chunk(bytes, 96)));
+        let header = u16::from_le_bytes(chunk(bytes, 94));
+        let legacy = u64::from(u32::from_le_bytes(chunk(bytes, 107)));
+        // LAS 1.4 has 64 bits for the number of points.
+        let is_long = byte(25) >= 4 && header >= 255;
+        let wanted = if is_long { u64::from_le_bytes(chunk(bytes, 247)) } else { legacy };
+        let data = usize::try_from(start).ok().and_then(|start| bytes.get(start..));
+        let data = data.unwrap_or_default();
+        if wanted > (data.len() / length) as u64 {
+            return Err(LasError::CutOff { start, wanted, length, found: data.len() });
+        }
+        let three = |at: usize| [0, 8, 16].map(|axis| f64::from_le_bytes(chunk(bytes, at + axis)));
+        let (scale, offset) = (three(131), three(155));
+        Ok(Self { bytes: data, count: wanted as usize, length, format, scale, offset })
+    }
+
+    fn columns(&self, notes: &mut Vec<String>) -> Result<Vec<TableColumn>, LasError> {
+        let is_new = self.format >= 6;
+        let mut columns = Vec::new();
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let (scale, offset) = (self.scale[axis], self.offset[axis]);
+            let number = |point: &[u8]| {
+                f64::from(i32::from_le_bytes(chunk(point, 4 * axis))) * scale + offset
+            };
+            columns.push(self.column(name, number)?);
+        }
+        let short = |at: usize| move |point: &[u8]| f64::from(u16::from_le_bytes(chunk(point, at)));
+        let bits = |at: usize, low: u32, count: u32| {
+            move |point: &[u8]| {
+                let byte = point.get(at).copied().unwrap_or_default();
+                f64::from((byte >> low) & ((1_u16 << count) - 1) as u8)
+            }
+        };
+        let returns = if is_new { 4 } else { 3 };
+        columns.push(self.column("intensity", short(12))?);
+        columns.push(self.column("return_number", bits(14, 0, returns))?);
+        columns.push(self.column("number_of_returns", bits(14, returns, returns))?);
+        let class = if is_new { bits(16, 0, 8) } else { bits(15, 0, 5) };
+        columns.push(self.column("classification", class)?);
+        let time = match self.format {
+            1 | 3 | 4 | 5 => Some(20),
+            6.. => Some(22),
+            _ => None,
+        };
+        if let Some(at) = time {
+            let number = move |point: &[u8]| f64::from_le_bytes(chunk(point, at));
+            columns.push(self.column("gps_time", number)?);
+        }
+        let color = match self.format {
+            2 => Some(20),
+            3 | 5 => Some(28),
+            7 | 8 | 10 => Some(30),
+            _ => None,
+        };
+        if let Some(at) = color {
+            let mut colors = Vec::new();
+            for (index, name) in ["red", "green", "blue"].into_iter().enumerate() {
+                colors.push(self.column(name, short(at + 2 * index))?);
+            }
+            columns.extend(with_range(colors, notes));
+        }
+        let mut unused = vec!["flags", "scan angle", "user data", "point source"];
+        if matches!(self.format, 8 | 10) {
+            unused.push("near infrared");
+        }
+        if matches!(self.format, 4 | 5 | 9 | 10) {
+            unused.push("waveforms");
+        }
+        if self.length > LENGTHS[usize::from(self.format)] {
+            unused.push("extra bytes");
+        }
+        notes.push(format!("not used: {} of the points", unused.join(", ")));
+        Ok(columns)
+    }
+
+    fn column(
+        &self,
+        name: &str,
+        number: impl Fn(&[u8]) -> f64 + Sync + Send,
+    ) -> Result<TableColumn, LasError> {
+        let of_row = |row: usize| number(&self.bytes[row * self.length..]);
+        let numbers = parallel::try_map(self.count, of_row);
+        let numbers = numbers.map_err(|_| LasError::Memory { count: self.count as u64 })?;
+        Ok(TableColumn::numbers(name, numbers))
+    }
+}
+
+/// Says what the largest value of colours is; none are left if they are all black, as where there are no photographs.
+fn with_range(mut colors: Vec<TableColumn>, notes: &mut Vec<String>) -> Vec<TableColumn> {
+    let largest = colors.iter().map(TableColumn::largest).fold(0.0, f64::max);
+    if largest == 0.0 {
+        notes.push("the colors are not used: all of them are black".to_owned());
+        return Vec::new();
+    }
+    let full = if largest <= EIGHT_BITS { EIGHT_BITS } else { f64::from(u16::MAX) };
+    colors.iter_mut().for_each(|column| column.full = Some(full));
+    colors
+}
+
+/// The bytes at this place; zeros if there are too few, which readers check before.
+fn chunk<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+    bytes.get(at..).and_then(<[u8]>::first_chunk).copied().unwrap_or([0; N])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ColumnValues;
+    use super::*;
+    use crate::image::color::LinearRgb;
+    use crate::scene::sphere_array::SphereArray;
+
+    /// A file of two points, with these bytes after what all formats begin with.
+    fn file(format: u8, minor: u8, rest: &[u8]) -> Vec<u8> {
+        let header: u16 = if minor >= 4 { 375 } else { 227 };
+        let mut bytes = vec![0; usize::from(header)];
+        let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
+        put(0, b"LASF");
+        put(24, &[1, minor]);
+        put(94, &header.to_le_bytes());
+        put(96, &u32::from(header).to_le_bytes());
+        put(104, &[format]);
+        put(105, &(14 + rest.len() as u16).to_le_bytes());
+        if minor >= 4 {
+            put(247, &2_u64.to_le_bytes());
+        } else {
+            put(107, &2_u32.to_le_bytes());
+        }
+        for axis in 0..3 {
+            put(131 + 8 * axis, &0.01_f64.to_le_bytes());
+            put(155 + 8 * axis, &(1000.0 * axis as f64).to_le_bytes());
+        }
+        for point in 0..2_i32 {
+            bytes.extend([100 * point, -200 * point, 300].iter().flat_map(|x| x.to_le_bytes()));
+            bytes.extend(700_u16.to_le_bytes());
+            bytes.extend(rest);
+        }
+        bytes
+    }
+
+    fn numbers(loaded: &Loaded, name: &str) -> Vec<f64> {
+        let Some(ColumnValues::Numbers(numbers)) = loaded.column(name) else {
+            panic!("there is no column {name}");
+        };
+        numbers.clone()
+    }
+
+    #[test]
+    fn old_and_new_points() {
+        let mut rest = vec![0b0001_1010, 0b1110_0010, 0, 0, 0, 0];
+        rest.extend(12.5_f64.to_le_bytes());
+        rest.extend([0xff, 0xff, 0, 0, 0, 0x80]);
+        let old = read(&file(3, 2, &rest), &Options::default()).unwrap();
+        let SphereArray::F64(spheres) = &old.spheres else { panic!("{:?}", old.spheres) };
+        assert_eq!(spheres[1][..3].to_vec(), [1.0, 998.0, 2003.0]);
+        for (name, value) in [
+            ("intensity", 700.0),
+            ("return_number", 2.0),
+            ("number_of_returns", 3.0),
+            ("classification", 2.0),
+            ("gps_time", 12.5),
+        ] {
+            assert_eq!(numbers(&old, name), [value; 2], "{name}");
+        }
+        assert_eq!(old.colors, Some(vec![LinearRgb::from_srgb8([255, 0, 128]); 2]));
+        let mut rest = vec![0b0101_0011, 0, 130, 0, 0, 0, 0, 0];
+        rest.extend((-3.0_f64).to_le_bytes());
+        rest.extend([255, 0, 0, 0, 51, 0]);
+        rest.extend([9; 5]);
+        let new = read(&file(7, 4, &rest), &Options::default()).unwrap();
+        let found = ["return_number", "number_of_returns", "classification", "gps_time"];
+        let found = found.map(|name| numbers(&new, name)[0]);
+        assert_eq!(found.to_vec(), [3.0, 5.0, 130.0, -3.0]);
+        // Eight bits in sixteen.
+        assert_eq!(new.colors.unwrap()[0], LinearRgb::from_srgb8([255, 0, 51]));
+        assert!(
+            new.notes[1].ends_with("point source, extra bytes of the points"),
+            "{:?}",
+            new.notes
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let good = file(0, 2, &[0; 6]);
+        let refused = |bytes: &[u8]| read(bytes, &Options::default()).unwrap_err().to_string();
+        assert_eq!(refused(b"LAS"), "this is not a LAS file: it does not start with LASF");
+        assert!(refused(&good[..226]).starts_with("the header is cut off: the file has 226 bytes"));
+        assert_eq!(
+            refused(&good[..good.len() - 1]),
+            "byte 227: the header declares 2 points of 20 bytes, but only 39 bytes follow; the file is cut off"
+        );
+        for (at, value, expected) in [
+            (104, 0x80, "the points are compressed (LAZ), which is not read; decompress the file"),
+            (104, 11, "byte 104: the point format is 11, but those of LAS are 0 to 10"),
+            (104, 1, "byte 105: a point has 20 bytes, but point format 1 takes 28"),
+            (99, 0xff, "byte 4278190307: the header declares 2 points"),
+            // An infinite scale.
+            (138, 0x7f, "row 0: x is "),
+        ] {
+            let mut bytes = good.clone();
+            bytes[at] = value;
+            if at == 138 {
+                bytes[137] = 0xf0;
+            }
+            let error = refused(&bytes);
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Types of NumPy's arrays, and decoding of columns.
+
+use std::collections::HashMap;
+
+use crate::load::binary::{Number, Order};
+use crate::load::loaded::Labels;
+use crate::load::table::TableColumn;
+use crate::text::{one_line, shortened};
+
+/// The type of the elements of an array, such as `<f4`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Dtype {
+    /// NumPy's name of the type.
+    pub(super) name: String,
+    kind: char,
+    /// Bytes of an element.
+    pub(super) size: usize,
+    order: Order,
+}
+
+/// Where the values of a column are in the data of an array.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Byte of the first value.
+    pub(super) first: usize,
+    /// Bytes from one value to the next.
+    pub(super) stride: usize,
+    pub(super) rows: usize,
+}
+
+impl Dtype {
+    /// Reads the name of a type; `None` if it has no size.
+    pub(super) fn parse(name: &str) -> Option<Self> {
+        let rest = name.strip_prefix(['<', '>', '|', '=']).unwrap_or(name);
+        let order = if name.starts_with('>') { Order::Big } else { Order::Little };
+        let mut letters = rest.chars();
+        let kind = letters.next().filter(char::is_ascii_alphabetic)?;
+        // Dates have their unit after the size.
+        let digits = letters.as_str().split('[').next()?;
+        let size: usize = match (kind, digits) {
+            ('O', "") => 8,
+            _ => digits.parse().ok()?,
+        };
+        // Text has four bytes for each character.
+        let size = size.checked_mul(if kind == 'U' { 4 } else { 1 })?;
+        Some(Self { name: name.to_owned(), kind, size, order })
+    }
+
+    /// Whether its elements are real numbers.
+    pub(super) fn is_real(&self) -> bool {
+        matches!((self.kind, self.size), ('f', 2 | 4 | 8) | ('i' | 'u', 1 | 2 | 4 | 8))
+    }
+
+    /// Whether its elements can be a column: real numbers, truth values as 0 and 1, or text.
+    pub(super) fn is_column(&self) -> bool {
+        self.is_real() || (self.kind == 'b' && self.size == 1) || (self.is_text() && self.size > 0)
+    }
+
+    fn is_text(&self) -> bool {
+        matches!(self.kind, 'S' | 'a' | 'U')
+    }
+
+    /// The largest value of the type, if it is u8 or u16: colours are fractions of it.
+    pub(super) fn full(&self) -> Option<f64> {
+        match (self.kind, self.size) {
+            ('u', 1) => Some(255.0),
+            ('u', 2) => Some(65535.0),
+            _ => None,
+        }
+    }
+
+    /// Decodes a column. The type must be one that [`Dtype::is_column`] and the data must have the place.
+    pub(super) fn column(&self, name: String, data: &[u8], place: Place) -> TableColumn {
+        let values = (0..place.rows).map(|row| {
+            let first = place.first + row * place.stride;
+            data.get(first..first + self.size).unwrap_or_default()
+        });
+        if self.is_text() {
+            return TableColumn::labels(name, self.labels(values));
+        }
+        let mut column =
+            TableColumn::numbers(name, values.map(|value| self.number(value)).collect());
+        column.full = self.full();
+        column
+    }
+
+    fn number(&self, bytes: &[u8]) -> f64 {
+        let order = self.order;
+        match (self.kind, self.size) {
+            ('f', 2) => half(u16::decode(bytes, order)),
+            ('f', 4) => f32::decode(bytes, order).into(),
+            ('f', _) => f64::decode(bytes, order),
+            ('i', 1) => i8::decode(bytes, order).into(),
+            ('i', 2) => i16::decode(bytes, order).into(),
+            ('i', 4) => i32::decode(bytes, order).into(),
+            ('i', _) => i64::decode(bytes, order) as f64,
+            (_, 1) => u8::decode(bytes, order).into(),
+            (_, 2) => u16::decode(bytes, order).into(),
+            (_, 4) => u32::decode(bytes, order).into(),
+            _ => u64::decode(bytes, order) as f64,
+        }
+    }
+
+    fn text(&self, bytes: &[u8]) -> String {
+        let text = match self.kind {
+            'U' => {
+                let codes = bytes.chunks_exact(4).map(|code| u32::decode(code, self.order));
+                codes
+                    .take_while(|code| *code != 0)
+                    .map(|code| char::from_u32(code).unwrap_or('?'))
+                    .collect()
+            }
+            _ => String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or_default())
+                .into_owned(),
+        };
+        shortened(&one_line(&text))
+    }
+
+    fn labels<'a>(&self, values: impl Iterator<Item = &'a [u8]>) -> Labels {
+        let mut labels = Labels::default();
+        let mut known: HashMap<&[u8], u32> = HashMap::new();
+        for value in values {
+            let index = *known.entry(value).or_insert_with(|| {
+                labels.names.push(self.text(value));
+                // There are no more names than spheres, which are fewer than 2³².
+                labels.names.len() as u32 - 1
+            });
+            labels.indices.push(index);
+        }
+        labels
+    }
+}
+
+/// The number whose bits in half precision these are.
+fn half(bits: u16) -> f64 {
+    let fraction = f64::from(bits & 0x3ff) / 1024.0;
+    let size = match i32::from(bits >> 10 & 0x1f) {
+        0 => fraction * 2_f64.powi(-14),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        exponent => (1.0 + fraction) * 2_f64.powi(exponent - 15),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_precision() {
+        for (bits, number) in [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x7bff, 65504.0),
+            (0x0001, 2_f64.powi(-24)),
+            (0x0400, 2_f64.powi(-14)),
+            (0x3555, 0.333_251_953_125),
+            (0xfc00, f64::NEG_INFINITY),
+        ] {
+            assert_eq!(half(bits).to_bits(), number.to_bits(), "{bits:x}");
+        }
+        assert!(half(0x7e00).is_nan());
+    }
+
+    #[test]
+    fn names_of_types() {
+        for (name, size, is_real, is_column) in [
+            ("<f4", 4, true, true),
+            ("|u1", 1, true, true),
+            ("|b1", 1, false, true),
+            ("<U3", 12, false, true),
+            ("|S0", 0, false, false),
+            ("<c8", 8, false, false),
+            ("<f16", 16, false, false),
+            ("|V7", 7, false, false),
+            ("<M8[ns]", 8, false, false),
+            ("|O", 8, false, false),
+        ] {
+            let dtype = Dtype::parse(name).unwrap();
+            assert_eq!(
+                (dtype.size, dtype.is_real(), dtype.is_column()),
+                (size, is_real, is_column)
+            );
+        }
+        for name in ["", "<", "f", "<f-4", "<f99999999999999999999", "44", "é4"] {
+            assert_eq!(Dtype::parse(name), None, "{name}");
+        }
+    }
+}

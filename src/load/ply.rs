@@ -1,0 +1,236 @@
+//! Reads the vertices of PLY files: text, and binary data in either byte order.
+//!
+//! The properties of the element `vertex` are columns: `x`, `y` and `z` are the centres; a radius, colours and opacities
+//! are used as in every table. Other elements, such as faces, are not used, and a note says so. Those after the vertices
+//! are not even looked at, and no vertex is held but as its numbers in the columns: so a reader that hands out elements
+//! one by one, such as the crate ply-rs-bw, would take more memory and time.
+
+mod error;
+mod header;
+#[cfg(test)]
+mod tests;
+
+pub use error::PlyError;
+use header::{Element, Encoding, Header, Scalar};
+
+use super::error::LoadError;
+use super::format::Options;
+use super::loaded::Loaded;
+use super::table::{Table, TableColumn};
+use crate::parallel;
+use crate::text::{one_line, shortened};
+
+/// Whether the first line is `ply`.
+pub(super) fn starts(bytes: &[u8]) -> bool {
+    bytes.strip_prefix(b"ply").is_some_and(|rest| matches!(rest.first(), Some(b'\n' | b'\r')))
+}
+
+/// Reads the vertices of a PLY file.
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
+    let header = header::read(bytes)?;
+    let data = &bytes[header.bytes..];
+    let vertex = header.elements.iter().position(|element| element.name == "vertex");
+    let Some(vertex) = vertex else {
+        let found: Vec<_> = header.elements.iter().take(8).map(|e| e.name.as_str()).collect();
+        let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
+        return Err(PlyError::NoVertices { found }.into());
+    };
+    let columns = match header.encoding {
+        Encoding::Ascii => of_text(data, &header, vertex)?,
+        _ => of_binary(data, &header, vertex)?,
+    };
+    let mut loaded = Table { columns }.into_loaded(options)?;
+    let lists = header.elements[vertex].properties.iter().filter(|p| p.list.is_some());
+    loaded.notes.extend(lists.map(|property| {
+        let name = shortened(&property.name);
+        format!("the property {name} of the vertices is a list, and is not used")
+    }));
+    let others = header.elements.iter().enumerate().filter(|(at, e)| *at != vertex && e.count > 0);
+    let others: Vec<_> =
+        others.take(8).map(|(_, e)| format!("{} of {}", e.count, e.name)).collect();
+    if !others.is_empty() {
+        let others = others.join(", ");
+        loaded.notes.push(format!("vertices become spheres; not used are {others}"));
+    }
+    Ok(loaded)
+}
+
+/// Makes the columns of the properties that are not lists. `values` has one entry for each property.
+fn columns(element: &Element, values: Vec<Option<Vec<f64>>>) -> Vec<TableColumn> {
+    let named = element.properties.iter().zip(values);
+    let column = |(property, values): (&header::Property, Option<Vec<f64>>)| {
+        let full = match property.scalar {
+            Scalar::U8 => Some(255.0),
+            Scalar::U16 => Some(65535.0),
+            _ => None,
+        };
+        Some(TableColumn { full, ..TableColumn::numbers(&property.name, values?) })
+    };
+    named.filter_map(column).collect()
+}
+
+/// Reads the vertices of a text file, each from a line of its own.
+fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, PlyError> {
+    let lines = data.split(|byte| *byte == b'\n').zip(header.lines + 1..);
+    let mut lines = lines.filter(|(line, _)| !line.trim_ascii().is_empty());
+    for Element { name, count, .. } in &header.elements[..vertex] {
+        for found in 0..*count {
+            let too_few = || PlyError::TooFewLines { element: name.clone(), wanted: *count, found };
+            lines.next().ok_or_else(too_few)?;
+        }
+    }
+    let element = &header.elements[vertex];
+    let (name, wanted) = (element.name.clone(), element.count);
+    let mut values: Vec<_> =
+        element.properties.iter().map(|p| p.list.is_none().then(Vec::new)).collect();
+    for found in 0..wanted {
+        let too_few = || PlyError::TooFewLines { element: name.clone(), wanted, found };
+        let (text, line) = lines.next().ok_or_else(too_few)?;
+        let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        for (property, values) in element.properties.iter().zip(&mut values) {
+            let refused = |found: Option<&[u8]>| PlyError::Value {
+                line,
+                property: shortened(&property.name),
+                found: found.map(|found| shortened(&one_line(&String::from_utf8_lossy(found)))),
+            };
+            let mut number = || {
+                let word = words.next().ok_or_else(|| refused(None))?;
+                let text = std::str::from_utf8(word).unwrap_or_default();
+                // The number is the one that a binary file has.
+                let number = match property.scalar {
+                    Scalar::F32 => text.parse::<f32>().map(f64::from),
+                    _ => text.parse(),
+                };
+                number.map_err(|_| refused(Some(word)))
+            };
+            let first = number()?;
+            match values {
+                Some(values) => values.push(first),
+                // A list starts with its length; the numbers in it must be there.
+                None => {
+                    for _ in 0..first as u64 {
+                        number()?;
+                    }
+                }
+            }
+        }
+        if let Some(word) = words.next() {
+            return Err(PlyError::TooManyValues {
+                line,
+                properties: element.properties.len(),
+                found: shortened(&one_line(&String::from_utf8_lossy(word))),
+            });
+        }
+    }
+    if header.elements.len() == vertex + 1
+        && let Some((_, line)) = lines.next()
+    {
+        let place = format!("line {line}");
+        return Err(PlyError::TooMany { place, element: name, wanted });
+    }
+    Ok(columns(element, values))
+}
+
+/// Reads the vertices of a binary file.
+fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, PlyError> {
+    let is_little = header.encoding == Encoding::LittleEndian;
+    let mut rest = data;
+    let at = |rest: &[u8]| header.bytes + data.len() - rest.len();
+    for element in &header.elements[..vertex] {
+        let before = rest;
+        rest = walk(rest, element, is_little, |_, _| {})
+            .map_err(|index| too_few_bytes(at(before), element, index))?;
+    }
+    let element = &header.elements[vertex];
+    let memory = |_| PlyError::Memory { count: element.count };
+    let too_few = |index| too_few_bytes(at(rest), element, index);
+    let mut values = Vec::with_capacity(element.properties.len());
+    let rest = if let Some(size) = element.size().filter(|size| *size > 0) {
+        let there = (rest.len() / size) as u64;
+        if there < element.count {
+            return Err(too_few(there));
+        }
+        let (vertices, after) = rest.split_at(element.count as usize * size);
+        let mut offset = 0;
+        for property in &element.properties {
+            let (scalar, from) = (property.scalar, offset);
+            let number = |row: usize| decoded(&vertices[row * size + from..], scalar, is_little);
+            values.push(Some(parallel::try_map(element.count as usize, number).map_err(memory)?));
+            offset += scalar.size();
+        }
+        after
+    } else {
+        values.extend(element.properties.iter().map(|p| p.list.is_none().then(Vec::new)));
+        walk(rest, element, is_little, |index, value| {
+            if let Some(values) = &mut values[index] {
+                values.push(value);
+            }
+        })
+        .map_err(too_few)?
+    };
+    if header.elements.len() == vertex + 1 && !rest.is_empty() {
+        let (place, element_name) = (format!("byte {}", at(rest)), element.name.clone());
+        return Err(PlyError::TooMany { place, element: element_name, wanted: element.count });
+    }
+    Ok(columns(element, values))
+}
+
+fn too_few_bytes(byte: usize, element: &Element, index: u64) -> PlyError {
+    PlyError::TooFewBytes { byte, element: element.name.clone(), wanted: element.count, index }
+}
+
+/// Goes through elements, hands over every number that is not in a list with the index of its property, and returns what
+/// follows them.
+///
+/// # Errors
+/// Returns the index of the first element that is not there as a whole.
+fn walk<'a>(
+    data: &'a [u8],
+    element: &Element,
+    is_little: bool,
+    mut number: impl FnMut(usize, f64),
+) -> Result<&'a [u8], u64> {
+    // A number of elements without properties takes no bytes, so it could be any.
+    if element.properties.is_empty() {
+        return Ok(data);
+    }
+    let mut rest = data;
+    for index in 0..element.count {
+        for (at, property) in element.properties.iter().enumerate() {
+            let first = property.list.unwrap_or(property.scalar);
+            let value = (rest.len() >= first.size()).then(|| decoded(rest, first, is_little));
+            let value = value.ok_or(index)?;
+            rest = &rest[first.size()..];
+            if property.list.is_some() {
+                let bytes = (value as usize).saturating_mul(property.scalar.size());
+                rest = rest.get(bytes..).ok_or(index)?;
+            } else {
+                number(at, value);
+            }
+        }
+    }
+    Ok(rest)
+}
+
+/// Decodes the number at the start of `bytes`, or 0 if there are too few: readers check that before.
+fn decoded(bytes: &[u8], scalar: Scalar, is_little: bool) -> f64 {
+    macro_rules! number {
+        ($type:ty) => {
+            bytes.first_chunk().map_or(0.0, |bytes| {
+                let decode =
+                    if is_little { <$type>::from_le_bytes } else { <$type>::from_be_bytes };
+                decode(*bytes).into()
+            })
+        };
+    }
+    match scalar {
+        Scalar::I8 => number!(i8),
+        Scalar::U8 => number!(u8),
+        Scalar::I16 => number!(i16),
+        Scalar::U16 => number!(u16),
+        Scalar::I32 => number!(i32),
+        Scalar::U32 => number!(u32),
+        Scalar::F32 => number!(f32),
+        Scalar::F64 => number!(f64),
+    }
+}

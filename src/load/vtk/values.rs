@@ -1,0 +1,266 @@
+//! The numbers of an array of a VTK file: as text, as bytes in base64, or as bytes; the bytes may be compressed with zlib.
+
+use std::borrow::Cow;
+use std::io::Read as _;
+
+use data_encoding::BASE64;
+use flate2::bufread::ZlibDecoder;
+
+use super::document::{Array, Data, Document};
+use crate::parallel;
+use crate::text::{one_line, shortened};
+
+/// How a file stores bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Encoding {
+    pub(super) is_little: bool,
+    /// Whether lengths before the data are u64, and not u32.
+    pub(super) is_wide: bool,
+    pub(super) is_compressed: bool,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "Int8" => Self::I8,
+            "UInt8" => Self::U8,
+            "Int16" => Self::I16,
+            "UInt16" => Self::U16,
+            "Int32" => Self::I32,
+            "UInt32" => Self::U32,
+            "Int64" => Self::I64,
+            "UInt64" => Self::U64,
+            "Float32" => Self::F32,
+            "Float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    const fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+/// Reads an array of a piece with this number of points: one list of numbers for each component.
+pub(super) fn numbers(
+    array: &Array<'_>,
+    points: u64,
+    document: &Document<'_>,
+) -> Result<Vec<Vec<f64>>, String> {
+    let components = array.components;
+    let count = usize::try_from(points).ok().and_then(|points| points.checked_mul(components));
+    let count = count.ok_or_else(|| format!("{points} points are too many"))?;
+    let Encoding { is_little, .. } = document.encoding;
+    let (text, is_base64) = match &array.data {
+        Data::Ascii(text) => return of_text(text, array, count),
+        Data::Base64(text) => {
+            let text = text.trim_ascii();
+            let is_whole = !text.bytes().any(|byte| byte.is_ascii_whitespace());
+            let whole: Cow<'_, [u8]> = if is_whole {
+                text.as_bytes().into()
+            } else {
+                text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect()
+            };
+            (whole, true)
+        }
+        Data::Appended(offset) => {
+            let offset = usize::try_from(*offset).ok();
+            let rest = offset.and_then(|offset| document.appended.get(offset..));
+            let rest = rest.ok_or("its offset is behind the end of the appended data")?;
+            (rest.into(), document.appended_is_base64)
+        }
+    };
+    let mut stream = Stream { rest: &text, is_base64, decoded: Vec::new() };
+    let size = array.scalar.size();
+    let wanted = count.checked_mul(size).ok_or_else(|| format!("{points} points are too many"))?;
+    let bytes = stream.array(wanted, document.encoding)?.into_owned();
+    if let Data::Appended(_) = array.data {
+        let taken = document.taken.get() + (text.len() - stream.rest.len());
+        if taken > document.appended.len() {
+            return Err("its data overlap with those of another array".to_owned());
+        }
+        document.taken.set(taken);
+    }
+    let column = |component: usize| {
+        let number = |row: usize| {
+            decoded(&bytes[(row * components + component) * size..], array.scalar, is_little)
+        };
+        parallel::try_map(count / components, number)
+            .map_err(|_| format!("there is not enough memory for {points} points"))
+    };
+    (0..components).map(column).collect()
+}
+
+fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>, String> {
+    let components = array.components;
+    // Each number takes two bytes, so a count that is too large shows before there are lists.
+    if count > text.len() {
+        return Err(format!("it must have {count} numbers, but its text has {} bytes", text.len()));
+    }
+    let mut columns = vec![Vec::with_capacity(count / components); components];
+    let mut words = text.split_ascii_whitespace();
+    for index in 0..count {
+        let word = words.next();
+        let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
+        // The number is the one that a binary file has.
+        let number = match array.scalar {
+            Scalar::F32 => word.parse::<f32>().map(f64::from),
+            _ => word.parse(),
+        };
+        let number = number.map_err(|_| {
+            format!("number {index} is `{}`, which is not a number", shortened(&one_line(word)))
+        })?;
+        columns[index % components].push(number);
+    }
+    match words.next() {
+        Some(_) => Err(format!("it must have {count} numbers, but has more")),
+        None => Ok(columns),
+    }
+}
+
+/// Bytes that may be written in base64.
+struct Stream<'a> {
+    rest: &'a [u8],
+    is_base64: bool,
+    /// Bytes that are decoded, but not taken yet.
+    decoded: Vec<u8>,
+}
+
+impl Stream<'_> {
+    /// Takes bytes from the start.
+    fn take(&mut self, count: usize) -> Result<Cow<'_, [u8]>, String> {
+        let cut_off = || "its data are cut off".to_owned();
+        if !self.is_base64 {
+            let (taken, rest) = self.rest.split_at_checked(count).ok_or_else(cut_off)?;
+            self.rest = rest;
+            return Ok(taken.into());
+        }
+        let mut taken = std::mem::take(&mut self.decoded);
+        while taken.len() < count {
+            let digits = (count - taken.len()).div_ceil(3).saturating_mul(4);
+            let digits = digits.min(self.rest.len() / 4 * 4);
+            if digits == 0 {
+                return Err(cut_off());
+            }
+            let (now, rest) = self.rest.split_at(digits);
+            // The lengths may have padding of their own before the data, which is no error of this decoder.
+            let bytes = BASE64.decode(now).map_err(|error| {
+                format!("its data are not base64: {}", one_line(&error.to_string()))
+            })?;
+            taken.extend_from_slice(&bytes);
+            self.rest = rest;
+        }
+        self.decoded = taken.split_off(count);
+        Ok(taken.into())
+    }
+
+    /// Takes numbers of the type of lengths.
+    fn lengths<const N: usize>(&mut self, encoding: Encoding) -> Result<[usize; N], String> {
+        let scalar = if encoding.is_wide { Scalar::U64 } else { Scalar::U32 };
+        let bytes = self.take(N * scalar.size())?;
+        let mut lengths = [0; N];
+        for (length, bytes) in lengths.iter_mut().zip(bytes.chunks_exact(scalar.size())) {
+            let length_of = match (<[u8; 8]>::try_from(bytes), <[u8; 4]>::try_from(bytes)) {
+                (Ok(wide), _) if encoding.is_little => u64::from_le_bytes(wide),
+                (Ok(wide), _) => u64::from_be_bytes(wide),
+                (_, Ok(narrow)) if encoding.is_little => u32::from_le_bytes(narrow).into(),
+                (_, Ok(narrow)) => u32::from_be_bytes(narrow).into(),
+                _ => 0,
+            };
+            *length = usize::try_from(length_of).unwrap_or(usize::MAX);
+        }
+        Ok(lengths)
+    }
+
+    /// Takes the bytes of an array, with the lengths before them.
+    fn array(&mut self, wanted: usize, encoding: Encoding) -> Result<Cow<'_, [u8]>, String> {
+        let other = |found: usize| {
+            format!("its data have {found} bytes, but its points and its type take {wanted}")
+        };
+        if !encoding.is_compressed {
+            let [found] = self.lengths(encoding)?;
+            return if found == wanted { self.take(wanted) } else { Err(other(found)) };
+        }
+        let [blocks, size, last] = self.lengths(encoding)?;
+        if blocks == 0 {
+            return if wanted == 0 { Ok(Cow::Borrowed(&[])) } else { Err(other(0)) };
+        }
+        // The last block is shorter, if it has a length of its own.
+        let full = if last == 0 { blocks } else { blocks - 1 };
+        let found = full.saturating_mul(size).saturating_add(last);
+        if found != wanted {
+            return Err(other(found));
+        }
+        // Each length takes bytes of the file.
+        if blocks > self.rest.len() {
+            return Err(format!(
+                "it declares {blocks} compressed blocks, but its data are cut off"
+            ));
+        }
+        let mut lengths = Vec::with_capacity(blocks);
+        for _ in 0..blocks {
+            let [length] = self.lengths(encoding)?;
+            lengths.push(length);
+        }
+        // Lengths and blocks are two pieces of base64, and what padding left of the first is nothing.
+        let mut all = Vec::new();
+        for (block, length) in lengths.into_iter().enumerate() {
+            let compressed = self.take(length)?;
+            let size = if block < full { size } else { last };
+            let before = all.len();
+            let mut decoder = ZlibDecoder::new(&*compressed).take(size as u64);
+            let read = decoder.read_to_end(&mut all);
+            read.map_err(|error| format!("its compressed block {block}: {error}"))?;
+            if all.len() - before != size {
+                let found = all.len() - before;
+                return Err(format!("its compressed block {block} has {found} bytes, not {size}"));
+            }
+        }
+        Ok(all.into())
+    }
+}
+
+/// Decodes the number at the start of `bytes`, or 0 if there are too few: readers check that before.
+fn decoded(bytes: &[u8], scalar: Scalar, is_little: bool) -> f64 {
+    macro_rules! number {
+        ($type:ty) => {
+            bytes.first_chunk().map_or(0.0, |bytes| {
+                let decode =
+                    if is_little { <$type>::from_le_bytes } else { <$type>::from_be_bytes };
+                decode(*bytes) as f64
+            })
+        };
+    }
+    match scalar {
+        Scalar::I8 => number!(i8),
+        Scalar::U8 => number!(u8),
+        Scalar::I16 => number!(i16),
+        Scalar::U16 => number!(u16),
+        Scalar::I32 => number!(i32),
+        Scalar::U32 => number!(u32),
+        Scalar::I64 => number!(i64),
+        Scalar::U64 => number!(u64),
+        Scalar::F32 => number!(f32),
+        Scalar::F64 => number!(f64),
+    }
+}

@@ -1,0 +1,112 @@
+//! Reads the tables `[legend]`, `[scale_bar]`, `[[labels]]` and `[text]`.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use toml::Spanned;
+
+use super::span::{Keys, Lines, Number, SceneFileError, Span};
+use super::value::ColorValue;
+use crate::annotate::{
+    AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
+};
+use crate::exact::{self, Table};
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct LegendTable {
+    title: Option<String>,
+    position: Option<PositionValue>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct ScaleBarTable {
+    length: Option<Number>,
+    unit: String,
+    position: Option<PositionValue>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LabelTable {
+    text: String,
+    position: Option<PositionValue>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct TextTable {
+    scale: Option<Number>,
+    color: Option<ColorValue>,
+    panel: Option<Panel>,
+}
+
+/// A position: a name, or two fractions.
+struct PositionValue(Position);
+
+impl<'de> Deserialize<'de> for PositionValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PositionVisitor;
+
+        impl<'de> Visitor<'de> for PositionVisitor {
+            type Value = PositionValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a position in quotes such as \"top-left\", or two fractions [x, y]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<PositionValue, E> {
+                text.parse().map(PositionValue).map_err(E::custom)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PositionValue, A::Error> {
+                let fractions = exact::elements(seq, &self)?;
+                Position::at(fractions).map(PositionValue).map_err(de::Error::custom)
+            }
+        }
+
+        deserializer.deserialize_any(PositionVisitor)
+    }
+}
+
+/// The tables of what is drawn over the picture.
+pub(super) struct AnnotationTables {
+    pub(super) legend: Option<Table<LegendTable>>,
+    pub(super) scale_bar: Option<Table<ScaleBarTable>>,
+    pub(super) labels: Vec<Table<LabelTable>>,
+    pub(super) text: Option<Table<TextTable>>,
+}
+
+impl AnnotationTables {
+    pub(super) fn read(self, lines: &Lines<'_>) -> Result<AnnotationPlan, SceneFileError> {
+        let position = |value: Option<PositionValue>| value.map(|value| value.0);
+        let text = self.text.unwrap_or_default().0;
+        let [low, high] = Annotations::TEXT_SCALES.map(f64::from);
+        let keys = Keys { lines, numbers: vec![("scale", text.scale)], table: Span::START };
+        let text_scale = keys.within("scale", [low, high], "from 0.2 to 10")?;
+        Ok(AnnotationPlan {
+            legend: self.legend.map(|Table(table)| LegendPlan {
+                title: table.title,
+                position: position(table.position),
+            }),
+            scale_bar: self.scale_bar.map(|Table(table)| ScaleBarPlan {
+                length: table.length.map(Spanned::into_inner),
+                unit: table.unit,
+                position: position(table.position),
+            }),
+            labels: self
+                .labels
+                .into_iter()
+                .map(|Table(LabelTable { text, position: at })| Label {
+                    text,
+                    position: position(at).unwrap_or(Position::TOP_LEFT),
+                })
+                .collect(),
+            text_scale: text_scale.map(|scale| scale as f32),
+            color: text.color.map(|color| color.0.to_srgb8()),
+            panel: text.panel,
+        })
+    }
+}

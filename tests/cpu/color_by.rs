@@ -1,0 +1,270 @@
+//! Colours, radii, opacities and strengths of light from columns.
+
+use pinhole::color_by::{
+    ColorBy, ColorByError, ColorKey, ColumnError, EmissionBy, KeyKind, MISSING, Mapping, RadiusBy,
+    column,
+};
+use pinhole::load::{Column, ColumnValues, Labels};
+use pinhole::scene::Colors;
+use pinhole::{LinearRgb, Material, Scene, SphereArray, SurfaceProperties};
+
+fn spheres(count: usize) -> SphereArray {
+    SphereArray::F64((0..count).map(|i| [i as f64, 10.0 + i as f64, 0.5, 1.0 + i as f64]).collect())
+}
+
+fn numbers(name: &str, values: &[f64]) -> Column {
+    Column { name: name.to_owned(), values: ColumnValues::Numbers(values.to_vec()) }
+}
+
+fn labels(name: &str, texts: &[&str]) -> Column {
+    let mut labels = Labels::default();
+    for text in texts {
+        let known = labels.names.iter().position(|name| name == text);
+        let index = known.unwrap_or_else(|| {
+            labels.names.push((*text).to_owned());
+            labels.names.len() - 1
+        });
+        labels.indices.push(index as u32);
+    }
+    Column { name: name.to_owned(), values: ColumnValues::Labels(labels) }
+}
+
+/// A mapping whose colours are the levels of grey.
+fn gray(column: &str) -> ColorBy {
+    ColorBy { map: Some("gray".parse().unwrap()), ..ColorBy::column(column) }
+}
+
+/// The levels of the colours of `values`.
+fn levels(by: &ColorBy, values: &[f64]) -> (Vec<u8>, Vec<String>) {
+    let columns = [numbers(&by.column, values)];
+    let coloring = by.apply(&spheres(values.len()), &columns, &[]).unwrap();
+    let level = |index| coloring.color(index).unwrap().to_srgb8()[0];
+    ((0..values.len()).map(level).collect(), coloring.notes)
+}
+
+fn category_names(key: &ColorKey) -> Vec<(&str, usize)> {
+    match &key.kind {
+        KeyKind::Categories(list) => list.iter().map(|c| (c.name.as_str(), c.count)).collect(),
+        _ => panic!("{key:?}"),
+    }
+}
+
+#[test]
+fn numbers_have_the_color_of_their_place_in_the_range() {
+    let (found, notes) = levels(&gray("t"), &[-1.0, 0.0, 1.0, 3.0]);
+    assert_eq!(found, [0, 64, 128, 255]);
+    assert_eq!(notes, ["colors show `t` from -1 to 3"]);
+    let by = ColorBy { is_reversed: true, ..gray("t") };
+    assert_eq!(levels(&by, &[-1.0, 3.0]).0, [255, 0]);
+    let by = ColorBy { limits: "0,1".parse().unwrap(), ..gray("t") };
+    let (found, notes) = levels(&by, &[-5.0, 0.2, 9.0]);
+    assert_eq!(found, [0, 51, 255]);
+    assert_eq!(
+        notes,
+        ["`t` of 2 spheres lies outside the range 0 to 1 and has the color of its end"]
+    );
+}
+
+#[test]
+fn a_logarithmic_scale_has_equal_steps_for_equal_ratios() {
+    let by = ColorBy { is_log: true, ..gray("t") };
+    let values = [1e-3, 1e-2, 1.0, 1e2, 0.0, -4.0, f64::NAN];
+    let (found, notes) = levels(&by, &values);
+    assert_eq!(found, [0, 51, 153, 255, 0x80, 0x80, 0x80]);
+    assert_eq!(
+        notes,
+        [
+            "colors show `t` from 0.001 to 100 on a logarithmic scale",
+            "3 spheres have no number greater than 0 in `t` and are shown in #808080"
+        ]
+    );
+}
+
+#[test]
+fn what_is_missing_is_gray_and_counted() {
+    let (found, notes) = levels(&gray("t"), &[0.0, f64::NAN, 1.0, f64::INFINITY]);
+    assert_eq!(found, [0, 0x80, 255, 255]);
+    assert_eq!(notes[1], "1 sphere has no value in `t` and is shown in #808080");
+    let columns = [numbers("t", &[f64::NAN; 3])];
+    let error = gray("t").apply(&spheres(3), &columns, &[]).unwrap_err();
+    assert_eq!(error.to_string(), "the column `t` has no finite number, so it gives no colors");
+    assert_eq!(MISSING, [0x80; 3]);
+}
+
+#[test]
+fn spheres_that_are_left_out_do_not_count() {
+    let columns = [numbers("t", &[0.0, 1.0, 1000.0, f64::NAN])];
+    let left_out = [false, false, true, true];
+    let coloring = gray("t").apply(&spheres(4), &columns, &left_out).unwrap();
+    assert_eq!(coloring.color(1), Some(LinearRgb::WHITE));
+    assert_eq!(coloring.key.missing, None);
+    let columns = [labels("chain", &["A", "B", "C", ""])];
+    let coloring = ColorBy::column("chain").apply(&spheres(4), &columns, &left_out).unwrap();
+    assert_eq!(category_names(&coloring.key), [("A", 1), ("B", 1)]);
+}
+
+#[test]
+fn a_constant_column_has_the_middle_of_the_map() {
+    for (value, is_log) in [(7.0, false), (0.0, false), (-1e300, false), (1e-300, true)] {
+        let by = ColorBy { is_log, ..gray("t") };
+        let (found, notes) = levels(&by, &[value; 2]);
+        assert_eq!(found, [128, 128], "{value}");
+        assert!(notes[0].contains("for all spheres, so they all have one color"), "{notes:?}");
+    }
+}
+
+#[test]
+fn a_range_of_equal_percentiles_is_widened() {
+    let by = ColorBy { limits: "2%,98%".parse().unwrap(), ..gray("t") };
+    let mut values = [1.0; 400];
+    values[7] = 1e6;
+    let (found, notes) = levels(&by, &values);
+    // The middle lies between two levels.
+    assert!(matches!([found[0], found[7]], [127 | 128, 255]), "{found:?}");
+    assert!(notes[0].starts_with("both ends of the range of `t` are 1, so colors show 0.9 to 1.1"));
+    let by = ColorBy { limits: "5,".parse().unwrap(), ..gray("t") };
+    let error = by.apply(&spheres(2), &[numbers("t", &[1.0, 2.0])], &[]).unwrap_err();
+    assert!(error.to_string().contains("it is 5 to 2; its ends must be finite"), "{error}");
+}
+
+#[test]
+fn texts_have_colors_in_their_order() {
+    let columns = [labels("chain", &["B", "A", "B", " ", "C"])];
+    let coloring = ColorBy::column("CHAIN").apply(&spheres(5), &columns, &[]).unwrap();
+    assert_eq!(category_names(&coloring.key), [("A", 1), ("B", 2), ("C", 1)]);
+    // The first colours of Okabe and Ito.
+    assert_eq!(coloring.color(1).unwrap().to_srgb8(), [0xe6, 0x9f, 0x00]);
+    assert_eq!(coloring.color(0).unwrap().to_srgb8(), [0x56, 0xb4, 0xe9]);
+    assert_eq!(coloring.color(3).unwrap().to_srgb8(), MISSING);
+    assert_eq!(coloring.key.missing, Some(MISSING));
+    let by = ColorBy { is_log: true, ..ColorBy::column("chain") };
+    let error = by.apply(&spheres(5), &columns, &[]).unwrap_err();
+    assert!(matches!(error, ColorByError::NotForCategories { .. }), "{error}");
+    // Whole numbers are sorted as numbers.
+    let columns = [labels("residue", &["10", "9", "-1"])];
+    let coloring = ColorBy::column("residue").apply(&spheres(3), &columns, &[]).unwrap();
+    assert_eq!(category_names(&coloring.key), [("-1", 1), ("9", 1), ("10", 1)]);
+}
+
+#[test]
+fn a_palette_repeats_with_a_note_and_a_map_does_not() {
+    let texts: Vec<String> = (0..20).map(|i| format!("r{i:02}")).collect();
+    let columns = [labels("r", &texts.iter().map(String::as_str).collect::<Vec<_>>())];
+    let coloring = ColorBy::column("r").apply(&spheres(20), &columns, &[]).unwrap();
+    assert_eq!(coloring.color(0), coloring.color(8));
+    assert!(
+        coloring.notes[0]
+            .starts_with("`r` has 20 different values and the palette okabe-ito only 8 colors"),
+        "{:?}",
+        coloring.notes
+    );
+    let coloring = gray("r").apply(&spheres(20), &columns, &[]).unwrap();
+    let ends = [0, 19].map(|index| coloring.color(index).unwrap().to_srgb8()[0]);
+    assert_eq!(ends, [0, 255]);
+    assert!(coloring.notes.is_empty());
+}
+
+#[test]
+fn few_whole_numbers_are_categories_unless_a_scale_is_asked_for() {
+    let columns = [numbers("type", &[3.0, 1.0, 2.0, 1.0])];
+    let categories = ColorBy::column("type").apply(&spheres(4), &columns, &[]).unwrap();
+    assert_eq!(category_names(&categories.key), [("1", 2), ("2", 1), ("3", 1)]);
+    for by in [
+        gray("type"),
+        ColorBy { is_log: true, ..ColorBy::column("type") },
+        ColorBy { limits: "0,3".parse().unwrap(), ..ColorBy::column("type") },
+        ColorBy::column("index"),
+    ] {
+        let scale = by.apply(&spheres(4), &columns, &[]).unwrap();
+        assert!(matches!(scale.key.kind, KeyKind::Scale(_)), "{by:?}");
+    }
+    let columns = [numbers("t", &[0.5, 1.0])];
+    let palette = ColorBy { map: Some("tol-muted".parse().unwrap()), ..ColorBy::column("t") };
+    let error = palette.apply(&spheres(2), &columns, &[]).unwrap_err();
+    assert!(error.to_string().contains("`t` contains 0.5"), "{error}");
+}
+
+#[test]
+fn columns_are_found_by_name() {
+    let spheres = spheres(2);
+    let columns = [
+        numbers("velo.x", &[3.0, 0.0]),
+        numbers("velo.y", &[4.0, 0.0]),
+        numbers("velo.z", &[12.0, -2.0]),
+        numbers("vx", &[1.0, 2.0]),
+        numbers("vy", &[2.0, 2.0]),
+        numbers("vz", &[2.0, 1.0]),
+        labels("Species", &["C", "N"]),
+        numbers("Z", &[6.0, 7.0]),
+    ];
+    let found = |name| column::numbers(name, &spheres, &columns).map(|(_, v)| v.into_owned());
+    assert_eq!(found("|velo|").unwrap(), [13.0, 2.0]);
+    assert_eq!(found("|V|").unwrap(), [3.0, 3.0]);
+    assert_eq!(found("INDEX").unwrap(), [0.0, 1.0]);
+    assert_eq!(found("radius").unwrap(), [1.0, 2.0]);
+    assert_eq!(found("y").unwrap(), [10.0, 11.0]);
+    // The data's column takes precedence over the coordinate.
+    assert_eq!(found("z").unwrap(), [6.0, 7.0]);
+    assert_eq!(
+        found("speces").unwrap_err().to_string(),
+        "there is no column `speces`; did you mean `Species`? the columns are velo.x, velo.y, velo.z, vx, vy, vz, \
+         Species, Z, index, radius, x, y, |velo|, |v|"
+    );
+    assert!(matches!(
+        found("velo"),
+        Err(ColumnError::Unknown { nearest: Some(nearest), .. }) if nearest == "|velo|"
+    ));
+    let text = found("species").unwrap_err().to_string();
+    assert!(text.contains("holds text, but numbers are needed"), "{text}");
+    let short = [numbers("t", &[1.0])];
+    let error = column::column("t", &spheres, &short).unwrap_err();
+    assert_eq!(error.to_string(), "the column `t` has 1 values, but there are 2 spheres");
+}
+
+#[test]
+fn a_mapping_makes_a_scene() {
+    let columns = [numbers("q", &[0.0, 0.5, 1.0, 2.0]), numbers("mass", &[1.0, 2.0, 3.0, 4.0])];
+    let mapping = Mapping {
+        color: Some(gray("mass")),
+        radius: Some(RadiusBy { column: "Mass".to_owned(), factor: 0.5 }),
+        opacity: Some("q".to_owned()),
+        emission: None,
+    };
+    let mut array = spheres(4);
+    let mapped = mapping.apply(&mut array, &columns, &[]).unwrap();
+    assert!(mapped.notes().iter().any(|note| note.contains("outside 0 to 1")));
+    let appearance =
+        mapped.appearance(4, Colors::One(LinearRgb::BLACK), SurfaceProperties::default());
+    let scene = Scene::from_parts(array, appearance).unwrap();
+    assert_eq!([0, 3].map(|id| scene.color(id).to_srgb8()[0]), [0, 255]);
+    let radii: Vec<f32> = scene.spheres().iter().map(|sphere| sphere[3]).collect();
+    assert_eq!(radii, [0.5, 1.0, 1.5, 2.0]);
+    let opacities = [0, 1, 2, 3].map(|id| scene.surface(id).opacity);
+    assert_eq!(opacities, [0.0, 128.0 / 255.0, 1.0, 1.0]);
+}
+
+#[test]
+fn strengths_make_spheres_emit_light() {
+    let columns = [numbers("l", &[1.0, 100.0, 0.0])];
+    let emission = EmissionBy { column: "l".to_owned(), factor: 2.0 };
+    let mapping = Mapping { emission: Some(emission), ..Mapping::default() };
+    let mapped = mapping.apply(&mut spheres(3), &columns, &[]).unwrap();
+    let strength = |index| match mapped.surface(SurfaceProperties::default(), index).material {
+        Material::Emissive { strength } => strength,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!([0, 1, 2].map(strength), [2.0, 200.0, 0.0]);
+}
+
+#[test]
+fn radii_must_be_positive() {
+    let columns = [numbers("r", &[1.0, f64::NAN])];
+    let radius = RadiusBy { column: "r".to_owned(), factor: 1.0 };
+    let mapping = Mapping { radius: Some(radius), ..Mapping::default() };
+    let error = mapping.apply(&mut spheres(2), &columns, &[]).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "sphere 1 would have the radius NaN; a radius from `r` must be finite and greater than 0"
+    );
+    assert!(mapping.apply(&mut spheres(2), &columns, &[false, true]).is_ok());
+}

@@ -1,0 +1,129 @@
+//! Cameras that frame spheres by their silhouettes.
+
+use glam::{DVec2, DVec3};
+use pinhole::camera::{Camera, CameraKind, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::image::NO_ID;
+use pinhole::{
+    Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, SphereArray, View, cpu, glam,
+};
+
+/// The most that a framed scene fills of the picture's half width or half height, if no margin is given.
+const FILL: f64 = 0.85;
+
+fn scene(spheres: Vec<[f64; 4]>) -> Scene {
+    SphereArray::F64(spheres).scene(LinearRgb::WHITE).unwrap()
+}
+
+/// A cloud of spheres that is longer along one axis.
+fn cloud(random: &mut fastrand::Rng, count: usize) -> Scene {
+    let place = DVec3::from([0; 3].map(|_| random.f64() * 200.0 - 100.0));
+    let size = DVec3::from([0; 3].map(|_| 10_f64.powf(random.f64() * 2.0)));
+    let sphere = |_| {
+        let center = place + size * DVec3::from([0; 3].map(|_| random.f64() - 0.5));
+        [center.x, center.y, center.z, 0.05 + 2.0 * random.f64().powi(4)]
+    };
+    scene((0..count).map(sphere).collect())
+}
+
+/// The silhouettes of all spheres in the picture: the smallest and the largest relative location. They are computed
+/// from angles: the lines through the eye that touch a circle of radius r at the distance l make the angle asin(r/l)
+/// with the line to its centre.
+fn silhouettes(camera: &dyn Camera, scene: &Scene) -> [DVec2; 2] {
+    let v = camera.vectors();
+    let ahead = v.forward / v.forward.length();
+    let mut extremes = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    for sphere in scene.spheres() {
+        let [x, y, z, r] = sphere.map(f64::from);
+        let offset = scene.origin() + DVec3::new(x, y, z) - v.origin;
+        let side = |axis: DVec3, sign: f64| {
+            let aside = offset.dot(axis) / axis.length();
+            if camera.kind() == CameraKind::Orthographic {
+                return (aside + sign * r) / axis.length();
+            }
+            let depth = offset.dot(ahead);
+            let angle = aside.atan2(depth) + sign * (r / aside.hypot(depth)).asin();
+            assert!(angle.abs() < std::f64::consts::FRAC_PI_2, "a sphere is behind the camera");
+            angle.tan() * v.forward.length() / axis.length()
+        };
+        let corner = |sign| DVec2::new(side(v.right, sign), side(v.up, sign));
+        extremes = [extremes[0].min(corner(-1.0)), extremes[1].max(corner(1.0))];
+    }
+    extremes
+}
+
+#[test]
+fn silhouettes_fill_the_tighter_side_and_lie_in_the_middle() {
+    let mut random = fastrand::Rng::with_seed(11);
+    for round in 0..200 {
+        let scene = cloud(&mut random, 1 + round % 40);
+        let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5));
+        let pose = Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap();
+        let aspect = [0.3, 0.5625, 0.707, 1.0, 4.0 / 3.0, 16.0 / 9.0, 3.0][round % 7];
+        let (fov, margin) = (0.1 + 2.0 * random.f64(), 0.4 * random.f64());
+        let pinhole = PinholeCamera::framing(scene.subject(), pose, fov, aspect, margin).unwrap();
+        let parallel = OrthographicCamera::framing(scene.subject(), pose, aspect, margin).unwrap();
+        for camera in [&pinhole as &dyn Camera, &parallel] {
+            let [low, high] = silhouettes(camera, &scene);
+            let fill = 1.0 - 2.0 * margin;
+            let tighter = high.max_element();
+            assert!((tighter - fill).abs() < 1e-6, "{round} {:?}: {tighter}", camera.kind());
+            let off_center = (low + high).abs().max_element();
+            assert!(off_center < 1e-5, "{round} {:?}: {low} to {high}", camera.kind());
+        }
+    }
+}
+
+/// What fraction of the width and of the height the spheres cover, and how far off the centre they are, in pixels.
+fn measured(scene: &Scene, camera: &dyn Camera, film: Film) -> ([f64; 2], [f64; 2]) {
+    let view = View::new(camera, film);
+    let image = cpu::render(scene, &view, &RenderSettings::default(), LayerSet::DATA).unwrap();
+    let hits = image.id().unwrap().iter().enumerate().filter(|(_, id)| **id != NO_ID);
+    let spots = hits.map(|(index, _)| [index as u32 % film.width(), index as u32 / film.width()]);
+    let spots: Vec<[u32; 2]> = spots.collect();
+    let side = |i: usize, size: u32| {
+        let first = spots.iter().map(|spot| spot[i]).min().unwrap();
+        let last = spots.iter().map(|spot| spot[i]).max().unwrap();
+        let covered = f64::from(last + 1 - first) / f64::from(size);
+        (covered, (f64::from(first + last + 1) - f64::from(size)) / 2.0)
+    };
+    let [(width, x), (height, y)] = [side(0, film.width()), side(1, film.height())];
+    ([width, height], [x, y])
+}
+
+#[test]
+fn pictures_are_filled_to_85_percent_in_any_aspect() {
+    let at = |x: f64, y: f64, z: f64, r: f64| Sphere::new([x, y, z], r, LinearRgb::WHITE);
+    let scene =
+        Scene::new(&[at(0.0, 0.0, 0.0, 1.0), at(3.0, 1.0, -2.0, 0.5), at(1.0, 0.2, 4.0, 0.8)]);
+    let scene = scene.unwrap();
+    for [width, height] in [[400, 300], [300, 400], [210, 297], [480, 270], [200, 200], [120, 500]]
+    {
+        let film = Film::new(width, height).unwrap();
+        let camera = PinholeCamera::framing_from_the_front(scene.subject(), film.aspect()).unwrap();
+        let (covered, off_center) = measured(&scene, &camera, film);
+        let tighter = covered[0].max(covered[1]);
+        assert!((tighter - FILL).abs() < 0.02, "{width}x{height}: {covered:?}");
+        assert!(off_center.iter().all(|pixels| pixels.abs() <= 1.0), "{off_center:?}");
+    }
+}
+
+#[test]
+fn one_sphere_and_spheres_far_from_the_origin_are_framed() {
+    for center in [[0.0; 3], [1e7, -2e7, 3e6]] {
+        let [x, y, z] = center;
+        let scene = scene(vec![[x, y, z, 2.0], [x + 1.0, y, z, 0.25]]);
+        let camera = PinholeCamera::framing_from_the_front(scene.subject(), 1.5).unwrap();
+        let [low, high] = silhouettes(&camera, &scene);
+        assert!((high.y - FILL).abs() < 1e-4 && (low + high).abs().max_element() < 1e-4);
+    }
+}
+
+#[test]
+fn flat_data_is_recognized() {
+    let with = |z: f64| scene(vec![[0.0, 0.0, 1.0, 1.0], [5.0, 1.0, 1.0, 0.5], [2.0, 7.0, z, 0.5]]);
+    assert_eq!(with(1.0).subject().flat_axis(), Some(2));
+    assert_eq!(with(1.5).subject().flat_axis(), None);
+    // A row or a single sphere has no plane of its own.
+    assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
+    assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
+}

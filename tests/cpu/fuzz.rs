@@ -1,0 +1,43 @@
+//! Damaged files of every format: no panic, no wait, and one line that says what is wrong.
+//! `cargo bench --bench fuzz_readers` does the same with more of them, and measures memory.
+
+use fastrand::Rng;
+use pinhole::load::{self, FORMATS};
+use tempfile::TempDir;
+
+use crate::damage::{SLOW, damaged, read_all};
+use crate::seeds;
+
+#[test]
+fn every_format_has_good_files() {
+    let folder = TempDir::new().unwrap();
+    for format in FORMATS {
+        let seeds = seeds::of(format, folder.path());
+        assert!(!seeds.is_empty(), "{}: give it a row in tests/support/seeds/mod.rs", format.name);
+        for (index, seed) in seeds.into_iter().enumerate() {
+            let options = seed.options.with_format(format);
+            let loaded = load::from_bytes(&seed.bytes, "", &options);
+            let loaded = loaded.unwrap_or_else(|e| panic!("{} {index}: {e}", format.name));
+            assert!(!loaded.spheres.is_empty(), "{} {index}", format.name);
+        }
+    }
+}
+
+#[test]
+fn damaged_files_end_with_spheres_or_one_line() {
+    const EACH: u64 = 400;
+    let folder = TempDir::new().unwrap();
+    for format in FORMATS {
+        let seeds = seeds::of(format, folder.path());
+        for number in 0..EACH {
+            let mut random = Rng::with_seed(number);
+            let seed = &seeds[number as usize % seeds.len()];
+            let other = &seeds[random.usize(0..seeds.len())].bytes;
+            let bytes = damaged(&seed.bytes, other, &mut random);
+            let file = folder.path().join("file");
+            let taken = read_all(format, &bytes, &seed.options, &file, &mut random);
+            let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
+            assert!(taken < SLOW, "{}, input {number}: {taken:?}", format.name);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Pictures with a search tree against those of testing every sphere: equal to the bit.
+
+use fastrand::Rng;
+use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose};
+use pinhole::cpu::{self, SearchTree};
+use pinhole::glam::DVec3;
+use pinhole::light::{Ground, Light};
+use pinhole::render::{DepthCue, Occlusion, Studio};
+use pinhole::{
+    Film, Image, Integrator, LayerSet, LinearRgb, Material, RenderSettings, Scene, Sphere, View,
+};
+
+use crate::support::random_light;
+
+/// Compares all layers, of which an image compares every number.
+fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) -> Image {
+    let tree = SearchTree::new(scene).unwrap();
+    let wanted = cpu::render(scene, view, settings, LayerSet::ALL).unwrap();
+    let found = cpu::render(&tree, view, settings, LayerSet::ALL).unwrap();
+    assert!(wanted == found, "{name}");
+    found
+}
+
+fn color(random: &mut Rng) -> LinearRgb {
+    LinearRgb::new([0; 3].map(|_| random.f32())).unwrap()
+}
+
+fn point(random: &mut Rng) -> DVec3 {
+    DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0))
+}
+
+/// The scene with so many more spheres that there is a tree.
+fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
+    let mut spheres: Vec<Sphere> = (0..scene.len() as u32)
+        .map(|id| {
+            let [x, y, z, radius] = scene.spheres()[id as usize].map(f64::from);
+            let center = scene.origin() + DVec3::new(x, y, z);
+            let mut sphere = Sphere::new(center.to_array(), radius, scene.color(id));
+            sphere.surface = scene.surface(id);
+            sphere
+        })
+        .collect();
+    for _ in 0..20 {
+        let radius = 10_f64.powf(-2.5 * random.f64()) * 0.3;
+        let other = spheres[random.usize(0..spheres.len())];
+        let opacity = if random.bool() { 1.0 } else { random.f32() };
+        let center = (2.0 * point(random)).to_array();
+        let mut sphere = Sphere::new(center, radius, color(random));
+        // Some are within others, some in the same place.
+        match random.u32(0..4) {
+            0 => sphere.center = other.center,
+            1 => sphere = Sphere::new(other.center, other.radius, color(random)),
+            _ => sphere = sphere.with_opacity(opacity),
+        }
+        spheres.insert(random.usize(0..=spheres.len()), sphere);
+    }
+    Scene::new(&spheres).unwrap()
+}
+
+#[test]
+fn paths() {
+    let mut random = Rng::with_seed(41);
+    for seed in 0..24 {
+        let view = random_light::view(seed);
+        let scene = with_more(&view.scene, &mut random);
+        let seen = View::new(view.camera.as_ref(), view.film);
+        assert_same(&scene, &seen, &view.settings, &format!("seed {seed}: {}", view.name));
+    }
+}
+
+fn studio(random: &mut Rng, size: f64) -> RenderSettings {
+    let occlusion =
+        Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
+    let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
+    let studio = Studio {
+        occlusion: random.bool().then_some(occlusion),
+        has_shadows: random.bool(),
+        max_surfaces: random.u32(1..6),
+        depth_cue: random.bool().then_some(cue),
+        ..Studio::default()
+    };
+    let ground = Ground {
+        point: -size * DVec3::Y,
+        normal: DVec3::Y,
+        color: color(random),
+        is_shadow_catcher: random.bool(),
+    };
+    let mut settings = RenderSettings {
+        integrator: Integrator::Studio(studio),
+        lights: Light::key_and_fill().to_vec(),
+        ground: random.bool().then_some(ground),
+        background: color(random),
+        is_transparent: random.bool(),
+        ..RenderSettings::default()
+    };
+    settings.sampling.samples = 2;
+    settings
+}
+
+/// Scenes at any scale, in the world's origin or far from it, with spheres of many sizes, some of them equal, some in
+/// others; seen from near, from far and from within a sphere.
+#[test]
+fn studios_and_primary_rays() {
+    let mut random = Rng::with_seed(42);
+    let film = Film::new(20, 15).unwrap();
+    let mut shown = 0;
+    for round in 0..150 {
+        let size = 10_f64.powi([0, 0, 0, -5, 5][round % 5]);
+        let middle = [0.0, 1e3, 1e9][round % 3] * size * DVec3::new(1.0, -0.7, 0.3);
+        let decades = 5.0 * random.f64();
+        let mut spheres: Vec<Sphere> = (0..random.usize(17..200))
+            .map(|_| {
+                let radius = size * 0.5 * 10_f64.powf(-decades * random.f64());
+                let center = (middle + size * point(&mut random)).to_array();
+                let opacity = if random.u32(0..3) > 0 { 1.0 } else { random.f32() };
+                let sphere = Sphere::new(center, radius, color(&mut random)).with_opacity(opacity);
+                match random.u32(0..6) {
+                    0 => sphere.with_material(Material::Emissive { strength: 1.0 }),
+                    1 => sphere.with_material(Material::Conductor { roughness: 0.3 }),
+                    _ => sphere,
+                }
+            })
+            .collect();
+        for _ in 0..10 {
+            let mut copy = spheres[random.usize(0..spheres.len())];
+            copy.color = color(&mut random);
+            copy.radius *= [1.0, 1.0, 0.5][random.usize(0..3)];
+            spheres.push(copy);
+        }
+        if random.u32(0..4) == 0 {
+            spheres.push(Sphere::new(middle.to_array(), size * 1e4, color(&mut random)));
+        }
+        let within = spheres[random.usize(0..spheres.len())];
+        let eye = match random.u32(0..3) {
+            0 => DVec3::from(within.center) + 0.5 * within.radius * point(&mut random),
+            1 => middle + size * 1e6 * point(&mut random),
+            _ => middle + size * 4.0 * point(&mut random),
+        };
+        let pose = Pose::looking_at(eye, middle, [0.1, 1.0, 0.2]).unwrap();
+        let fov = if eye.distance(middle) > 1e3 * size { 2e-6 } else { 0.8 };
+        let camera: Box<dyn Camera> = match random.u32(0..4) {
+            0 => Box::new(PanoramaCamera::new(pose)),
+            _ => Box::new(PinholeCamera::with_vertical_fov(pose, fov, 4.0 / 3.0).unwrap()),
+        };
+        let scene = Scene::new(&spheres).unwrap();
+        let view = View::new(camera.as_ref(), film);
+        let name = format!("round {round}, {} spheres", spheres.len());
+        let image = assert_same(&scene, &view, &RenderSettings::default(), &name);
+        shown += image.id().unwrap().iter().filter(|id| **id != pinhole::image::NO_ID).count();
+        assert_same(&scene, &view, &studio(&mut random, size), &name);
+    }
+    assert!(shown > 150 * 60, "{shown}");
+}
+
+/// What is told of the work rises to 1, and ends the work if the caller says so.
+#[test]
+fn the_caller_is_told_and_may_stop() {
+    use std::ops::ControlFlow;
+    use std::sync::Mutex;
+
+    let view = random_light::view(3);
+    let tree = SearchTree::new(&view.scene).unwrap();
+    let seen = View::new(view.camera.as_ref(), view.film);
+    for settings in [&view.settings, &RenderSettings::default()] {
+        let parts = Mutex::new(Vec::new());
+        let told = |part| {
+            parts.lock().unwrap().push(part);
+            ControlFlow::Continue(())
+        };
+        cpu::render_watched(&tree, &seen, settings, LayerSet::COLOR, &told).unwrap();
+        let mut parts = parts.into_inner().unwrap();
+        parts.sort_by(f64::total_cmp);
+        assert_eq!(parts.len(), 18);
+        assert_eq!(parts.last(), Some(&1.0));
+        let stop = |_| ControlFlow::Break(());
+        let error = cpu::render_watched(&tree, &seen, settings, LayerSet::COLOR, &stop);
+        assert!(matches!(error, Err(cpu::RenderError::Stopped)));
+    }
+}
