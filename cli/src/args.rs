@@ -8,6 +8,7 @@ use super::camera::CameraArgs;
 use super::data::format_parser;
 use super::encoding::EncodingArgs;
 use super::file_info::FileArgs;
+use super::frames::FramesArgs;
 use super::generate::GenerateArgs;
 use super::light::LightArgs;
 use super::report::ReportArgs;
@@ -51,9 +52,11 @@ pub(super) enum Command {
 pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) input: InputArgs,
-    /// File for the picture (.png or .exr), or - to write PNG to standard output
+    /// File for the picture (.png or .exr), or - to write PNG to standard output; see also --frames
     #[arg(short, long, value_name = "OUT.png", required_unless_present = "print_scene")]
     pub(super) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) frames: FramesArgs,
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]

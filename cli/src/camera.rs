@@ -223,6 +223,11 @@ impl Default for CameraFlags {
 }
 
 impl CameraFlags {
+    /// Returns the direction of `--up`, if it was given.
+    pub(super) fn up(&self) -> Option<DVec3> {
+        self.up
+    }
+
     /// Returns the viewpoint: that of `--view`, or else `automatic` for a camera that stands outside the scene and has
     /// no eye and no direction.
     pub(super) fn viewpoint(&self, automatic: Option<Viewpoint>) -> Option<Viewpoint> {

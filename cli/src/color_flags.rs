@@ -88,6 +88,11 @@ impl ColorFlags {
         })
     }
 
+    /// Returns these flags with other limits of the colors.
+    pub(super) fn with_limits(&self, limits: Limits) -> Self {
+        Self { limits: Some(limits), ..self.clone() }
+    }
+
     /// Whether any flag that needs data was given.
     pub(super) fn given(&self) -> Option<&'static str> {
         let given = [

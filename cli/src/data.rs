@@ -78,12 +78,29 @@ pub(super) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     } else {
         read_whole(path, format, options)?
     };
+    complete_notes(&mut loaded, path, options);
+    Ok(loaded)
+}
+
+fn complete_notes(loaded: &mut Loaded, path: &Path, options: &DataOptions) {
     if options.color.is_some() && loaded.colors.is_some() {
         loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
     }
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }
+}
+
+/// Reads the frame that the options name from a file whose frames were found, if there is memory for it.
+pub(super) fn read_frame_of(
+    path: &Path,
+    file: &mut Trajectory,
+    options: &DataOptions,
+) -> Result<Loaded> {
+    let frame = options.frame.unwrap_or_default();
+    check_frame(path, file, frame)?;
+    let mut loaded = file.frame(frame).map_err(|error| named(path, error))?;
+    complete_notes(&mut loaded, path, options);
     Ok(loaded)
 }
 

@@ -33,6 +33,12 @@ pub(super) enum Failure {
         expect(dead_code, reason = "without a device the program exits at once")
     )]
     Stopped,
+    /// The user stopped it after some of several files were complete, as the message says.
+    #[cfg_attr(
+        not(feature = "gpu"),
+        expect(dead_code, reason = "without a device the program exits at once")
+    )]
+    StoppedBetween(&'static str),
 }
 
 impl Failure {
@@ -47,6 +53,7 @@ impl Failure {
                 format!("{error:#}")
             }
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
+            Self::StoppedBetween(message) => (*message).to_owned(),
         }
     }
 
@@ -55,7 +62,7 @@ impl Failure {
             Self::Usage(_) => USAGE.into(),
             Self::Job(_) => FAILED.into(),
             Self::CheckFailed(_) => CHECK_FAILED.into(),
-            Self::Stopped => STOPPED.into(),
+            Self::Stopped | Self::StoppedBetween(_) => STOPPED.into(),
         }
     }
 }
@@ -73,7 +80,7 @@ impl fmt::Display for Failure {
             Self::Usage(_) | Self::Job(_) | Self::CheckFailed(_) => {
                 write!(f, "error: {}", self.message())
             }
-            Self::Stopped => f.write_str(&self.message()),
+            Self::Stopped | Self::StoppedBetween(_) => f.write_str(&self.message()),
         }
     }
 }

@@ -2,35 +2,40 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Error, Result, anyhow};
+use anyhow::Result;
 
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
 use super::camera::CameraFlags;
 use super::color_flags::ColorFlags;
-use super::data::{self, DataOptions, as_usage};
+use super::data::DataOptions;
 use super::failure::Failure;
 pub(super) use super::input_format::extension;
 pub(super) use super::input_format::parse_size;
 use super::input_format::{Format, data_format};
 use super::light::LightFlags;
-use super::progress;
 pub(super) use super::read_file::read;
 use super::report::Report;
+use contents::Contents;
+pub(super) use frames::FoundFrames;
+use frames::OpenFrames;
+pub(super) use look::Look;
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
-use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
-use pinhole::color_by::{ColorKey, Mapping};
+use pinhole::camera::{Camera, CameraParameters, View};
+use pinhole::color_by::ColorKey;
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
-use pinhole::light::environment::Environment;
-use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene::sphere::Sphere;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{DEFAULT_COLOR, Data, SceneFile};
 use pinhole::style::Style;
+
+pub(super) mod contents;
+mod frames;
+mod look;
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
@@ -98,6 +103,8 @@ pub(super) struct Source {
     /// The style of data files.
     style: Style,
     color: ColorFlags,
+    /// The open file, if several of its frames are read.
+    frames: Option<OpenFrames>,
 }
 
 impl Source {
@@ -149,6 +156,7 @@ impl Source {
             light: LightFlags::default(),
             style: Style::Fast,
             color: ColorFlags::default(),
+            frames: None,
         }
     }
 
@@ -175,127 +183,19 @@ impl Source {
 
     /// Reads the file, and the data files that it names.
     pub(super) fn load(&self) -> Result<Input, Failure> {
-        let path = &self.path;
-        progress::stage(format!("reading {}", path.display()));
-        let Format::Data(format) = self.format else {
-            let text = String::from_utf8(read(path)?).map_err(|_| {
-                anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", path.display())
-            })?;
-            return self.scene_from_text(&text);
-        };
-        let mut loaded = data::read(path, format, &self.options).map_err(as_usage)?;
-        let mut notes = std::mem::take(&mut loaded.notes);
-        let has_atoms = loaded.labels("species").is_some();
-        let file_name = || path.display().to_string();
-        let mapping = self.color.apply_to(&Mapping::default())?;
-        let color = self.options.color.unwrap_or_else(default_color);
-        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
-        notes.extend_from_slice(mapped.notes());
-        let color_key = mapped.key().cloned();
-        if scene.is_empty() {
-            notes.push(format!(
-                "{}: the file has no spheres, so the picture shows only the background",
-                path.display()
-            ));
-        }
-        let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
-        let facing = scene.subject().flat_axis().map(Viewpoint::on_axis);
-        let files = vec![path.clone()];
-        let facing = Some(facing.unwrap_or(Viewpoint::OBLIQUE));
-        self.input(
-            file,
-            scene,
-            Found { notes, files, sky: None, sky_image: None, has_atoms, facing, color_key },
-        )
+        self.input(self.contents()?)
     }
 
     /// Reads a scene from the text of a scene file, and its data. The file need not exist; its path is the base of
     /// other paths.
     pub(super) fn scene_from_text(&self, text: &str) -> Result<Input, Failure> {
-        let file_name = || self.path.display().to_string();
-        let file = SceneFile::parse_in_style(text, self.light.style()).with_context(file_name)?;
-        let FoundData { spheres: data, color_key, color, notes, has_atoms } =
-            self.data_of(&file)?;
-        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
-        let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
-        let sky_file = sky_file.map(|file| self.resolve(file));
-        let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
-        let data_file = file.data().map(|data| self.resolve(&data.file));
-        let files =
-            [Some(self.path.clone()), data_file, sky_file.clone()].into_iter().flatten().collect();
-        let scene = match data {
-            DataSpheres::Spheres(spheres) => file.scene(&spheres),
-            DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
-            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
-        };
-        let scene = scene.with_context(file_name)?;
-        self.input(
-            file,
-            scene,
-            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None, color_key },
-        )
+        self.input(self.contents_of_text(text)?)
     }
 
-    /// Makes the film, the camera and the settings of a scene.
-    fn input(&self, mut file: SceneFile, scene: Scene, found: Found) -> Result<Input, Failure> {
-        let file_name = || self.path.display().to_string();
-        let (film, size_from) = self.film(file.film)?;
-        file.film = film;
-        file.background = self.light.background().unwrap_or(file.background);
-        let has_flags = self.camera.is_given || matches!(self.format, Format::Data(_));
-        let parameters = if has_flags {
-            self.camera.parameters(found.facing).map_err(Failure::usage)?
-        } else {
-            file.camera_parameters()
-        };
-        let (aspect, subject) = (film.aspect(), scene.subject());
-        let placed = parameters.placed(aspect, &subject);
-        let made = |parameters: CameraParameters| {
-            let camera = parameters.camera(aspect, &subject)?;
-            Ok((camera, parameters.stereo_pair(aspect, &subject)?))
-        };
-        let cameras = placed.and_then(|placed| Ok((placed, made(placed)?)));
-        let (placed, (camera, eyes)) = match cameras {
-            Ok(cameras) => cameras,
-            // The scene file knows the place of the error.
-            Err(error) if has_flags => return Err(Error::new(error).context(file_name()).into()),
-            Err(error) => {
-                return Err(Error::new(file.at_camera(&error)).context(file_name()).into());
-            }
-        };
-        let kind = self.light.integrator(file.integrator());
-        let settings = file.settings(kind, &scene, camera.as_ref(), found.sky);
-        let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
-        let report = Report {
-            path: self.path.display().to_string(),
-            spheres: scene.len(),
-            has_atoms: found.has_atoms,
-            style: file.style(),
-            view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
-        };
-        let (encoding, annotations) = (file.encoding, file.annotations.clone());
-        let data = self.data(&file)?;
-        let own_spheres = file.spheres().collect();
-        let parameters = placed;
-        let Found { notes, files, sky_image, color_key, .. } = found;
-        Ok(Input {
-            scene,
-            camera,
-            eyes,
-            film,
-            settings,
-            encoding,
-            color_key,
-            annotations,
-            size_from,
-            notes,
-            files,
-            report,
-            parameters,
-            data,
-            own_spheres,
-            sky_image,
-        })
+    fn input(&self, contents: Contents) -> Result<Input, Failure> {
+        let sky = self.sky(&contents)?;
+        let look = self.look(&contents.file, &contents.scene, sky, None)?;
+        self.input_with(contents, look)
     }
 
     /// Returns the data with its keys, over which flags take precedence.
@@ -328,116 +228,10 @@ impl Source {
         Ok(Some(data))
     }
 
-    /// Reads the image of the sky.
-    fn environment(&self, path: &Path) -> Result<Environment> {
-        let in_scene = || format!("{}: `[sky]`", self.path.display());
-        progress::stage(format!("reading {}", path.display()));
-        let bytes = read(path).with_context(in_scene)?;
-        let read = environment::read(&bytes);
-        read.with_context(|| path.display().to_string()).with_context(in_scene)
-    }
-
     /// Resolves a path that is relative to the folder of the scene file.
     fn resolve(&self, path: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
-
-    /// Reads the data of a scene file.
-    fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
-        let flags = self.options.clone();
-        let Some(data) = file.data() else {
-            let given = [
-                ("--frame", flags.frame.is_some()),
-                ("--radius", flags.radius.is_some()),
-                ("--color", flags.color.is_some()),
-                ("--topology", flags.topology.is_some()),
-                ("--columns", !flags.columns.is_empty()),
-            ];
-            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
-            return match given.or(self.color.given()) {
-                Some(flag) => Err(Failure::usage(format!(
-                    "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
-                    self.path.display()
-                ))),
-                None => Ok(FoundData {
-                    spheres: DataSpheres::Spheres(Vec::new()),
-                    color_key: None,
-                    color: default_color(),
-                    notes: Vec::new(),
-                    has_atoms: false,
-                }),
-            };
-        };
-        let path = self.resolve(&data.file);
-        let in_scene = || format!("{}: `data`", self.path.display());
-        let extension = extension(&path);
-        let named = data.format.as_deref().and_then(load::Format::of_name);
-        let Some(format) = named.or_else(|| data_format(&path)) else {
-            let problem = if extension.as_deref() == Some("toml") {
-                anyhow!("it names another scene file; name a data file")
-            } else {
-                anyhow!(
-                    "{}: this is not the extension of a data format; a scene can use {}",
-                    path.display(),
-                    load::Format::extensions_of(|_| true)
-                )
-            };
-            return Err(problem.context(in_scene()).into());
-        };
-        let keys = DataOptions {
-            frame: data.frame,
-            radius: data.radius,
-            color: data.color,
-            topology: data.topology.as_ref().map(|file| self.resolve(file)),
-            columns: data.columns.clone(),
-        };
-        flags.check(format, "--").map_err(Failure::usage)?;
-        keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
-        let options = flags.or(keys);
-        let loaded =
-            data::read(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
-        let has_atoms = loaded.labels("species").is_some();
-        let mapping = self.color.apply_to(&data.mapping)?;
-        let data = Data { mapping, color: options.color, ..data.clone() };
-        let (spheres, color_key, notes) = data.apply(loaded).with_context(in_scene)?;
-        let color = options.color.unwrap_or_else(default_color);
-        Ok(FoundData { spheres, color_key, color, notes, has_atoms })
-    }
-
-    /// Returns the film, and where its size comes from.
-    fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
-        let Some((width, height)) = self.size else {
-            return Ok((from_file, self.path.display().to_string()));
-        };
-        let film = Film::new(width, height)
-            .map_err(|error| Failure::usage(format!("--size: {error}")))?
-            .with_y_axis(from_file.y_axis());
-        Ok((film, "--size".to_owned()))
-    }
-}
-
-/// The data of a scene file.
-struct FoundData {
-    spheres: DataSpheres,
-    /// What colors mean, if a column gives them.
-    color_key: Option<ColorKey>,
-    /// The color of spheres without one.
-    color: LinearRgb,
-    notes: Vec<String>,
-    has_atoms: bool,
-}
-
-/// What was found beside the spheres.
-struct Found {
-    notes: Vec<String>,
-    files: Vec<PathBuf>,
-    /// The image of the sky, and its path.
-    sky: Option<Environment>,
-    sky_image: Option<PathBuf>,
-    has_atoms: bool,
-    /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
-    facing: Option<Viewpoint>,
-    color_key: Option<ColorKey>,
 }
 
 fn default_color() -> LinearRgb {

@@ -33,6 +33,7 @@ mod encoding;
 mod failure;
 mod file_info;
 mod file_info_text;
+mod frames;
 mod generate;
 mod info;
 mod input;

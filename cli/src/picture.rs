@@ -82,7 +82,19 @@ impl Outputs {
         png::encode_annotated(image, encoding, &self.annotations)
     }
 
-    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+    /// Returns these outputs with other names.
+    pub(super) fn renamed(&self, name: impl Fn(&Path) -> PathBuf) -> Self {
+        Self {
+            format: self.format,
+            picture: self.picture.as_deref().map(&name),
+            inside: self.inside,
+            layers: self.layers.iter().map(|(layer, path)| (*layer, name(path))).collect(),
+            annotations: self.annotations.clone(),
+        }
+    }
+
+    /// The paths of all files.
+    pub(super) fn paths(&self) -> impl Iterator<Item = &PathBuf> {
         self.picture.iter().chain(self.layers.iter().map(|(_, path)| path))
     }
 
@@ -162,18 +174,12 @@ impl Outputs {
 
     /// Returns the outputs for the left and the right eye, whose names are made from those that the user gave.
     pub(super) fn of_eyes(&self) -> Result<[Self; 2], Failure> {
-        let Some(picture) = &self.picture else {
+        if self.picture.is_none() {
             return Err(Failure::usage(
                 "--stereo two-files: standard output can take only one picture; name a file",
             ));
-        };
-        let outputs = ["left", "right"].map(|eye| Self {
-            format: self.format,
-            picture: Some(with_eye(picture, eye)),
-            inside: self.inside,
-            layers: self.layers.iter().map(|(layer, path)| (*layer, with_eye(path, eye))).collect(),
-            annotations: self.annotations.clone(),
-        });
+        }
+        let outputs = ["left", "right"].map(|eye| self.renamed(|path| with_eye(path, eye)));
         let paths = || outputs.iter().flat_map(Self::paths);
         paths().try_for_each(|path| check_writable(path))?;
         check_distinct(paths())?;

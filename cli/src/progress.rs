@@ -11,12 +11,15 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// The progress line of the program.
-static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, is_closed: false });
+static LINE: Mutex<Line> =
+    Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false });
 
 struct Line {
     bar: Option<ProgressBar>,
     /// Number of steps of a bar; `None` for a stage whose length is not known.
     total: Option<u64>,
+    /// Whether the line shows the progress of all frames, and not that of one picture.
+    is_held: bool,
     is_closed: bool,
 }
 
@@ -45,11 +48,29 @@ impl Line {
 /// Shows a stage whose length is not known.
 pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
-    if line.is_seen() {
+    if line.is_seen() && !line.is_held {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
         bar.set_message(pinhole::internals::text::one_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
+}
+
+/// Shows the progress of many pictures, in place of that of each of them from now on. Returns whether it is shown, which
+/// needs a terminal.
+pub(super) fn frames(text: String) -> bool {
+    let mut line = line();
+    let is_seen = line.is_seen();
+    if is_seen {
+        if !line.is_held {
+            line.is_held = true;
+            let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
+        if let Some(bar) = &line.bar {
+            bar.set_message(text);
+        }
+    }
+    is_seen
 }
 
 /// Whether progress is shown, which needs a terminal.
@@ -75,7 +96,7 @@ pub(super) fn rendering(part: f64, message: String) {
 
 fn show_part(part: f64, template: &str, message: Option<String>) {
     let mut line = line();
-    if !line.is_seen() {
+    if !line.is_seen() || line.is_held {
         return;
     }
     if line.total != Some(STEPS) {

@@ -1,7 +1,9 @@
 //! `pinhole render`: renders a scene file or a data file.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::Path;
+#[cfg(feature = "gpu")]
+use std::sync::Once;
 use std::time::Instant;
 
 use anyhow::Context;
@@ -14,6 +16,7 @@ use super::device::explained;
 use super::device::{Device, Opened};
 use super::encoding::EncodingFlags;
 use super::failure::Failure;
+use super::frames;
 use super::input::{Input, Source};
 #[cfg(feature = "gpu")]
 use super::interrupt;
@@ -39,20 +42,18 @@ use pinhole::gpu::{GpuError, Headless, RenderPlan};
 use pinhole::image::{Image, LayerSet};
 
 /// A render job, checked as far as is possible before the input is read.
-struct Job {
-    source: Source,
-    outputs: Outputs,
-    encoding: EncodingFlags,
-    annotation: AnnotationFlags,
-    stop_rule: StopRule,
-    device: Device,
-    stereo: Option<Stereo>,
+pub(super) struct Job {
+    pub(super) source: Source,
+    pub(super) outputs: Outputs,
+    pub(super) encoding: EncodingFlags,
+    pub(super) annotation: AnnotationFlags,
+    pub(super) stop_rule: StopRule,
+    pub(super) device: Device,
+    pub(super) stereo: Option<Stereo>,
 }
 
 impl Job {
-    fn new(args: &RenderArgs) -> Result<Self, Failure> {
-        let standard_output = PathBuf::from("-");
-        let output = args.output.as_ref().unwrap_or(&standard_output);
+    fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
         let outputs = Outputs::new(output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
@@ -72,9 +73,12 @@ impl Job {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    if let Some(wanted) = frames::Wanted::new(args)? {
+        return frames::run(args, &wanted, Job::new(args, wanted.picture())?);
+    }
     let started = Instant::now();
     let quiet = args.report.quiet;
-    let job = Job::new(args)?;
+    let job = Job::new(args, args.output.as_deref().unwrap_or(Path::new("-")))?;
     if quiet {
         progress::close();
     }
@@ -117,11 +121,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         said(quiet, &input, started);
         return Ok(());
     }
-    let image = match render_views(&input, &job.stop_rule, &views, layers, &opened)? {
-        Views::One(image) => image,
-        Views::Two([left, right]) => Image::side_by_side([&left, &right])
-            .context("the pictures of both eyes cannot be joined")?,
-    };
+    let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
     outputs.write(&image, &encoding, adapter, None)?;
     said(quiet, &input, started);
     Ok(())
@@ -142,6 +142,28 @@ pub(super) fn render(input: &Input, layers: LayerSet, opened: &Opened) -> Result
     }
 }
 
+/// Renders the picture, or the pictures of both eyes side by side.
+pub(super) fn render_joined(
+    input: &Input,
+    stop_rule: &StopRule,
+    views: &Views<View<'_>>,
+    layers: LayerSet,
+    opened: &Opened,
+) -> Result<Image, Failure> {
+    Ok(match render_views(input, stop_rule, views, layers, opened)? {
+        Views::One(image) => image,
+        Views::Two([left, right]) => Image::side_by_side([&left, &right])
+            .context("the pictures of both eyes cannot be joined")?,
+    })
+}
+
+/// Tells the user once, however many pictures are rendered, what the device is not.
+#[cfg(feature = "gpu")]
+fn tell_once(text: impl FnOnce() -> String) {
+    static SAID: Once = Once::new();
+    SAID.call_once(|| tell(text()));
+}
+
 /// Renders on the device, and tells the user if it is not the expected one.
 fn render_views(
     input: &Input,
@@ -155,15 +177,17 @@ fn render_views(
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
             check_on_cpu(input, stop_rule, views, layers)?;
-            tell(format_args!(
-                "note: rendering on the CPU reference, which is slower: {}",
-                GpuError::NoAdapter
-            ));
+            tell_once(|| {
+                format!(
+                    "note: rendering on the CPU reference, which is slower: {}",
+                    GpuError::NoAdapter
+                )
+            });
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
         Opened::Device { headless, choice, warning } => {
-            warning.iter().for_each(tell);
+            warning.iter().for_each(|warning| tell_once(|| warning.clone()));
             on_gpu(headless, input, stop_rule, views, layers, *choice)
         }
     }

@@ -33,13 +33,23 @@ pub(super) struct Report {
 impl Report {
     /// Returns the line about a picture that took this time: what was read, and the flags for the same look.
     pub(super) fn line(&self, elapsed: Duration) -> String {
+        self.line_with("", elapsed)
+    }
+
+    /// Returns the line about several pictures that took this time.
+    pub(super) fn line_of(&self, pictures: usize, elapsed: Duration) -> String {
+        let plural = if pictures == 1 { "" } else { "s" };
+        self.line_with(&format!("{} picture{plural} of ", grouped(pictures)), elapsed)
+    }
+
+    fn line_with(&self, start: &str, elapsed: Duration) -> String {
         let noun = if self.has_atoms { "atom" } else { "sphere" };
         let plural = if self.spheres == 1 { "" } else { "s" };
         let style = self.style.map(|style| format!("--style {}", style.name()));
         let flags: Vec<String> = style.into_iter().chain(self.view.clone()).collect();
         let flags = if flags.is_empty() { String::new() } else { format!("; {}", flags.join(" ")) };
         let (path, count) = (&self.path, grouped(self.spheres));
-        format!("{path}: {count} {noun}{plural}{flags}; {:.1} s", elapsed.as_secs_f64())
+        format!("{path}: {start}{count} {noun}{plural}{flags}; {:.1} s", elapsed.as_secs_f64())
     }
 }
 

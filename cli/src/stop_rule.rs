@@ -26,7 +26,7 @@ pub(super) struct StopArgs {
     /// On Ctrl-C, write the lit picture from the samples taken so far. With --time, also wait until every pixel has a
     /// sample. A second Ctrl-C ends without a picture
     #[arg(long)]
-    keep_partial: bool,
+    pub(super) keep_partial: bool,
 }
 
 /// The flags that were given, checked.

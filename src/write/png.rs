@@ -43,18 +43,51 @@ pub fn encode_annotated(
     })
 }
 
+/// The samples of a picture that [`encode_annotated`] would compress: RGB or, if the encoding is transparent, RGBA, row
+/// by row from the top, each of one byte or of two with the higher first. Movies are made of them.
+///
+/// # Errors
+/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
+#[cfg(feature = "annotate")]
+pub fn samples_annotated(
+    picture: &Image,
+    encoding: &Encoding,
+    annotations: &Annotations,
+) -> Result<Vec<u8>, PngError> {
+    let (_, mut samples) = samples_of(picture, encoding)?;
+    let size = [picture.width(), picture.height()];
+    if let Some(mut canvas) =
+        Canvas::new(size, color_type(encoding).samples(), encoding.bits(), &mut samples)
+    {
+        annotations.draw(&mut canvas);
+    }
+    Ok(samples)
+}
+
 /// Encodes a picture; `draw` may change its samples, and is given its size and the samples for each pixel.
 fn encode_with(
     picture: &Image,
     encoding: &Encoding,
     draw: impl FnOnce([u32; 2], usize, &mut [u8]),
 ) -> Result<Vec<u8>, PngError> {
+    let (depth, mut samples) = samples_of(picture, encoding)?;
+    let color_type = color_type(encoding);
+    let size = [picture.width(), picture.height()];
+    draw(size, color_type.samples(), &mut samples);
+    write(size, color_type, depth, encoding.dots_per_inch(), &samples)
+}
+
+fn color_type(encoding: &Encoding) -> ColorType {
+    if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb }
+}
+
+fn samples_of(picture: &Image, encoding: &Encoding) -> Result<(BitDepth, Vec<u8>), PngError> {
     let alpha = match encoding.layers().contains(Layer::Alpha) {
         true => Some(picture.alpha().ok_or(PngError::MissingAlpha)?),
         false => None,
     };
     let pixels = Pixels { color: picture.color(), alpha, encoding };
-    let (depth, mut samples) = match encoding.bits() {
+    Ok(match encoding.bits() {
         Bits::Eight => {
             let alpha_sample = |alpha| [(255.0 * unit(alpha)).round() as u8];
             (BitDepth::Eight, pixels.samples(to_srgb8, alpha_sample))
@@ -68,11 +101,7 @@ fn encode_with(
             };
             (BitDepth::Sixteen, pixels.samples(rgb, alpha_sample))
         }
-    };
-    let color_type = if encoding.transparent() { ColorType::Rgba } else { ColorType::Rgb };
-    let size = [picture.width(), picture.height()];
-    draw(size, color_type.samples(), &mut samples);
-    write(size, color_type, depth, encoding.dots_per_inch(), &samples)
+    })
 }
 
 /// Encodes sRGB bytes as a PNG file. `size` is the width and height; `rgb` has three bytes per pixel, row by row from

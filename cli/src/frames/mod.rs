@@ -1,0 +1,148 @@
+//! Several pictures at once: frames of a file, or views from all sides, as files or as a movie.
+
+mod apng;
+mod gif;
+mod names;
+mod range;
+mod run;
+mod sink;
+mod status;
+mod target;
+mod turn;
+mod union;
+mod video;
+mod y4m;
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+
+use super::args::{RenderArgs, Stereo};
+use super::failure::Failure;
+use range::FrameRange;
+pub(super) use run::run;
+use target::Target;
+
+const HEADING: &str = "Frames and movies";
+
+#[derive(Debug, Args)]
+pub(super) struct FramesArgs {
+    /// Frames to render, as a range like those of Python, such as : for all, 0:100:2, 5:, :10 or -1, with a pattern such
+    /// as -o f%04d.png, or a movie (.mp4, .webm, .mkv, .mov, .apng, .gif) [default for movies: all]
+    #[arg(
+        long, help_heading = HEADING, value_name = "RANGE", allow_hyphen_values = true,
+        conflicts_with_all = ["frame", "turntable"]
+    )]
+    frames: Option<FrameRange>,
+    /// Render this number of pictures while the camera turns once about the direction that is up
+    #[arg(
+        long, help_heading = HEADING, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000)
+    )]
+    turntable: Option<u32>,
+    /// Let the camera frame this frame, and choose light and colors for it [default: all frames that are asked for]
+    #[arg(long, help_heading = HEADING, value_name = "FRAME", allow_hyphen_values = true, conflicts_with = "turntable")]
+    camera_from: Option<i64>,
+    /// Pictures of a movie for each second, from 1 to 240 [default: 25]
+    #[arg(long, help_heading = HEADING, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=240))]
+    fps: Option<u32>,
+    /// Leave out frames whose files exist already
+    #[arg(long, help_heading = HEADING)]
+    resume: bool,
+    /// Write a movie that is not compressed to standard output, with -o -
+    #[arg(long, help_heading = HEADING, value_enum)]
+    raw: Option<Raw>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Raw {
+    /// YUV4MPEG2 with full resolution of color (C444), which ffmpeg and most players read
+    Y4m,
+}
+
+/// Which pictures of an input are made.
+#[derive(Clone, Copy, Debug)]
+enum Pictures {
+    Frames { range: FrameRange, camera_from: Option<FrameRange> },
+    Turntable { count: u32 },
+}
+
+/// A job of several pictures, checked as far as is possible before the input is read.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    pictures: Pictures,
+    target: Target,
+    fps: u32,
+    resume: bool,
+}
+
+impl Wanted {
+    /// Returns what the flags ask for; `None` if they ask for one picture.
+    pub(super) fn new(args: &RenderArgs) -> Result<Option<Self>, Failure> {
+        let FramesArgs { frames, turntable, camera_from, fps, resume, raw } = args.frames;
+        let Some(output) = args.output.as_deref() else { return Ok(None) };
+        let name = output.display().to_string();
+        let movie = target::movie_of(output);
+        let is_asked = frames.is_some() || turntable.is_some();
+        if !is_asked && movie.is_none() && raw.is_none() {
+            if names::has_sign(output) {
+                return Err(Failure::usage(format!(
+                    "{name}: a % stands for the number of a frame; add --frames RANGE (: for all) or --turntable N, or \
+                     choose a name without %"
+                )));
+            }
+            let given = [
+                ("--camera-from", camera_from.is_some()),
+                ("--fps", fps.is_some()),
+                ("--resume", resume),
+            ];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((flag, _)) => Err(Failure::usage(format!(
+                    "{flag} applies only to several pictures; add --frames RANGE (: for all) or --turntable N"
+                ))),
+                None => Ok(None),
+            };
+        }
+        let target = Target::new(output, movie, raw.is_some(), &args.layers)?;
+        let is_files = matches!(target, Target::Files { .. });
+        if is_files && fps.is_some() {
+            return Err(Failure::usage("--fps applies only to movies; remove it"));
+        }
+        if !is_files && resume {
+            return Err(Failure::usage(
+                "--resume applies only to a file for each frame, such as -o f%04d.png; a movie is written at once",
+            ));
+        }
+        if args.stereo == Some(Stereo::TwoFiles) {
+            return Err(Failure::usage(
+                "--stereo two-files does not apply to several pictures; use --stereo side-by-side",
+            ));
+        }
+        if args.stop_rule.keep_partial {
+            return Err(Failure::usage(
+                "--keep-partial applies to one picture, but several are asked for; remove it",
+            ));
+        }
+        let pictures = match turntable {
+            Some(count) => Pictures::Turntable { count },
+            None => Pictures::Frames {
+                range: frames.unwrap_or(FrameRange::ALL),
+                camera_from: camera_from.map(FrameRange::One),
+            },
+        };
+        if frames.is_none() && turntable.is_none() && args.input.view.frame.is_some() {
+            return Err(Failure::usage(format!(
+                "{name}: --frame names one frame, but a movie needs several; write --frames RANGE, or add --turntable N"
+            )));
+        }
+        Ok(Some(Self { pictures, target, fps: fps.unwrap_or(25), resume }))
+    }
+
+    /// The path from which the format and the layers of the pictures follow.
+    pub(super) fn picture(&self) -> &Path {
+        match &self.target {
+            Target::Files { path, .. } => path,
+            // What the pictures of a movie may hold is what a PNG on standard output may hold.
+            _ => Path::new("-"),
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Renders several pictures, while the next one is read and the one before is written.
+
+use std::collections::HashSet;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::Context;
+
+use super::names::numbered;
+use super::range::FrameRange;
+use super::sink::{Message, STOPPED_BETWEEN, Sink};
+use super::status::Status;
+use super::target::Target;
+use super::turn::{Axis, turned, up_of};
+use super::union::{Union, swept};
+use super::{Pictures, Wanted};
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::input::contents::Contents;
+use crate::input::{FoundFrames, Input, Look, Source};
+use crate::render::{Job, render_joined};
+use crate::speak::tell;
+use crate::views::Views;
+use crate::{progress, threads};
+use pinhole::color_by::{ColorKey, KeyKind, Limit, Limits};
+use pinhole::glam::DVec3;
+use pinhole::light::environment::Environment;
+use pinhole::scene::Scene;
+use pinhole::scene_file::SceneFile;
+
+/// Notes that were told, each of them once.
+struct Notes {
+    told: HashSet<String>,
+    quiet: bool,
+}
+
+impl Notes {
+    fn tell(&mut self, note: String) {
+        if !self.quiet && !self.told.contains(&note) {
+            tell(format_args!("note: {note}"));
+            self.told.insert(note);
+        }
+    }
+}
+
+/// The pictures after the first, and how each of them differs from the one before.
+enum Rest {
+    /// Frames of the file.
+    Frames,
+    /// Views of the same scene.
+    Turntable {
+        count: usize,
+        axis: Axis,
+        framed: Scene,
+        file: Arc<SceneFile>,
+        sky: Option<Environment>,
+    },
+}
+
+/// What changes from one picture to the next.
+enum Change {
+    Frame(Box<Contents>),
+    View(Box<Look>),
+}
+
+/// The input of the first picture, and the rest.
+struct Prepared {
+    input: Input,
+    rest: Rest,
+}
+
+/// Renders all pictures and writes them.
+pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Failure> {
+    let started = Instant::now();
+    let quiet = args.report.quiet;
+    let Job { mut source, outputs, encoding, annotation, stop_rule, device, stereo } = job;
+    if quiet {
+        progress::close();
+    }
+    let mut notes = Notes { told: HashSet::new(), quiet };
+    threads::start()?;
+    let numbers = match wanted.pictures {
+        Pictures::Frames { range, camera_from } => {
+            let FoundFrames { count, note } = open_frames(&mut source, wanted)?;
+            note.into_iter().for_each(|note| notes.tell(note));
+            let all = in_range(range, count, "--frames")?;
+            let framed = camera_from.map(|frame| in_range(frame, count, "--camera-from"));
+            Numbers { framed: framed.transpose()?, all }
+        }
+        Pictures::Turntable { count } => {
+            Numbers { framed: None, all: (0..count as usize).collect() }
+        }
+    };
+    let is_done = |number: usize| {
+        let outputs = outputs.renamed(|path| numbered(path, number));
+        wanted.resume && outputs.paths().all(|path| path.is_file())
+    };
+    let total = numbers.all.len();
+    let left: Vec<usize> = numbers.all.iter().copied().filter(|number| !is_done(*number)).collect();
+    if left.len() < total {
+        let done = total - left.len();
+        notes
+            .tell(format!("{done} of {total} frames are there already and are not rendered again"));
+    }
+    let Some(&first) = left.first() else { return Ok(()) };
+    let prepare = || match wanted.pictures {
+        Pictures::Frames { .. } => frames(&mut source, &numbers, first),
+        Pictures::Turntable { .. } => turntable(&source, total, first),
+    };
+    let (prepared, opened) = device.open_beside(prepare)?;
+    let Prepared { mut input, rest } = prepared;
+    for number in &left {
+        outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
+    }
+    input.notes.drain(..).for_each(|note| notes.tell(note));
+    let encoding = annotation.apply_to(encoding.apply_to(input.encoding));
+    let encoding = encoding.with_background(input.settings.visible_background());
+    input.settings.is_transparent = encoding.transparent();
+    if input.settings.integrator.is_primary() {
+        stop_rule.check_without_light()?;
+    }
+    input.settings.notes(&input.scene).iter().for_each(|note| notes.tell(note.to_string()));
+    let annotations = annotation.for_input(&input)?;
+    let outputs = outputs.with_annotations(annotations.clone());
+    let layers = outputs.layers(&encoding);
+    let eyes = if input.eyes.is_some() { 2 } else { 1 };
+    if stereo.is_some() && eyes == 1 {
+        return Err(Failure::usage(
+            "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
+        ));
+    }
+    let size = [eyes * input.film.width(), input.film.height()];
+    wanted.target.check(&encoding, size)?;
+    let sink = Sink {
+        target: &wanted.target,
+        outputs: &outputs,
+        encoding: &encoding,
+        annotations: &annotations,
+        adapter: opened.adapter(),
+        frames_per_second: wanted.fps,
+        count: left.len(),
+        size,
+    };
+    let mut status = Status::new(left.len(), quiet);
+    let rendered = thread::scope(|scope| {
+        let (send_next, next) = sync_channel(1);
+        let (pictures, receiver) = sync_channel(1);
+        let left = &left;
+        scope.spawn(move || read(source, rest, left, &send_next));
+        let writing = scope.spawn({
+            let sink = &sink;
+            move || sink.write(&receiver)
+        });
+        let mut render = || {
+            let mut number = first;
+            loop {
+                status.show();
+                let views = Views::of(&input);
+                let image = render_joined(&input, &stop_rule, &views, layers, &opened)?;
+                drop(views);
+                if pictures.send(Message::Picture { number, image }).is_err() {
+                    // The thread that writes says why.
+                    return Ok(());
+                }
+                status.count();
+                let Ok(change) = next.recv() else { break };
+                let (following, change) = change?;
+                number = following;
+                apply(&mut input, change, &mut notes)?;
+            }
+            // If this fails, the thread that writes says why.
+            let _ = pictures.send(Message::End);
+            Ok(())
+        };
+        let rendered: Result<(), Failure> = render();
+        drop((pictures, next));
+        let written = writing.join().unwrap_or_else(|panic| resume_unwind(panic));
+        rendered.and_then(|()| Ok(written?))
+    });
+    progress::clear();
+    match rendered {
+        Err(Failure::Stopped) if status.done() > 0 && wanted.target.is_files() => {
+            Err(Failure::StoppedBetween(STOPPED_BETWEEN))
+        }
+        Ok(()) if !quiet => {
+            tell(input.report.line_of(status.done(), started.elapsed()));
+            Ok(())
+        }
+        result => result,
+    }
+}
+
+/// The numbers of pictures.
+struct Numbers {
+    /// Those that the camera frames, if these are not all.
+    framed: Option<Vec<usize>>,
+    all: Vec<usize>,
+}
+
+/// Finds the frames of the file.
+fn open_frames(source: &mut Source, wanted: &Wanted) -> Result<FoundFrames, Failure> {
+    let name = source.name();
+    source.open_frames()?.map_err(|reason| {
+        let is_movie = !matches!(wanted.target, Target::Files { .. });
+        let remedy =
+            if is_movie { "--turntable N makes a movie of one frame" } else { "remove --frames" };
+        Failure::usage(format!("{name}: {reason}; {remedy}"))
+    })
+}
+
+fn in_range(range: FrameRange, count: usize, flag: &str) -> Result<Vec<usize>, Failure> {
+    range.of(count).map_err(|error| Failure::usage(format!("{flag}: {error}")))
+}
+
+/// Reads all frames for the camera and the colors, and then the first that is rendered.
+fn frames(source: &mut Source, numbers: &Numbers, first: usize) -> Result<Prepared, Failure> {
+    let framed = numbers.framed.as_ref().unwrap_or(&numbers.all);
+    let (mut union, mut colors) = (Union::default(), None);
+    for (index, &number) in framed.iter().enumerate() {
+        progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
+        let contents = frame(source, number)?;
+        colors = joined(colors, contents.color_key());
+        union.add(&contents.scene);
+    }
+    if let Some([low, high]) = colors {
+        source.set_color_limits(Limits { low: Limit::Value(low), high: Limit::Value(high) });
+    }
+    let framed = union.scene().with_context(|| source.name())?;
+    let contents = frame(source, first)?;
+    let sky = source.sky(&contents)?;
+    let look = source.look(&contents.file, &framed, sky, None)?;
+    let input = source.input_with(contents, look)?;
+    Ok(Prepared { input, rest: Rest::Frames })
+}
+
+/// Reads one frame.
+fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
+    source.set_frame(number);
+    source.contents().map_err(|failure| match failure {
+        Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
+        other => other,
+    })
+}
+
+/// The ends of two scales together.
+fn joined(ends: Option<[f64; 2]>, key: Option<&ColorKey>) -> Option<[f64; 2]> {
+    match key.map(|key| &key.kind) {
+        Some(KeyKind::Scale(scale)) => {
+            let [low, high] = scale.scale().range();
+            Some(ends.map_or([low, high], |[l, h]| [l.min(low), h.max(high)]))
+        }
+        _ => ends,
+    }
+}
+
+/// Reads the scene, and frames the body that it sweeps while it turns.
+fn turntable(source: &Source, count: usize, first: usize) -> Result<Prepared, Failure> {
+    let contents = source.contents()?;
+    let sky = source.sky(&contents)?;
+    let file = Arc::clone(&contents.file);
+    let direction = match source.up() {
+        Some(up) => up.normalize_or(DVec3::Y),
+        None => {
+            let look = source.look(&file, &contents.scene, sky.clone(), None)?;
+            up_of(&look.parameters).unwrap_or(DVec3::Y)
+        }
+    };
+    let axis = Axis { direction, center: contents.scene.bounds_to_frame().center() };
+    let framed = swept(&contents.scene, axis.direction, axis.center);
+    let framed = framed.with_context(|| source.name())?;
+    let look = view(source, &file, &framed, sky.clone(), axis, [first, count])?;
+    let input = source.input_with(contents, look)?;
+    Ok(Prepared { input, rest: Rest::Turntable { count, axis, framed, file, sky } })
+}
+
+fn view(
+    source: &Source,
+    file: &SceneFile,
+    framed: &Scene,
+    sky: Option<Environment>,
+    axis: Axis,
+    [number, count]: [usize; 2],
+) -> Result<Look, Failure> {
+    let part = number as f64 / count as f64;
+    source.look(file, framed, sky, Some(&|camera| turned(camera, axis, part)))
+}
+
+/// Reads or makes what follows the first picture, until nobody waits for it.
+fn read(
+    mut source: Source,
+    rest: Rest,
+    left: &[usize],
+    next: &SyncSender<Result<(usize, Change), Failure>>,
+) {
+    for &number in left.iter().skip(1) {
+        let change = match &rest {
+            Rest::Frames => frame(&mut source, number).map(Box::new).map(Change::Frame),
+            Rest::Turntable { count, axis, framed, file, sky } => {
+                let look = view(&source, file, framed, sky.clone(), *axis, [number, *count]);
+                look.map(Box::new).map(Change::View)
+            }
+        };
+        let is_last = change.is_err();
+        if next.send(change.map(|change| (number, change))).is_err() || is_last {
+            return;
+        }
+    }
+}
+
+/// Turns the input of one picture into that of the next.
+fn apply(input: &mut Input, change: Change, notes: &mut Notes) -> Result<(), Failure> {
+    match change {
+        Change::Frame(mut contents) => {
+            contents.take_notes().into_iter().for_each(|note| notes.tell(note));
+            input.scene = contents.scene;
+            let checked = input.settings.check(&input.scene);
+            checked.with_context(|| input.report.path.clone())?;
+        }
+        Change::View(look) => {
+            let is_transparent = input.settings.is_transparent;
+            (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
+            input.settings.is_transparent = is_transparent;
+        }
+    }
+    Ok(())
+}

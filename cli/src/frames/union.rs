@@ -1,0 +1,156 @@
+//! The spheres of several scenes together, for one camera and one look of all of them.
+
+use std::f64::consts::{PI, TAU};
+
+use pinhole::LinearRgb;
+use pinhole::glam::{DQuat, DVec3};
+use pinhole::scene::{Scene, SceneError};
+use rayon::prelude::*;
+
+/// The most spheres that are kept. If there are more, only those stay that reach farthest in some direction, and a few
+/// others for the mean radius.
+const MOST: usize = 1 << 20;
+
+/// Number of directions in which spheres that reach far are kept. What reaches farthest in a direction between them is
+/// missed by at most 1% of its distance from the middle.
+const DIRECTIONS: usize = 256;
+
+/// Most spheres that are kept for the mean radius.
+const SAMPLE: usize = 1 << 14;
+
+/// The spheres of several scenes, each x, y, z, radius.
+#[derive(Debug, Default)]
+pub(super) struct Union {
+    spheres: Vec<[f64; 4]>,
+}
+
+impl Union {
+    /// Adds the spheres of a scene.
+    pub(super) fn add(&mut self, scene: &Scene) {
+        for chunk in scene.spheres().chunks(MOST / 2) {
+            if self.spheres.len() + chunk.len() > MOST {
+                self.reduce();
+            }
+            let origin = scene.origin();
+            self.spheres.extend(chunk.iter().map(|sphere| in_world(origin, sphere)));
+        }
+    }
+
+    /// Leaves out spheres that lie within the others.
+    fn reduce(&mut self) {
+        let spheres = &self.spheres;
+        let golden = PI * (3.0 - 5.0_f64.sqrt());
+        let farthest = |index: usize| {
+            // Directions of a spiral, which are about equally far from each other.
+            let z = 1.0 - (2 * index + 1) as f64 / DIRECTIONS as f64;
+            let (sine, cosine) = (golden * index as f64).sin_cos();
+            let rho = (1.0 - z * z).sqrt();
+            let direction = DVec3::new(rho * cosine, rho * sine, z);
+            let reach = |&[x, y, z, radius]: &[f64; 4]| direction.dot(DVec3::new(x, y, z)) + radius;
+            spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
+        };
+        let kept: Vec<_> = (0..DIRECTIONS).into_par_iter().filter_map(farthest).collect();
+        self.spheres = kept.into_iter().chain(sample(spheres)).collect();
+    }
+
+    /// Makes a scene of the spheres that are left.
+    pub(super) fn scene(self) -> Result<Scene, SceneError> {
+        Scene::from_f64(&self.spheres, LinearRgb::WHITE)
+    }
+}
+
+/// Some of the spheres, at equal steps.
+fn sample(spheres: &[[f64; 4]]) -> impl Iterator<Item = [f64; 4]> {
+    spheres.iter().step_by(spheres.len().div_ceil(SAMPLE).max(1)).copied()
+}
+
+fn in_world(origin: DVec3, sphere: &[f32; 4]) -> [f64; 4] {
+    let [x, y, z, radius] = sphere.map(f64::from);
+    let center = origin + DVec3::new(x, y, z);
+    [center.x, center.y, center.z, radius]
+}
+
+/// The body that a scene sweeps while it turns about an axis through a point, as a scene of spheres on its surface.
+pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneError> {
+    /// Directions in a half plane beside the axis.
+    const PROFILE: usize = 64;
+    /// Steps of a full turn.
+    const STEPS: usize = 72;
+    let spheres: Vec<[f64; 4]> =
+        scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
+    let farthest = |index: usize| {
+        let (sine, cosine) = (PI * (index as f64 / (PROFILE - 1) as f64 - 0.5)).sin_cos();
+        let reach = |&[x, y, z, radius]: &[f64; 4]| {
+            let offset = DVec3::new(x, y, z) - center;
+            let height = axis.dot(offset);
+            let beside = (offset - height * axis).length();
+            sine * height + cosine * beside + radius
+        };
+        spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
+    };
+    let profile: Vec<_> = (0..PROFILE).into_par_iter().filter_map(farthest).collect();
+    let mut all: Vec<[f64; 4]> = sample(&spheres).collect();
+    for step in 0..STEPS {
+        let turn = DQuat::from_axis_angle(axis, TAU * step as f64 / STEPS as f64);
+        all.extend(profile.iter().map(|&[x, y, z, radius]| {
+            let at = center + turn * (DVec3::new(x, y, z) - center);
+            [at.x, at.y, at.z, radius]
+        }));
+    }
+    Scene::from_f64(&all, LinearRgb::WHITE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn supports(scene: &Scene) -> [f64; 6] {
+        let axes = DVec3::AXES;
+        let middle = scene.bounds_to_frame().center();
+        let reach =
+            scene.subject().supports([axes[0], axes[1], axes[2], -axes[0], -axes[1], -axes[2]]);
+        let middle = [middle.x, middle.y, middle.z, -middle.x, -middle.y, -middle.z];
+        std::array::from_fn(|i| reach[i] + middle[i])
+    }
+
+    #[test]
+    fn a_union_reaches_as_far_as_its_scenes() {
+        let at = |x: f64| Scene::from_f64(&[[x, 0.0, 0.0, 1.0]], LinearRgb::WHITE).unwrap();
+        let mut union = Union::default();
+        union.add(&at(-3.0));
+        union.add(&at(5.0));
+        assert_eq!(supports(&union.scene().unwrap()), [6.0, 1.0, 1.0, 4.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_is_left_out_lies_within_the_rest() {
+        let spheres: Vec<[f64; 4]> = (0..20_000)
+            .map(|i| {
+                let part = f64::from(i) / 20_000.0;
+                let (sine, cosine) = (f64::from(i) * 2.4).sin_cos();
+                let rho = part.sqrt();
+                [rho * cosine, rho * sine, 0.5 * part, 0.01]
+            })
+            .collect();
+        let whole = Scene::from_f64(&spheres, LinearRgb::WHITE).unwrap();
+        let mut union = Union { spheres };
+        union.reduce();
+        let reduced = union.scene().unwrap();
+        assert!(reduced.len() < whole.len());
+        for (whole, reduced) in supports(&whole).into_iter().zip(supports(&reduced)) {
+            assert!((0.0..0.01).contains(&(whole - reduced)), "{whole} {reduced}");
+        }
+    }
+
+    #[test]
+    fn a_turning_rod_sweeps_a_disk() {
+        let rod = [[0.0, 0.0, 0.0, 0.5], [4.0, 1.0, 0.0, 0.5]];
+        let rod = Scene::from_f64(&rod, LinearRgb::WHITE).unwrap();
+        let swept = swept(&rod, DVec3::Y, DVec3::ZERO).unwrap();
+        let [x, y, z, left, down, back] = supports(&swept);
+        for side in [x, z, left, back] {
+            assert!((side - 4.5).abs() < 1e-6, "{side}");
+        }
+        assert!((y - 1.5).abs() < 1e-6 && (down - 0.5).abs() < 1e-6, "{y} {down}");
+    }
+}

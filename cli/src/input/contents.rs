@@ -1,0 +1,248 @@
+//! Reads what an input file holds: a scene file with its data, or a data file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, Result, anyhow};
+
+use super::{Source, default_color, extension, read};
+use crate::data::{self, DataOptions, as_usage};
+use crate::failure::Failure;
+use crate::input_format::{Format, data_format};
+use crate::progress;
+use pinhole::camera::film::Film;
+use pinhole::color_by::{ColorKey, Mapping};
+use pinhole::image::color::LinearRgb;
+use pinhole::load::{self, Loaded};
+use pinhole::scene::Scene;
+use pinhole::scene_file::{Data, DataSpheres, IntegratorKind, SceneFile};
+
+/// What a file holds. The scene may be moved out of it.
+pub(crate) struct Contents {
+    pub(crate) file: Arc<SceneFile>,
+    pub(crate) scene: Scene,
+    pub(super) found: Found,
+}
+
+/// What was found beside the spheres.
+pub(super) struct Found {
+    pub(super) notes: Vec<String>,
+    pub(super) files: Vec<PathBuf>,
+    /// Path of the image of the sky.
+    pub(super) sky_image: Option<PathBuf>,
+    pub(super) has_atoms: bool,
+    /// What colors mean, if a column gives them.
+    pub(super) color_key: Option<ColorKey>,
+    /// Where the size of the picture comes from.
+    pub(super) size_from: String,
+}
+
+/// The data of a scene file.
+struct FoundData {
+    spheres: DataSpheres,
+    /// What colors mean, if a column gives them.
+    color_key: Option<ColorKey>,
+    /// The color of spheres without one.
+    color: LinearRgb,
+    notes: Vec<String>,
+    has_atoms: bool,
+}
+
+/// Where the data of a scene file is, and the options for reading it.
+pub(super) struct DataPlace {
+    pub(super) data: Data,
+    pub(super) path: PathBuf,
+    pub(super) format: &'static load::Format,
+    pub(super) options: DataOptions,
+}
+
+impl Contents {
+    /// Returns the notes for the user, which are then empty.
+    pub(crate) fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.found.notes)
+    }
+
+    /// What colors mean, if a column gives them.
+    pub(crate) fn color_key(&self) -> Option<&ColorKey> {
+        self.found.color_key.as_ref()
+    }
+}
+
+impl Source {
+    /// Reads the spheres, but not the image of the sky.
+    pub(crate) fn contents(&self) -> Result<Contents, Failure> {
+        let path = &self.path;
+        progress::stage(format!("reading {}", path.display()));
+        let Format::Data(format) = self.format else {
+            return self.contents_of_text(&self.text()?);
+        };
+        let mut loaded = self.read_data(path, format, &self.options).map_err(as_usage)?;
+        let mut notes = std::mem::take(&mut loaded.notes);
+        let has_atoms = loaded.labels("species").is_some();
+        let file_name = || path.display().to_string();
+        let mapping = self.color.apply_to(&Mapping::default())?;
+        let color = self.options.color.unwrap_or_else(default_color);
+        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
+        notes.extend_from_slice(mapped.notes());
+        let color_key = mapped.key().cloned();
+        if scene.is_empty() {
+            notes.push(format!(
+                "{}: the file has no spheres, so the picture shows only the background",
+                path.display()
+            ));
+        }
+        let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
+        let files = vec![path.clone()];
+        let size_from = String::new();
+        let found = Found { notes, files, sky_image: None, has_atoms, color_key, size_from };
+        self.prepared(file, scene, found)
+    }
+
+    /// Returns the text of the scene file.
+    pub(super) fn text(&self) -> Result<String, Failure> {
+        let not_text = |_| {
+            anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", self.path.display())
+        };
+        Ok(String::from_utf8(read(&self.path)?).map_err(not_text)?)
+    }
+
+    /// Reads a scene from the text of a scene file, and its data.
+    pub(super) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
+        let file_name = || self.path.display().to_string();
+        let file = self.parsed(text)?;
+        let FoundData { spheres: data, color_key, color, notes, has_atoms } =
+            self.data_of(&file)?;
+        let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
+        let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
+        let sky_image = sky_file.map(|file| self.resolve(file));
+        let data_file = file.data().map(|data| self.resolve(&data.file));
+        let files = [Some(self.path.clone()), data_file, sky_image.clone()];
+        let files = files.into_iter().flatten().collect();
+        let scene = match data {
+            DataSpheres::Spheres(spheres) => file.scene(&spheres),
+            DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
+            DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
+        };
+        let scene = scene.with_context(file_name)?;
+        let size_from = String::new();
+        let found = Found { notes, files, sky_image, has_atoms, color_key, size_from };
+        self.prepared(file, scene, found)
+    }
+
+    pub(super) fn parsed(&self, text: &str) -> Result<SceneFile> {
+        let file = SceneFile::parse_in_style(text, self.light.style());
+        file.with_context(|| self.path.display().to_string())
+    }
+
+    /// Applies the flags for the film and the background.
+    fn prepared(
+        &self,
+        mut file: SceneFile,
+        scene: Scene,
+        found: Found,
+    ) -> Result<Contents, Failure> {
+        let (film, size_from) = self.film(file.film)?;
+        file.film = film;
+        file.background = self.light.background().unwrap_or(file.background);
+        Ok(Contents { file: Arc::new(file), scene, found: Found { size_from, ..found } })
+    }
+
+    /// Returns the film, and where its size comes from.
+    fn film(&self, from_file: Film) -> Result<(Film, String), Failure> {
+        let Some((width, height)) = self.size else {
+            return Ok((from_file, self.path.display().to_string()));
+        };
+        let film = Film::new(width, height)
+            .map_err(|error| Failure::usage(format!("--size: {error}")))?
+            .with_y_axis(from_file.y_axis());
+        Ok((film, "--size".to_owned()))
+    }
+
+    /// Reads a data file, or one of its frames.
+    fn read_data(
+        &self,
+        path: &Path,
+        format: &'static load::Format,
+        options: &DataOptions,
+    ) -> Result<Loaded> {
+        match &self.frames {
+            Some(frames) => frames.read(options),
+            None => data::read(path, format, options),
+        }
+    }
+
+    /// Reads the data of a scene file.
+    fn data_of(&self, file: &SceneFile) -> Result<FoundData, Failure> {
+        let Some(DataPlace { data, path, format, options }) = self.data_place(file)? else {
+            let flags = &self.options;
+            let given = [
+                ("--frame", flags.frame.is_some()),
+                ("--radius", flags.radius.is_some()),
+                ("--color", flags.color.is_some()),
+                ("--topology", flags.topology.is_some()),
+                ("--columns", !flags.columns.is_empty()),
+            ];
+            let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
+            return match given.or(self.color.given()) {
+                Some(flag) => Err(Failure::usage(format!(
+                    "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
+                    self.path.display()
+                ))),
+                None => Ok(FoundData {
+                    spheres: DataSpheres::Spheres(Vec::new()),
+                    color_key: None,
+                    color: default_color(),
+                    notes: Vec::new(),
+                    has_atoms: false,
+                }),
+            };
+        };
+        let in_scene = || self.in_scene();
+        let loaded =
+            self.read_data(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
+        let has_atoms = loaded.labels("species").is_some();
+        let mapping = self.color.apply_to(&data.mapping)?;
+        let data = Data { mapping, color: options.color, ..data };
+        let (spheres, color_key, notes) = data.apply(loaded).with_context(in_scene)?;
+        let color = options.color.unwrap_or_else(default_color);
+        Ok(FoundData { spheres, color_key, color, notes, has_atoms })
+    }
+
+    /// Finds the data of a scene file; `None` if it has none.
+    pub(super) fn data_place(&self, file: &SceneFile) -> Result<Option<DataPlace>, Failure> {
+        let flags = self.options.clone();
+        let Some(data) = file.data() else { return Ok(None) };
+        let path = self.resolve(&data.file);
+        let in_scene = || self.in_scene();
+        let extension = extension(&path);
+        let named = data.format.as_deref().and_then(load::Format::of_name);
+        let Some(format) = named.or_else(|| data_format(&path)) else {
+            let problem = if extension.as_deref() == Some("toml") {
+                anyhow!("it names another scene file; name a data file")
+            } else {
+                anyhow!(
+                    "{}: this is not the extension of a data format; a scene can use {}",
+                    path.display(),
+                    load::Format::extensions_of(|_| true)
+                )
+            };
+            return Err(problem.context(in_scene()).into());
+        };
+        let keys = DataOptions {
+            frame: data.frame,
+            radius: data.radius,
+            color: data.color,
+            topology: data.topology.as_ref().map(|file| self.resolve(file)),
+            columns: data.columns.clone(),
+        };
+        flags.check(format, "--").map_err(Failure::usage)?;
+        keys.check(format, "").map_err(|message| anyhow!(message).context(in_scene()))?;
+        let options = flags.or(keys);
+        Ok(Some(DataPlace { data: data.clone(), path, format, options }))
+    }
+
+    /// The place of the data in a scene file, for messages.
+    fn in_scene(&self) -> String {
+        format!("{}: `data`", self.path.display())
+    }
+}

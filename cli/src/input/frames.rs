@@ -1,0 +1,88 @@
+//! Several frames of one file, of which one at a time is read.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use anyhow::Result;
+
+use super::Source;
+use crate::color_flags::ColorFlags;
+use crate::data::{self, DataOptions, as_usage};
+use crate::failure::Failure;
+use crate::input_format::Format;
+use pinhole::color_by::Limits;
+use pinhole::glam::DVec3;
+use pinhole::load::{self, Loaded, Trajectory};
+
+/// A file whose frames were found.
+pub(crate) struct OpenFrames {
+    path: PathBuf,
+    file: Mutex<Trajectory>,
+}
+
+/// What was found about the frames of a file.
+pub(crate) struct FoundFrames {
+    pub(crate) count: usize,
+    /// What is wrong after the last frame, for the user.
+    pub(crate) note: Option<String>,
+}
+
+impl OpenFrames {
+    /// Reads the frame that the options name, or else the first.
+    pub(super) fn read(&self, options: &DataOptions) -> Result<Loaded> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        data::read_frame_of(&self.path, &mut file, options)
+    }
+}
+
+impl Source {
+    /// Finds the frames of the file, or of the data of a scene. `Ok(None)` means that there are none, because of the
+    /// format or the place of the data.
+    pub(crate) fn open_frames(&mut self) -> Result<Result<FoundFrames, String>, Failure> {
+        let (path, format, options) = match self.format {
+            Format::Data(format) => (self.path.clone(), format, self.options.clone()),
+            Format::Scene => match self.data_place(&self.parsed(&self.text()?)?)? {
+                Some(place) => (place.path, place.format, place.options),
+                None => return Ok(Err("this scene has no `data`".to_owned())),
+            },
+        };
+        if !format.has_frames() {
+            let with_frames = load::Format::extensions_of(load::Format::has_frames);
+            return Ok(Err(format!(
+                "files of the format {} have no frames; those of {with_frames} have",
+                format.name
+            )));
+        }
+        if path.exists() && !path.is_file() || path.as_os_str() == "-" {
+            return Ok(Err("frames are read one by one, which needs a regular file".to_owned()));
+        }
+        let options = DataOptions { frame: None, ..options };
+        let file = data::trajectory(&path, format, &options).map_err(as_usage)?;
+        let count = file.len();
+        let note = file.problem().map(|problem| {
+            format!("{}: after the {count} complete frames: {problem}", path.display())
+        });
+        self.frames = Some(OpenFrames { path, file: Mutex::new(file) });
+        Ok(Ok(FoundFrames { count, note }))
+    }
+
+    /// Chooses the frame that is read next.
+    pub(crate) fn set_frame(&mut self, frame: usize) {
+        self.options.frame = Some(frame);
+    }
+
+    /// Lets colors of a column have these limits.
+    pub(crate) fn set_color_limits(&mut self, limits: Limits) {
+        self.color = ColorFlags::with_limits(&self.color, limits);
+    }
+
+    /// The path, for messages.
+    pub(crate) fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    /// The direction that is up for the flags; `None` if the camera is that of a scene file.
+    pub(crate) fn up(&self) -> Option<DVec3> {
+        self.has_camera_of_flags().then(|| self.camera.up().unwrap_or(DVec3::Y))
+    }
+}

@@ -1,0 +1,131 @@
+//! The camera and the settings for rendering.
+
+use std::path::Path;
+
+use anyhow::{Context, Error, Result};
+
+use super::contents::{Contents, Found};
+use super::{Input, Source, read};
+use crate::failure::Failure;
+use crate::input_format::Format;
+use crate::progress;
+use crate::report::Report;
+use pinhole::camera::{Camera, CameraParameters, Viewpoint};
+use pinhole::light::environment::Environment;
+use pinhole::load::environment;
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::scene_file::SceneFile;
+
+/// A camera with its eyes, and settings, which were chosen for some spheres.
+pub(crate) struct Look {
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) eyes: Option<[Box<dyn Camera>; 2]>,
+    pub(crate) settings: RenderSettings,
+    /// The camera, with its position.
+    pub(crate) parameters: CameraParameters,
+    /// The flags for the view, if there are such.
+    view: Option<String>,
+}
+
+/// Changes a camera that has its position.
+pub(crate) type Turn<'a> = &'a dyn Fn(&CameraParameters) -> Result<CameraParameters>;
+
+impl Source {
+    /// Makes the camera and the settings for the spheres of `framed`, which need not be those that are rendered.
+    pub(crate) fn look(
+        &self,
+        file: &SceneFile,
+        framed: &Scene,
+        sky: Option<Environment>,
+        turn: Option<Turn<'_>>,
+    ) -> Result<Look, Failure> {
+        let file_name = || self.path.display().to_string();
+        let has_flags = self.has_camera_of_flags();
+        let (aspect, subject) = (file.film.aspect(), framed.subject());
+        // A scene file says where its camera stands.
+        let facing = matches!(self.format, Format::Data(_))
+            .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis));
+        let parameters = if has_flags {
+            self.camera.parameters(facing).map_err(Failure::usage)?
+        } else {
+            file.camera_parameters()
+        };
+        let made = |parameters: CameraParameters| {
+            let camera = parameters.camera(aspect, &subject)?;
+            Ok((camera, parameters.stereo_pair(aspect, &subject)?))
+        };
+        let mut placed = parameters.placed(aspect, &subject);
+        if let (Ok(placed), Some(turn)) = (&mut placed, turn) {
+            *placed = turn(placed).with_context(file_name)?;
+        }
+        let cameras = placed.and_then(|placed| Ok((placed, made(placed)?)));
+        let (parameters, (camera, eyes)) = match cameras {
+            Ok(cameras) => cameras,
+            // The scene file knows the place of the error.
+            Err(error) if has_flags => return Err(Error::new(error).context(file_name()).into()),
+            Err(error) => {
+                return Err(Error::new(file.at_camera(&error)).context(file_name()).into());
+            }
+        };
+        let kind = self.light.integrator(file.integrator());
+        let settings = file.settings(kind, framed, camera.as_ref(), sky);
+        let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
+        let view = if has_flags { self.camera.view_in_flags(facing) } else { None };
+        Ok(Look { camera, eyes, settings, parameters, view })
+    }
+
+    /// Whether the flags say what the camera is, and not the scene file.
+    pub(super) fn has_camera_of_flags(&self) -> bool {
+        self.camera.is_given || matches!(self.format, Format::Data(_))
+    }
+
+    /// Makes the input from what was read and from the look of the picture.
+    pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
+        let Contents { file, scene, found } = contents;
+        let Found { notes, files, sky_image, color_key, has_atoms, size_from } = found;
+        let report = Report {
+            path: self.path.display().to_string(),
+            spheres: scene.len(),
+            has_atoms,
+            style: file.style(),
+            view: look.view,
+        };
+        let (film, encoding, annotations) = (file.film, file.encoding, file.annotations.clone());
+        let data = self.data(&file)?;
+        let own_spheres = file.spheres().collect();
+        let Look { camera, eyes, settings, parameters, .. } = look;
+        Ok(Input {
+            scene,
+            camera,
+            eyes,
+            film,
+            settings,
+            encoding,
+            color_key,
+            annotations,
+            size_from,
+            notes,
+            files,
+            report,
+            parameters,
+            data,
+            own_spheres,
+            sky_image,
+        })
+    }
+
+    /// Reads the image of the sky, if there is one.
+    pub(crate) fn sky(&self, contents: &Contents) -> Result<Option<Environment>> {
+        let path = contents.found.sky_image.as_deref();
+        path.map(|path| self.environment(path)).transpose()
+    }
+
+    fn environment(&self, path: &Path) -> Result<Environment> {
+        let in_scene = || format!("{}: `[sky]`", self.path.display());
+        progress::stage(format!("reading {}", path.display()));
+        let bytes = read(path).with_context(in_scene)?;
+        let read = environment::read(&bytes);
+        read.with_context(|| path.display().to_string()).with_context(in_scene)
+    }
+}
