@@ -10,6 +10,7 @@ mod arrays;
 mod bad_input;
 mod colors;
 mod file_info;
+mod frames;
 mod generate;
 mod good_input;
 mod interrupt;
