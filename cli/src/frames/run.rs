@@ -51,13 +51,17 @@ enum Rest {
     /// Frames of the file.
     Frames,
     /// Views of the same scene.
-    Turntable {
-        count: usize,
-        axis: Axis,
-        framed: Scene,
-        file: Arc<SceneFile>,
-        sky: Option<Environment>,
-    },
+    Turntable(Box<Turntable>),
+}
+
+/// Views of one scene.
+struct Turntable {
+    count: usize,
+    axis: Axis,
+    /// What the camera frames.
+    framed: Scene,
+    file: Arc<SceneFile>,
+    sky: Option<Environment>,
 }
 
 /// What changes from one picture to the next.
@@ -149,7 +153,7 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
         let (send_next, next) = sync_channel(1);
         let (pictures, receiver) = sync_channel(1);
         let left = &left;
-        scope.spawn(move || read(source, rest, left, &send_next));
+        scope.spawn(move || read(source, &rest, left, &send_next));
         let writing = scope.spawn({
             let sink = &sink;
             move || sink.write(&receiver)
@@ -158,10 +162,11 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
             let mut number = first;
             loop {
                 status.show();
-                let views = Views::of(&input);
-                let image = render_joined(&input, &stop_rule, &views, layers, &opened)?;
-                drop(views);
-                if pictures.send(Message::Picture { number, image }).is_err() {
+                let image = {
+                    let views = Views::of(&input);
+                    render_joined(&input, &stop_rule, &views, layers, &opened)?
+                };
+                if pictures.send(Message::Picture { number, image: Box::new(image) }).is_err() {
                     // The thread that writes says why.
                     return Ok(());
                 }
@@ -271,36 +276,33 @@ fn turntable(source: &Source, count: usize, first: usize) -> Result<Prepared, Fa
     let axis = Axis { direction, center: contents.scene.bounds_to_frame().center() };
     let framed = swept(&contents.scene, axis.direction, axis.center);
     let framed = framed.with_context(|| source.name())?;
-    let look = view(source, &file, &framed, sky.clone(), axis, [first, count])?;
+    let turntable = Turntable { count, axis, framed, file, sky };
+    let look = turntable.view(source, first)?;
     let input = source.input_with(contents, look)?;
-    Ok(Prepared { input, rest: Rest::Turntable { count, axis, framed, file, sky } })
+    Ok(Prepared { input, rest: Rest::Turntable(Box::new(turntable)) })
 }
 
-fn view(
-    source: &Source,
-    file: &SceneFile,
-    framed: &Scene,
-    sky: Option<Environment>,
-    axis: Axis,
-    [number, count]: [usize; 2],
-) -> Result<Look, Failure> {
-    let part = number as f64 / count as f64;
-    source.look(file, framed, sky, Some(&|camera| turned(camera, axis, part)))
+impl Turntable {
+    /// Makes the camera and the light of one picture.
+    fn view(&self, source: &Source, number: usize) -> Result<Look, Failure> {
+        let part = number as f64 / self.count as f64;
+        let turn = |camera: &_| turned(camera, self.axis, part);
+        source.look(&self.file, &self.framed, self.sky.clone(), Some(&turn))
+    }
 }
 
 /// Reads or makes what follows the first picture, until nobody waits for it.
 fn read(
     mut source: Source,
-    rest: Rest,
+    rest: &Rest,
     left: &[usize],
     next: &SyncSender<Result<(usize, Change), Failure>>,
 ) {
     for &number in left.iter().skip(1) {
-        let change = match &rest {
+        let change = match rest {
             Rest::Frames => frame(&mut source, number).map(Box::new).map(Change::Frame),
-            Rest::Turntable { count, axis, framed, file, sky } => {
-                let look = view(&source, file, framed, sky.clone(), *axis, [number, *count]);
-                look.map(Box::new).map(Change::View)
+            Rest::Turntable(turntable) => {
+                turntable.view(&source, number).map(Box::new).map(Change::View)
             }
         };
         let is_last = change.is_err();

@@ -24,7 +24,7 @@ pub(super) const STOPPED_BETWEEN: &str =
 pub(super) enum Message {
     Picture {
         number: usize,
-        image: Image,
+        image: Box<Image>,
     },
     /// There are no more pictures. Without it, a movie is not complete.
     End,

@@ -38,7 +38,7 @@ pub(super) fn turned(camera: &CameraParameters, axis: Axis, part: f64) -> Result
 pub(super) fn up_of(camera: &CameraParameters) -> Option<DVec3> {
     let document = Value::try_from(camera).ok()?;
     let up = document.as_table()?.values().find_map(|table| vector(table.get("up")?))?;
-    (up.length() > 0.0).then(|| up.normalize())
+    up.try_normalize()
 }
 
 fn vector(value: &Value) -> Option<DVec3> {

@@ -119,7 +119,11 @@ mod tests {
         let mut union = Union::default();
         union.add(&at(-3.0));
         union.add(&at(5.0));
-        assert_eq!(supports(&union.scene().unwrap()), [6.0, 1.0, 1.0, 4.0, 1.0, 1.0]);
+        let reach =
+            supports(&union.scene().unwrap()).into_iter().zip([6.0, 1.0, 1.0, 4.0, 1.0, 1.0]);
+        for (found, expected) in reach {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
     }
 
     #[test]

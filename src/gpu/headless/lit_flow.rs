@@ -118,6 +118,9 @@ impl<'a> Flow<'a> {
         {
             self.record(step, Some(slice));
             self.gathered = slice.count() * weight;
+            if left.is_empty() && step.moment == Some(Moment::Accumulated) {
+                self.accumulated.push((self.recorder.tile, self.end));
+            }
             self.send(after)?;
         }
         Ok(())
