@@ -152,6 +152,14 @@ fn one_pass(headless: &'static Headless) {
             assert_eq!(one, several, "{name}");
         }
     }
+    // A picture of several tiles, whose work is divided into several submissions.
+    let mut view = named("studio_ambient_occlusion");
+    view.film = Film::new(800, 600).unwrap();
+    view.settings.sampling.samples = 9;
+    let [one, several] = [headless, &several].map(|device| {
+        device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
+    });
+    assert!(one == several, "the large picture differs");
 }
 
 /// Samples that are recorded one by one and summed in f64 give the same picture, regardless of the number of samples in
