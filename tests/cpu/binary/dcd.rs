@@ -131,6 +131,9 @@ fn a_trajectory_seeks() {
     let loaded = trajectory.frame(1).unwrap();
     assert_eq!(spheres(&loaded)[0][0], 100.25);
     assert_eq!(loaded.labels("species").unwrap().names, ["O"]);
+    // One frame alone has the note that it has from memory.
+    let alone = pinhole::load::open(&path, &options.with_frame(1)).unwrap();
+    assert!(alone.notes[0].contains("frame 2 takes 72 bytes"), "{:?}", alone.notes);
 }
 
 #[test]
