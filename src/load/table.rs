@@ -8,6 +8,7 @@ use glam::DVec3;
 use names::{
     COLOR_NAMES, COLORS, DIAMETERS, ELEMENTS, OPACITIES, POSITIONS, RADII, Sets, TRANSPARENCIES,
 };
+#[allow(unused_imports, reason = "not every format asks what names mean")]
 pub(super) use names::{has_positions, is_element, must_be_numbers};
 
 use super::elements::{self, appearance};
