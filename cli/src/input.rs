@@ -11,9 +11,11 @@ use super::camera::CameraFlags;
 use super::color_flags::ColorFlags;
 use super::data::{self, DataOptions, as_usage};
 use super::failure::Failure;
+use super::found::{Found, FoundData, default_color};
 pub(super) use super::input_format::extension;
 pub(super) use super::input_format::parse_size;
 use super::input_format::{Format, data_format};
+use super::kind_color;
 use super::light::LightFlags;
 use super::progress;
 pub(super) use super::read_file::read;
@@ -21,7 +23,7 @@ use super::report::Report;
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View, Viewpoint};
-use pinhole::color_by::{ColorKey, Mapping};
+use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
@@ -29,7 +31,7 @@ use pinhole::load::{self, environment};
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
 use pinhole::scene::sphere::Sphere;
-use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{Data, DataSpheres, IntegratorKind, SceneFile};
 use pinhole::style::Style;
 
 /// Everything that a render needs from its input.
@@ -184,10 +186,17 @@ impl Source {
             return self.scene_from_text(&text);
         };
         let mut loaded = data::read(path, format, &self.options).map_err(as_usage)?;
-        let mut notes = std::mem::take(&mut loaded.notes);
         let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
-        let mapping = self.color.apply_to(&Mapping::default())?;
+        let mut mapping = self.color.apply_to(&Mapping::default())?;
+        loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
+        let mut notes = std::mem::take(&mut loaded.notes);
+        let kinds = kind_color::by_kind(&loaded, &self.options);
+        let kinds = kinds.filter(|_| mapping.color.is_none());
+        if let Some(by) = &kinds {
+            notes.push(format!("{}: {}", path.display(), kind_color::note(by)));
+            mapping.color = Some(by.clone());
+        }
         let color = self.options.color.unwrap_or_else(default_color);
         let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
         notes.extend_from_slice(mapped.notes());
@@ -200,12 +209,12 @@ impl Source {
         }
         let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
         let facing = scene.subject().flat_axis().map(Viewpoint::on_axis);
-        let files = vec![path.clone()];
+        let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
         let facing = Some(facing.unwrap_or(Viewpoint::OBLIQUE));
         self.input(
             file,
             scene,
-            Found { notes, files, sky: None, sky_image: None, has_atoms, facing, color_key },
+            Found { notes, files, sky: None, sky_image: None, has_atoms, facing, color_key, kinds },
         )
     }
 
@@ -221,8 +230,11 @@ impl Source {
         let sky_file = sky_file.map(|file| self.resolve(file));
         let sky = sky_file.as_deref().map(|path| self.environment(path)).transpose()?;
         let data_file = file.data().map(|data| self.resolve(&data.file));
-        let files =
-            [Some(self.path.clone()), data_file, sky_file.clone()].into_iter().flatten().collect();
+        let topology = file.data().and_then(|data| data.topology.as_ref());
+        let topology =
+            self.options.topology.clone().or_else(|| topology.map(|file| self.resolve(file)));
+        let files = [Some(self.path.clone()), data_file, topology, sky_file.clone()];
+        let files = files.into_iter().flatten().collect();
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
@@ -232,7 +244,16 @@ impl Source {
         self.input(
             file,
             scene,
-            Found { notes, files, sky, sky_image: sky_file, has_atoms, facing: None, color_key },
+            Found {
+                notes,
+                files,
+                sky,
+                sky_image: sky_file,
+                has_atoms,
+                facing: None,
+                color_key,
+                kinds: None,
+            },
         )
     }
 
@@ -272,9 +293,10 @@ impl Source {
             has_atoms: found.has_atoms,
             style: file.style(),
             view: if has_flags { self.camera.view_in_flags(found.facing) } else { None },
+            color_by: found.kinds.as_ref().map(|by| by.column.clone()),
         };
         let (encoding, annotations) = (file.encoding, file.annotations.clone());
-        let data = self.data(&file)?;
+        let data = self.data(&file, found.kinds)?;
         let own_spheres = file.spheres().collect();
         let parameters = placed;
         let Found { notes, files, sky_image, color_key, .. } = found;
@@ -299,7 +321,7 @@ impl Source {
     }
 
     /// Returns the data with its keys, over which flags take precedence.
-    fn data(&self, file: &SceneFile) -> Result<Option<Data>, Failure> {
+    fn data(&self, file: &SceneFile, kinds: Option<ColorBy>) -> Result<Option<Data>, Failure> {
         let flags = self.options.clone();
         let mut data = match self.format {
             Format::Data(format) => Data {
@@ -325,6 +347,7 @@ impl Source {
             data.columns = flags.columns;
         }
         data.mapping = self.color.apply_to(&data.mapping)?;
+        data.mapping.color = data.mapping.color.or(kinds);
         Ok(Some(data))
     }
 
@@ -414,32 +437,4 @@ impl Source {
             .with_y_axis(from_file.y_axis());
         Ok((film, "--size".to_owned()))
     }
-}
-
-/// The data of a scene file.
-struct FoundData {
-    spheres: DataSpheres,
-    /// What colors mean, if a column gives them.
-    color_key: Option<ColorKey>,
-    /// The color of spheres without one.
-    color: LinearRgb,
-    notes: Vec<String>,
-    has_atoms: bool,
-}
-
-/// What was found beside the spheres.
-struct Found {
-    notes: Vec<String>,
-    files: Vec<PathBuf>,
-    /// The image of the sky, and its path.
-    sky: Option<Environment>,
-    sky_image: Option<PathBuf>,
-    has_atoms: bool,
-    /// Where the camera stands if no flag says it; `None` leaves that to the scene file.
-    facing: Option<Viewpoint>,
-    color_key: Option<ColorKey>,
-}
-
-fn default_color() -> LinearRgb {
-    LinearRgb::from_srgb8(DEFAULT_COLOR)
 }

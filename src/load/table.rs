@@ -11,7 +11,7 @@ use names::{
 #[allow(unused_imports, reason = "not every format asks what names mean")]
 pub(super) use names::{has_positions, is_element, must_be_numbers};
 
-use super::elements::{self, appearance};
+use super::elements::{UnknownSpecies, appearance};
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
@@ -160,16 +160,16 @@ impl Table {
             .map(|element_of| parallel::map(spheres.len(), |row| element_of(row).color));
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
-            named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
+            named.filter(|(_, element)| !element.is_element).map(|(name, _)| name.clone())
         });
-        let unknown: Vec<_> = unknown.collect();
-        if colors.is_none() || !gives_radii {
-            notes.extend(elements::unknown_note(&unknown, "the file gives a color or radius or "));
-        }
+        let lacks_radius = !gives_radii && options.radius.is_none();
+        let unknown = UnknownSpecies::new(unknown.collect(), colors.is_none(), lacks_radius);
+        notes.extend(unknown.as_ref().map(UnknownSpecies::note));
         let colors = colors.or(by_element);
         let mut loaded = Loaded::new(spheres);
         loaded.colors = colors;
         loaded.opacities = opacities;
+        loaded.unknown = unknown;
         self.note_what_is_unused(&mut notes);
         loaded.notes = notes;
         let species = species.map(|labels| TableColumn::labels("species", labels));
