@@ -72,7 +72,7 @@ mod tests {
             let all = ["pinhole"].into_iter().chain(line.split(' '));
             let error = Arguments::try_parse_from(all).unwrap_err();
             let message = message(&error, &arguments).unwrap();
-            let flag = arguments.iter().find_map(|word| word.starts_with('-').then_some(word));
+            let flag = arguments.iter().find(|word| word.starts_with('-'));
             let flag = flag.unwrap().split('=').next().unwrap();
             assert!(message.contains(&format!("'{flag}' found; {hint}")), "{line}: {message}");
         }

@@ -111,7 +111,10 @@ impl Data {
             }
             let element = element_at(index);
             let mut surface = element.map_or(self.surface, |element| element.surface);
-            surface.opacity *= sphere.surface.opacity;
+            // Columns take precedence over what the file says by itself, here too.
+            if self.mapping.opacity.is_none() {
+                surface.opacity *= sphere.surface.opacity;
+            }
             sphere.surface = mapped.surface(surface, index);
             if let Some(Element { radius, color, .. }) = element {
                 // Columns take precedence over tables of elements.

@@ -2,11 +2,12 @@
 
 use crate::support::{Folder, SCENE, WATER, decode};
 
-const DATA: [(&str, &str); 5] = [
+const DATA: [(&str, &str); 6] = [
     ("water.xyz", WATER),
     ("scene.toml", SCENE),
     ("beads.csv", "x,y,z,d,w,t\n0,0,0,1,0.5,1\n1,0,0.5,0.7,0.9,10\n0,2,0,1.5,nan,30\n"),
     ("kinds.csv", "x,y,z,species\n0,0,0,head\n1,2,0,tail\n3,0,0,head\n"),
+    ("clear.csv", "x,y,z,radius,alpha,q\n0,0,0,1,51,1\n0,0.5,1,1,102,0.5\n3,0,0,1,255,0.2\n"),
     ("plain.txt", "0,0,0,1\n1,2,0,2\n3,0,0,3.5\n"),
 ];
 
@@ -35,6 +36,8 @@ fn a_printed_scene_gives_the_same_bytes() {
         "beads.csv --size 60x45 --radius-by d*0.5 --opacity-by w --emission-by t*2 --color-by t --log --samples 2",
         "beads.csv --size 30x20 --style fast --radius-by d --color-by w --missing-color tomato",
         "kinds.csv --size 30x20 --legend --samples 2",
+        "clear.csv --size 30x20 --samples 2",
+        "clear.csv --size 30x20 --samples 2 --opacity-by q",
         "kinds.csv --size 30x20 --color navy --samples 2",
         "plain.txt --format csv --columns x,y,z,q --size 30x20 --color-by q --samples 2",
         "scene.toml --camera thin-lens --aperture-radius 0.1 --samples 2",
@@ -137,6 +140,17 @@ fn views_that_contradict_are_refused() {
             picture(&folder, &format!("water.xyz --size 12x9 --samples 1 --view {view} {up}"));
         }
     }
+}
+
+/// Opacities of a file itself are not lost where no scene file asks for them.
+#[test]
+fn a_file_may_say_how_clear_its_spheres_are() {
+    let folder = Folder::with(&DATA);
+    let small = "clear.csv --size 30x20 --samples 2";
+    let own = picture(&folder, small);
+    std::fs::write(folder.path("q.csv"), DATA[4].1.replace("alpha", "beta")).unwrap();
+    assert!(own != picture(&folder, "q.csv --size 30x20 --samples 2"));
+    assert!(own != picture(&folder, &format!("{small} --opacity-by q")));
 }
 
 /// Kinds that are no elements are told apart, unless a flag says otherwise.
