@@ -24,6 +24,9 @@ use tempfile::TempDir;
 
 #[path = "../tests/support/arrays.rs"]
 mod arrays;
+#[allow(dead_code, reason = "the tests of the readers use all of it")]
+#[path = "../tests/support/binary_files/mod.rs"]
+mod binary_files;
 #[path = "../tests/support/damage.rs"]
 mod damage;
 #[path = "../tests/support/seeds/mod.rs"]

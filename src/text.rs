@@ -39,7 +39,14 @@ pub(crate) fn shortened(text: &str) -> String {
 }
 
 /// The text without the byte order mark that some editors put before UTF-8.
-#[cfg(any(feature = "table", feature = "vtk"))]
+#[cfg(any(
+    feature = "csv",
+    feature = "lammps",
+    feature = "mmcif",
+    feature = "pdb",
+    feature = "vtk",
+    feature = "xyz"
+))]
 pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }

@@ -5,7 +5,6 @@ use clap::{Args, ValueEnum};
 use super::failure::Failure;
 use super::input::Input;
 use super::picture::PictureFormat;
-use super::speak::tell;
 use pinhole::LinearRgb;
 use pinhole::annotate::{
     AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
@@ -144,8 +143,8 @@ impl AnnotationFlags {
         scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
     }
 
-    /// The annotations of a picture. Notes are told to the user.
-    pub(super) fn for_input(&self, input: &Input) -> Result<Annotations, Failure> {
+    /// What is to be drawn on the picture of an input: what its scene file says, over which flags take precedence.
+    pub(super) fn plan_for(&self, input: &Input) -> AnnotationPlan {
         let (mut file, flags) = (input.annotations.clone(), self.plan.clone());
         if let Some(legend) = file.legend.as_mut().filter(|_| self.has_new_column) {
             legend.title = None;
@@ -157,20 +156,29 @@ impl AnnotationFlags {
             }),
             (flag, key) => flag.or(key),
         };
-        let plan = AnnotationPlan {
+        AnnotationPlan {
             legend,
             scale_bar: flags.scale_bar.or(file.scale_bar),
             labels: file.labels.into_iter().chain(flags.labels).collect(),
             text_scale: flags.text_scale.or(file.text_scale),
             color: flags.color.or(file.color),
             panel: flags.panel.or(file.panel),
-        };
+        }
+    }
+
+    /// The annotations of a picture. Notes are given to `note`.
+    pub(super) fn for_input(
+        &self,
+        input: &Input,
+        note: impl Fn(&dyn std::fmt::Display),
+    ) -> Result<Annotations, Failure> {
+        let plan = self.plan_for(input);
         if plan.is_empty() {
             return Ok(Annotations::default());
         }
         if self.format == Some(PictureFormat::Exr) {
-            tell(
-                "note: an EXR picture stores the light unchanged, so annotations are not drawn; write a .png for them",
+            note(
+                &"an EXR picture stores the light unchanged, so annotations are not drawn; write a .png for them",
             );
             return Ok(Annotations::default());
         }
@@ -181,7 +189,7 @@ impl AnnotationFlags {
             AnnotationError::NoKey => Failure::usage(format!("{error}, with --color-by COLUMN")),
             error => Failure::usage(error.to_string()),
         })?;
-        notes.iter().for_each(|note| tell(format_args!("note: {note}")));
+        notes.iter().for_each(|text| note(text));
         Ok(annotations)
     }
 }

@@ -142,12 +142,14 @@ fn measure(
     let clock = AdapterReport::of(headless).clock();
     let rays = film.pixel_count();
     let wall = |times: &[TraceTime]| Spread::of(times.iter().map(|time| Some(time.wall)));
-    let device = |times: &[TraceTime]| Spread::of(times.iter().map(|time| time.device));
+    // The clock of a software device says nothing about the work.
+    let has_clock = clock == DEVICE_CLOCK;
+    let of_device = |time: &TraceTime| time.device.filter(|_| has_clock);
+    let device = |times: &[TraceTime]| Spread::of(times.iter().map(of_device));
     let (trace_wall, trace_device) = (wall(&nearest), device(&nearest));
     let (any_wall, any_device) = (wall(&any), device(&any));
     let rate = |wall: Option<Spread>, device: Option<Spread>| {
-        let spread = if clock == DEVICE_CLOCK { device.or(wall) } else { wall };
-        spread.map(|spread| rays as f64 / spread.median_seconds)
+        device.or(wall).map(|spread| rays as f64 / spread.median_seconds)
     };
     Ok(RunReport {
         choice: choice.to_string(),

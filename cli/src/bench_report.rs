@@ -49,7 +49,7 @@ pub(super) struct RunReport {
     /// Time of the first picture, including the building of pipelines and the copy back to the host.
     pub(super) first_render_seconds: f64,
     pub(super) trace_wall: Option<Spread>,
-    /// Tracing time by the device's clock, if it has one.
+    /// Tracing time by the device's clock, if it has one that measures work.
     pub(super) trace_device: Option<Spread>,
     pub(super) any_wall: Option<Spread>,
     pub(super) any_device: Option<Spread>,
@@ -92,10 +92,15 @@ impl Spread {
 impl BenchReport {
     pub(super) fn heading(&self) -> String {
         let Self { version, adapter, reps, .. } = self;
+        let clock = adapter.clock();
+        let why = if clock == DEVICE_CLOCK {
+            ""
+        } else {
+            "; no device times, because the clock of a software device measures when work was queued, not when it ran"
+        };
         format!(
-            "pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {}\n",
+            "pinhole {version}\n{}\nreps: {reps}; rates by the clock of the {clock}{why}\n",
             adapter.line(),
-            adapter.clock()
         )
     }
 }

@@ -24,7 +24,7 @@ pub(super) use look::Look;
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};
-use pinhole::color_by::ColorKey;
+use pinhole::color_by::{ColorBy, ColorKey};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::render::RenderSettings;
@@ -199,7 +199,7 @@ impl Source {
     }
 
     /// Returns the data with its keys, over which flags take precedence.
-    fn data(&self, file: &SceneFile) -> Result<Option<Data>, Failure> {
+    fn data(&self, file: &SceneFile, kinds: Option<ColorBy>) -> Result<Option<Data>, Failure> {
         let flags = self.options.clone();
         let mut data = match self.format {
             Format::Data(format) => Data {
@@ -225,6 +225,7 @@ impl Source {
             data.columns = flags.columns;
         }
         data.mapping = self.color.apply_to(&data.mapping)?;
+        data.mapping.color = data.mapping.color.or(kinds);
         Ok(Some(data))
     }
 

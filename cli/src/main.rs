@@ -39,6 +39,7 @@ mod info;
 mod input;
 mod input_format;
 mod interrupt;
+mod kind_color;
 mod light;
 mod memory;
 mod output;
@@ -58,9 +59,12 @@ mod stop_rule;
 #[cfg(feature = "gpu")]
 mod table;
 mod threads;
+mod unknown_flag;
 mod verify;
+mod verify_lit;
 mod verify_output;
 mod verify_page;
+mod verify_page_paths;
 mod verify_paths;
 mod verify_pictures;
 mod verify_report;
@@ -132,11 +136,21 @@ fn explain(error: &clap::Error) -> ExitCode {
             tell_all(&text);
             failure::USAGE.into()
         }
+        ErrorKind::UnknownArgument => {
+            let arguments: Vec<String> =
+                std::env::args_os().skip(1).map(|word| word.to_string_lossy().into()).collect();
+            tell(unknown_flag::message(error, &arguments).as_deref().unwrap_or(one_message(&text)));
+            failure::USAGE.into()
+        }
         _ => {
-            let message = text.split("\n\nUsage:").next().unwrap_or_default();
-            let message = message.split("\n\nFor more information").next().unwrap_or_default();
-            tell(message);
+            tell(one_message(&text));
             failure::USAGE.into()
         }
     }
+}
+
+/// The message of an error without the usage, which would make it longer than a line.
+fn one_message(text: &str) -> &str {
+    let message = text.split("\n\nUsage:").next().unwrap_or_default();
+    message.split("\n\nFor more information").next().unwrap_or_default()
 }

@@ -6,15 +6,18 @@ use anyhow::{Context, Result, anyhow};
 
 use super::input::Input;
 use super::speak::answer;
+use pinhole::annotate::AnnotationPlan;
 use pinhole::image::encoding::Encoding;
 use pinhole::internals::text::one_line;
 use pinhole::scene_file::{Contents, write};
 
-/// Writes the scene file to standard output. `encoding` has the flags about the picture's file.
-pub(super) fn print(input: &Input, encoding: Encoding) -> Result<()> {
+/// Writes the scene file to standard output. `encoding` and `annotations` have the flags about the picture's file and
+/// about what is drawn on it.
+pub(super) fn print(input: &Input, encoding: Encoding, annotations: AnnotationPlan) -> Result<()> {
     let contents = Contents {
         film: input.film,
         encoding,
+        annotations,
         camera: input.parameters,
         settings: &input.settings,
         sky_image: input.sky_image.as_deref().map(named).transpose()?,

@@ -1,18 +1,21 @@
-//! Shows the progress of the program on one line of standard error, if that is a terminal. The line is removed at the
-//! end.
+//! Shows the progress of the program on one line of standard error, if that is a terminal. The line fits the terminal,
+//! and is removed at the end. Where standard error is no terminal, a long render writes a line now and then.
 //!
 //! There is one line for the whole program, so that every message can hide it while it is printed.
 
 use std::borrow::Cow;
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// The progress line of the program.
 static LINE: Mutex<Line> =
-    Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false });
+    Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
+
+/// The time between two lines where standard error is no terminal.
+const PLAIN: Duration = Duration::from_secs(10);
 
 struct Line {
     bar: Option<ProgressBar>,
@@ -21,6 +24,31 @@ struct Line {
     /// Whether the line shows the progress of all frames, and not that of one picture.
     is_held: bool,
     is_closed: bool,
+    /// The lines without a terminal, since the first part of a picture.
+    plain: Option<Plain>,
+}
+
+/// When lines are due where standard error is no terminal.
+struct Plain {
+    start: Instant,
+    next: Instant,
+}
+
+impl Plain {
+    fn new(now: Instant) -> Self {
+        Self { start: now, next: now + PLAIN }
+    }
+
+    /// The line about a part of the picture, if one is due.
+    fn line(&mut self, now: Instant, part: f64, message: Option<&str>) -> Option<String> {
+        if now < self.next {
+            return None;
+        }
+        self.next = now + PLAIN;
+        let (percent, seconds) = (100.0 * part, now.duration_since(self.start).as_secs_f64());
+        let message = message.map_or(String::new(), |message| format!("; {message}"));
+        Some(format!("rendering: {percent:.0}% after {seconds:.0} s{message}"))
+    }
 }
 
 fn line() -> MutexGuard<'static, Line> {
@@ -49,7 +77,7 @@ impl Line {
 pub(super) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() && !line.is_held {
-        let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
+        let bar = line.show(ProgressBar::new_spinner(), "{spinner} {wide_msg}", None);
         bar.set_message(pinhole::internals::text::one_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
@@ -84,19 +112,28 @@ const STEPS: u64 = 10_000;
 
 /// Shows the fraction of the picture that is traced, from 0 to 1.
 pub(super) fn tracing(part: f64) {
-    show_part(part, "tracing [{bar:40}] {percent}%, {eta} left", None);
+    show_part(part, "tracing [{wide_bar}] {percent}%, {eta} left", None);
 }
 
 /// Shows the fraction of a lit picture that is done, from 0 to 1, with a message.
 #[cfg(feature = "gpu")]
 pub(super) fn rendering(part: f64, message: String) {
-    let template = "rendering [{bar:20}] {percent}%, {eta} left; {wide_msg}";
+    let template = "rendering {percent}%, {eta} left; {wide_msg}";
     show_part(part, template, Some(message));
 }
 
 fn show_part(part: f64, template: &str, message: Option<String>) {
     let mut line = line();
-    if !line.is_seen() || line.is_held {
+    if line.is_closed || line.is_held {
+        return;
+    }
+    if !line.is_seen() {
+        let now = Instant::now();
+        let plain = line.plain.get_or_insert_with(|| Plain::new(now));
+        let due = plain.line(now, part, message.as_deref());
+        // To tell it needs the lock.
+        drop(line);
+        due.iter().for_each(super::speak::tell);
         return;
     }
     if line.total != Some(STEPS) {
@@ -122,7 +159,7 @@ pub(super) fn while_hidden<T>(write: impl FnOnce() -> T) -> T {
 /// Removes the line.
 pub(super) fn clear() {
     let mut line = line();
-    line.total = None;
+    (line.total, line.plain) = (None, None);
     if let Some(bar) = line.bar.take() {
         bar.finish_and_clear();
     }
@@ -132,4 +169,23 @@ pub(super) fn clear() {
 pub(super) fn close() {
     clear();
     line().is_closed = true;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_terminal_a_line_comes_every_ten_seconds() {
+        let start = Instant::now();
+        let after = |seconds| start + Duration::from_secs(seconds);
+        let mut plain = Plain::new(start);
+        let lines: Vec<_> = (0..35)
+            .filter_map(|second| plain.line(after(second), second as f64 / 40.0, Some("more")))
+            .collect();
+        let wanted = [(25, 10), (50, 20), (75, 30)];
+        let wanted = wanted.map(|(part, time)| format!("rendering: {part}% after {time} s; more"));
+        assert_eq!(lines, wanted);
+        assert_eq!(plain.line(after(41), 1.0, None).unwrap(), "rendering: 100% after 41 s");
+    }
 }

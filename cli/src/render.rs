@@ -91,7 +91,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.report.print_scene {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
-        return Ok(print_scene::print(&input, job.encoding.apply_to(input.encoding))?);
+        let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
+        return Ok(print_scene::print(&input, encoding, job.annotation.plan_for(&input))?);
     }
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
@@ -104,7 +105,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         job.stop_rule.check_without_light()?;
     }
     input.settings.notes(&input.scene).iter().for_each(|text| note(text));
-    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input)?);
+    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input, note)?);
     let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {

@@ -28,6 +28,8 @@ pub(super) struct Report {
     pub(super) style: Option<Style>,
     /// The flags for the view, if there are such.
     pub(super) view: Option<String>,
+    /// The column that colors the spheres without a flag that names it.
+    pub(super) color_by: Option<String>,
 }
 
 impl Report {
@@ -46,7 +48,11 @@ impl Report {
         let noun = if self.has_atoms { "atom" } else { "sphere" };
         let plural = if self.spheres == 1 { "" } else { "s" };
         let style = self.style.map(|style| format!("--style {}", style.name()));
-        let flags: Vec<String> = style.into_iter().chain(self.view.clone()).collect();
+        let flags: Vec<String> = style
+            .into_iter()
+            .chain(self.view.clone())
+            .chain(self.color_by.as_ref().map(|column| format!("--color-by {column}")))
+            .collect();
         let flags = if flags.is_empty() { String::new() } else { format!("; {}", flags.join(" ")) };
         let (path, count) = (&self.path, grouped(self.spheres));
         format!("{path}: {start}{count} {noun}{plural}{flags}; {:.1} s", elapsed.as_secs_f64())

@@ -8,6 +8,7 @@ use super::args::VerifyArgs;
 use super::failure::Failure;
 use super::input::read;
 use super::speak::answer;
+use super::verify_lit::LitPicture;
 use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads};
@@ -15,10 +16,10 @@ use pinhole::verify::run_file::{self, Run};
 use pinhole::verify::{Certificate, Checker, PathCertificate, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    let (run, outputs, paths) = match (&args.replay, &args.path) {
+    let Recorded { run, outputs, paths, lit } = match (&args.replay, &args.path) {
         (Some(path), _) => {
             let (run, outputs) = replayed(path, args)?;
-            (run, outputs, None)
+            Recorded { run, outputs, paths: None, lit: None }
         }
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
@@ -30,7 +31,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let report = Report::new(&run, &certificate, paths.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
-    outputs.write(&run, &certificate, &report)?;
+    outputs.write(&run, &certificate, &report, lit.as_ref())?;
     verdict(&certificate)?;
     paths.as_ref().map_or(Ok(()), verdict_of_paths)
 }
@@ -74,8 +75,15 @@ fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
     }
 }
 
-/// A recording, the outputs of the check, and the certificate of its light paths if they were checked.
-type Recorded = (Run, VerifyOutputs, Option<PathCertificate>);
+/// What is to be checked and written.
+struct Recorded {
+    run: Run,
+    outputs: VerifyOutputs,
+    /// The certificate of the light paths, if they were checked.
+    paths: Option<PathCertificate>,
+    /// The picture with light, for the page.
+    lit: Option<LitPicture>,
+}
 
 #[cfg(not(feature = "gpu"))]
 mod recorded {
@@ -98,7 +106,7 @@ mod recorded {
     use crate::speak::tell;
     use crate::verify_report::command_line;
     use crate::with_scene::with_structures;
-    use crate::{interrupt, memory, progress, self_test, verify_paths};
+    use crate::{interrupt, memory, progress, self_test, verify_lit, verify_paths};
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
     use pinhole::render::Integrator;
@@ -163,7 +171,11 @@ mod recorded {
         let samples = args.paths.unwrap_or(1);
         let certify = || verify_paths::certify(&headless, &input, samples, choice);
         let paths = has_paths.then(certify).transpose()?;
-        Ok((Run { scene: input.scene, recording, provenance }, outputs, paths))
+        let lit = (is_lit && outputs.has_page())
+            .then(|| verify_lit::render(&headless, &input, choice))
+            .transpose()?;
+        let run = Run { scene: input.scene, recording, provenance };
+        Ok(Recorded { run, outputs, paths, lit })
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

@@ -11,6 +11,7 @@ use super::output::{
     NewFolder, check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
 use super::progress;
+use super::verify_lit::LitPicture;
 use super::verify_page::page;
 use super::verify_report::Report;
 use pinhole::verify::Certificate;
@@ -52,6 +53,12 @@ impl VerifyOutputs {
         self.json.iter().chain(&self.save).chain(&self.page)
     }
 
+    /// Whether a page is written.
+    #[cfg(feature = "gpu")]
+    pub(super) fn has_page(&self) -> bool {
+        self.page.is_some()
+    }
+
     /// Refuses to overwrite an input.
     pub(super) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
         check_not_inputs(self.paths(), inputs)
@@ -63,14 +70,21 @@ impl VerifyOutputs {
         run: &Run,
         certificate: &Certificate,
         report: &Report,
+        lit: Option<&LitPicture>,
     ) -> Result<()> {
         match &self.folder {
-            Some(folder) => folder.with(|| self.write_files(run, certificate, report)),
-            None => self.write_files(run, certificate, report),
+            Some(folder) => folder.with(|| self.write_files(run, certificate, report, lit)),
+            None => self.write_files(run, certificate, report, lit),
         }
     }
 
-    fn write_files(&self, run: &Run, certificate: &Certificate, report: &Report) -> Result<()> {
+    fn write_files(
+        &self,
+        run: &Run,
+        certificate: &Certificate,
+        report: &Report,
+        lit: Option<&LitPicture>,
+    ) -> Result<()> {
         let mut files = Vec::new();
         if let Some(path) = &self.json {
             progress::stage("writing");
@@ -81,7 +95,7 @@ impl VerifyOutputs {
         }
         if let Some(path) = &self.page {
             progress::stage("drawing the report");
-            let page = page(run, certificate, report, self.run.as_deref().map(Path::display))?;
+            let page = page(run, certificate, report, lit, self.run.as_deref().map(Path::display))?;
             files.push((path, unnamed(path, page.as_bytes())?));
         }
         if let Some(path) = &self.save {

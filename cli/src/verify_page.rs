@@ -7,6 +7,8 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
+use super::verify_lit::{LitFigure, LitPicture};
+use super::verify_page_paths::PathSection;
 use super::verify_pictures::{
     DECIDED_HIT, MISS, Pictures, Window, css, depth_color, verdict_color,
 };
@@ -95,6 +97,10 @@ impl PictureSize {
 #[derive(Serialize)]
 struct Page<'a> {
     report: &'a Report,
+    /// The check of the light paths, if there was one.
+    paths: Option<PathSection<'a>>,
+    /// The lit picture, which is not checked, if the scene asks for light and the picture was rendered now.
+    lit: Option<LitFigure>,
     /// Version of the program that checks.
     program: &'static str,
     /// The run file that holds the checked recording, if there is one.
@@ -122,11 +128,12 @@ struct Page<'a> {
     violations: Vec<Enlarged>,
 }
 
-/// Makes the page. `run_file` is the file that holds the checked recording, if there is one.
+/// Makes the page. `lit` is the picture with light, if there is one. `run_file` is the file that holds the checked recording, if there is one.
 pub(super) fn page(
     run: &Run,
     certificate: &Certificate,
     report: &Report,
+    lit: Option<&LitPicture>,
     run_file: Option<impl Display>,
 ) -> Result<String> {
     let pictures = Pictures::new(run, certificate);
@@ -135,6 +142,8 @@ pub(super) fn page(
     let first = (1..=ENLARGED).zip(&certificate.violations);
     let page = Page {
         report,
+        paths: report.paths.as_ref().map(PathSection::new),
+        lit: lit.map(|lit| lit.figure(whole)).transpose()?,
         program: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),
         pixels: grouped(u64::from(size[0]) * u64::from(size[1])),
@@ -252,7 +261,7 @@ fn significant(value: f64) -> String {
 }
 
 /// Formats a number with its digits in groups of three.
-fn grouped(number: u64) -> String {
+pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -10,27 +10,27 @@ use pinhole::verify::{PathCertificate, PathViolation, StageCounts};
 /// The object `paths` of the JSON document.
 #[derive(Serialize)]
 pub(super) struct PathReport {
-    paths: u64,
-    stages: BTreeMap<&'static str, Counts>,
-    upload: Option<String>,
-    violation_count: u64,
-    violations: Vec<Listed>,
-    legal: bool,
+    pub(super) paths: u64,
+    pub(super) stages: BTreeMap<&'static str, Counts>,
+    pub(super) upload: Option<String>,
+    pub(super) violation_count: u64,
+    pub(super) violations: Vec<Listed>,
+    pub(super) legal: bool,
     /// The certificate as one line of text.
     #[serde(skip)]
     pub(super) line: String,
 }
 
 #[derive(Serialize)]
-struct Counts {
-    checked: u64,
-    decided: u64,
-    open: u64,
-    undecided: u64,
+pub(super) struct Counts {
+    pub(super) checked: u64,
+    pub(super) decided: u64,
+    pub(super) open: u64,
+    pub(super) undecided: u64,
 }
 
 #[derive(Serialize)]
-struct Listed {
+pub(super) struct Listed {
     pixel: [u32; 2],
     sample: u32,
     surface: u32,

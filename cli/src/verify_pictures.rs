@@ -152,13 +152,13 @@ pub(super) fn depth_color(part: f64) -> [u8; 3] {
 }
 
 /// The pixels of the film that become one pixel.
-struct Block {
+pub(super) struct Block {
     columns: std::ops::Range<u32>,
     rows: std::ops::Range<u32>,
 }
 
 impl Block {
-    fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
+    pub(super) fn indices(&self, width: usize) -> impl Iterator<Item = usize> {
         let columns = self.columns.clone();
         let in_row = move |row| columns.clone().map(move |i| row as usize * width + i as usize);
         self.rows.clone().flat_map(in_row)
@@ -166,7 +166,10 @@ impl Block {
 }
 
 /// Draws a window with a colour for each block, as the data URI of a PNG.
-fn encoded(window: Window, color: impl Fn(Block) -> [u8; 3] + Sync + Send) -> Result<String> {
+pub(super) fn encoded(
+    window: Window,
+    color: impl Fn(Block) -> [u8; 3] + Sync + Send,
+) -> Result<String> {
     let Window { first, size, step } = window;
     let [width, height] = window.shown();
     let range = |axis: usize, index: u32| {

@@ -98,7 +98,7 @@ impl Mapping {
 
 impl Mapping {
     /// Makes a scene of a file's spheres, and returns what its columns gave beside it. Spheres that neither a column nor
-    /// the file gives a colour have `color`.
+    /// the file gives a colour have `color`. Opacities are those of the column, or else of the file.
     ///
     /// # Errors
     /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
@@ -107,7 +107,11 @@ impl Mapping {
         mut loaded: Loaded,
         color: LinearRgb,
     ) -> Result<(Scene, Mapped), ColorByError> {
-        let mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
+        let mut mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
+        if let (None, Some(of_file)) = (&mapped.opacities, &loaded.opacities) {
+            let level = |opacity: &f32| (opacity * 255.0).round() as u8;
+            mapped.opacities = Some(of_file.iter().map(level).collect());
+        }
         let base = match loaded.colors {
             Some(colors) if mapped.coloring.is_none() => Colors::distinct(&colors),
             _ => Colors::One(color),

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use altloc::Candidate;
 use element::Residue;
 
-use super::elements::{Appearance, appearance, unknown_note};
+use super::elements::{Appearance, UnknownSpecies, appearance};
 use super::labels::{LabelsBuilder, Memo, retain};
 use super::{Column, ColumnValues, Loaded};
 use crate::image::color::LinearRgb;
@@ -220,7 +220,9 @@ impl Atoms {
             let values = self.entity.into_values();
             loaded.columns.push(Column { name: "entity".to_owned(), values });
         }
-        loaded.notes = unknown.into_iter().chain(doubtful).chain(left_out).collect();
+        loaded.notes =
+            unknown.iter().map(UnknownSpecies::note).chain(doubtful).chain(left_out).collect();
+        loaded.unknown = unknown;
         loaded
     }
 }
@@ -266,10 +268,10 @@ impl Species {
         self.appearances = former.iter().filter_map(appearance).collect();
     }
 
-    /// Returns a note about species that are not elements.
-    fn unknown(&self) -> Option<String> {
+    /// Returns the species that are not elements.
+    fn unknown(&self) -> Option<UnknownSpecies> {
         let appearances = self.labels.names.iter().zip(&self.appearances);
         let unknown = appearances.filter(|(_, appearance)| !appearance.is_element);
-        unknown_note(&unknown.map(|(name, _)| name.clone()).collect::<Vec<_>>(), "")
+        UnknownSpecies::new(unknown.map(|(name, _)| name.clone()).collect(), true, true)
     }
 }

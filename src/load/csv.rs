@@ -37,12 +37,10 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     let text = without_byte_order_mark(bytes);
     let first = First::of(text, &options.columns)?;
     let mut columns: Vec<Building> = first.names.iter().map(|name| Building::new(name)).collect();
-    // A column is of text if any of its values is; that is known at the first such value, and the rows are read again.
-    while let Err(refused) = read_rows(&first, &mut columns) {
-        let column = refused.column.filter(|column| !table::must_be_numbers(&first.names[*column]));
-        let Some(column) = column else { return Err(refused.error.into()) };
-        columns[column].is_text = true;
+    // A column is of text if any of its values is; that is known after all rows, which are read again then.
+    if read_rows(&first, &mut columns)? {
         columns.iter_mut().for_each(Building::clear);
+        read_rows(&first, &mut columns)?;
     }
     let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
     let table = Table { columns: columns.collect() };
@@ -87,51 +85,44 @@ impl Building {
     }
 }
 
-/// Why rows cannot be read, and the column whose value is not a number.
-struct Refused {
-    column: Option<usize>,
-    error: LineError,
-}
-
-impl From<LineError> for Refused {
-    fn from(error: LineError) -> Self {
-        Self { column: None, error }
-    }
-}
-
-fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<(), Refused> {
+/// Reads all rows. Returns whether a column has turned out to be of text, so that its values are not whole.
+fn read_rows(first: &First<'_>, columns: &mut [Building]) -> Result<bool, LineError> {
     let declared = columns.len();
+    let mut is_new_text = false;
     first.each_row(|line, values| {
         let mut found = 0;
         for value in values {
             let column = found;
             found += 1;
             let Some(building) = columns.get_mut(column) else { continue };
-            if building.is_text {
-                if !value.is_ascii() && std::str::from_utf8(value).is_err() {
-                    return Err(LineError::NotText { line }.into());
+            if !building.is_text {
+                let parsed = if is_missing(value) { Some(f64::NAN) } else { number(value) };
+                if let Some(parsed) = parsed {
+                    building.numbers.push(parsed);
+                    continue;
                 }
-                building.labels.push(value);
-                continue;
+                if table::must_be_numbers(&first.names[column]) {
+                    let found = shortened(&String::from_utf8_lossy(value));
+                    let what = shortened(&first.names[column]);
+                    return Err(LineError::Number { line, column: column + 1, what, found });
+                }
+                (building.is_text, is_new_text) = (true, true);
             }
-            let parsed = if is_missing(value) { Some(f64::NAN) } else { number(value) };
-            let Some(parsed) = parsed else {
-                let found = shortened(&String::from_utf8_lossy(value));
-                let what = first.names[column].clone();
-                let error = LineError::Number { line, column: column + 1, what, found };
-                return Err(Refused { column: Some(column), error });
-            };
-            building.numbers.push(parsed);
+            if !value.is_ascii() && std::str::from_utf8(value).is_err() {
+                return Err(LineError::NotText { line });
+            }
+            building.labels.push(value);
         }
         if found < declared {
-            let what = first.names[found].clone();
-            return Err(LineError::Missing { line, column: found + 1, what, columns: found }.into());
+            let what = shortened(&first.names[found]);
+            return Err(LineError::Missing { line, column: found + 1, what, columns: found });
         }
         if found > declared {
-            return Err(LineError::TooMany { line, columns: found, declared }.into());
+            return Err(LineError::TooMany { line, columns: found, declared });
         }
         Ok(())
-    })
+    })?;
+    Ok(is_new_text)
 }
 
 fn is_missing(value: &[u8]) -> bool {
@@ -145,8 +136,8 @@ impl First<'_> {
     /// Calls a function with the line of each row and its values.
     fn each_row(
         &self,
-        mut each: impl FnMut(usize, &mut dyn Iterator<Item = &[u8]>) -> Result<(), Refused>,
-    ) -> Result<(), Refused> {
+        mut each: impl FnMut(usize, &mut dyn Iterator<Item = &[u8]>) -> Result<(), LineError>,
+    ) -> Result<(), LineError> {
         let separator = match self.separator {
             Separator::Byte(separator) => separator,
             Separator::Blank => {
@@ -173,7 +164,7 @@ impl First<'_> {
                 Ok(true) => {}
                 Ok(false) => return Ok(()),
                 Err(_) => {
-                    return Err(LineError::NotText { line: self.lines_before + before }.into());
+                    return Err(LineError::NotText { line: self.lines_before + before });
                 }
             }
             let line = record.position().map_or(before, |position| position.line() as usize);

@@ -65,6 +65,7 @@ fn find(
     Ok(FrameIndex {
         frames,
         is_whole: problem.is_none(),
+        stands_alone: true,
         problem,
         notes,
         reader,

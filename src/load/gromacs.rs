@@ -23,7 +23,7 @@ fn find_frames(
     last: Option<usize>,
     mut next: impl FnMut(&mut Reader<'_>, usize) -> Result<(u64, bool), LoadError>,
 ) -> Result<FrameIndex, LoadError> {
-    let mut found = FrameIndex::default();
+    let mut found = FrameIndex { stands_alone: true, ..FrameIndex::default() };
     let mut without = 0_u64;
     loop {
         let start = reader.offset;

@@ -60,6 +60,7 @@ fn find(source: &mut dyn Bytes, _: Option<usize>, _: &Options) -> Result<FrameIn
     Ok(FrameIndex {
         frames,
         is_whole,
+        stands_alone: true,
         problem,
         reader: Some(Box::new(Gsd { index })),
         ..FrameIndex::default()

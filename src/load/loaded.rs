@@ -1,5 +1,6 @@
 //! The contents of a file of spheres.
 
+use super::elements::UnknownSpecies;
 use crate::image::color::LinearRgb;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
@@ -24,6 +25,8 @@ pub struct Loaded {
     pub frames: Option<usize>,
     /// Notes for the user that are not errors, one line each and without the file's name.
     pub notes: Vec<String>,
+    /// The species that one of the notes is about.
+    pub(super) unknown: Option<UnknownSpecies>,
 }
 
 /// A named value of every sphere.
@@ -66,6 +69,7 @@ impl Loaded {
             cell: None,
             frames: None,
             notes: Vec::new(),
+            unknown: None,
         }
     }
 
@@ -82,6 +86,28 @@ impl Loaded {
             ColumnValues::Labels(labels) => Some(labels),
             ColumnValues::Numbers(_) => None,
         }
+    }
+
+    /// Takes out of the notes what is not true any more if something else than the file gives all colours, or all radii,
+    /// or those of the species for which `is_given` is true.
+    pub fn correct_notes(
+        &mut self,
+        has_colors: bool,
+        has_radii: bool,
+        is_given: impl Fn(&str) -> bool,
+    ) {
+        let Some(unknown) = self.unknown.take() else { return };
+        let (former, left) = (unknown.note(), unknown.after(has_colors, has_radii, is_given));
+        // A path may stand before the note.
+        let place = self.notes.iter().position(|note| note.ends_with(&former));
+        if let Some(place) = place {
+            let note = self.notes.remove(place);
+            let before = note.strip_suffix(&former).unwrap_or_default();
+            if let Some(left) = &left {
+                self.notes.insert(place, format!("{before}{}", left.note()));
+            }
+        }
+        self.unknown = left;
     }
 
     /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.

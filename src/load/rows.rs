@@ -76,6 +76,11 @@ impl Rows<'_> {
             })
             .collect();
         let rows = ends.last().copied().unwrap_or_default();
+        // A value and what separates it from the next take two bytes. With fewer a row is too short, and with far fewer
+        // the columns would need far more memory than the text.
+        if rows.saturating_mul(fields.len()) > 4 * self.text.len() {
+            self.check_lengths(fields)?;
+        }
         let of_kind = |kind| fields.iter().filter(move |field| field.kind == kind).count();
         let mut numbers = vec![vec![0.0; rows]; of_kind(Kind::Number)];
         let mut indices = vec![vec![0_u32; rows]; of_kind(Kind::Text)];
@@ -114,6 +119,17 @@ impl Rows<'_> {
             Kind::Skipped => None,
         });
         Ok(columns.collect())
+    }
+
+    /// Refuses the first row that has too few values.
+    fn check_lengths(self, fields: &[Field]) -> Result<(), LineError> {
+        for (row, line) in Lines::new(self.text).enumerate() {
+            let found = Values { rest: line }.take(fields.len()).count();
+            if let Some(field) = fields.get(found) {
+                return Err(missing(line, self.lines_before + row + 1, found, &field.name));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -188,14 +204,14 @@ impl Piece<'_> {
 
 fn missing(text: &[u8], line: usize, column: usize, name: &str) -> LineError {
     let columns = Values { rest: text }.count();
-    LineError::Missing { line, column: column + 1, what: name.to_owned(), columns }
+    LineError::Missing { line, column: column + 1, what: shortened(name), columns }
 }
 
 fn not_a_number(value: &[u8], line: usize, column: usize, name: &str) -> LineError {
     match std::str::from_utf8(value) {
         Ok(found) => {
             let found = shortened(found);
-            LineError::Number { line, column: column + 1, what: name.to_owned(), found }
+            LineError::Number { line, column: column + 1, what: shortened(name), found }
         }
         Err(_) => LineError::NotText { line },
     }

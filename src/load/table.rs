@@ -8,9 +8,10 @@ use glam::DVec3;
 use names::{
     COLOR_NAMES, COLORS, DIAMETERS, ELEMENTS, OPACITIES, POSITIONS, RADII, Sets, TRANSPARENCIES,
 };
+#[allow(unused_imports, reason = "not every format asks what names mean")]
 pub(super) use names::{has_positions, is_element, must_be_numbers};
 
-use super::elements::{self, appearance};
+use super::elements::{UnknownSpecies, appearance};
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
@@ -107,7 +108,8 @@ impl Table {
         let (x, y, z) = (x?, y?, z?);
         for (name, values) in names.iter().zip([&x, &y, &z]) {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-                return Err(TableError::Position { row, column: name.clone(), found: values[row] });
+                let column = shortened(name);
+                return Err(TableError::Position { row, column, found: values[row] });
             }
         }
         let centers = x.iter().zip(&y).zip(&z);
@@ -158,16 +160,16 @@ impl Table {
             .map(|element_of| parallel::map(spheres.len(), |row| element_of(row).color));
         let unknown = species.iter().zip(&elements).flat_map(|(labels, elements)| {
             let named = labels.names.iter().zip(elements);
-            named.filter(|(_, element)| !element.is_element).map(|(name, _)| shortened(name))
+            named.filter(|(_, element)| !element.is_element).map(|(name, _)| name.clone())
         });
-        let unknown: Vec<_> = unknown.collect();
-        if colors.is_none() || !gives_radii {
-            notes.extend(elements::unknown_note(&unknown, "the file gives a color or radius or "));
-        }
+        let lacks_radius = !gives_radii && options.radius.is_none();
+        let unknown = UnknownSpecies::new(unknown.collect(), colors.is_none(), lacks_radius);
+        notes.extend(unknown.as_ref().map(UnknownSpecies::note));
         let colors = colors.or(by_element);
         let mut loaded = Loaded::new(spheres);
         loaded.colors = colors;
         loaded.opacities = opacities;
+        loaded.unknown = unknown;
         self.note_what_is_unused(&mut notes);
         loaded.notes = notes;
         let species = species.map(|labels| TableColumn::labels("species", labels));
@@ -210,7 +212,7 @@ impl Table {
             (None, Some(diameters)) => (self.columns.remove(diameters), 0.5),
             (None, None) => return Ok(None),
         };
-        let name = column.name.clone();
+        let name = shortened(&column.name);
         let mut radii = numbers_of(column)?;
         if let Some(row) = radii.iter().position(|radius| !(radius.is_finite() && *radius > 0.0)) {
             return Err(TableError::Radius { row, column: name, found: radii[row] });
@@ -251,8 +253,9 @@ impl Table {
         if !is_valid || (red.is_empty() && !set[0].is_empty()) {
             let [red, green, blue] = set.each_ref().map(|column| &column.name);
             notes.push(format!(
-                "the columns {red}, {green}, {blue} are not used as colors, because they have values that are not \
-                 numbers from 0 to 1, 255 or 65535"
+                "the columns {}, {}, {} are not used as colors, because they have values that are not \
+                 numbers from 0 to 1, 255 or 65535",
+                shortened(red), shortened(green), shortened(blue)
             ));
             self.columns.extend(set);
             return None;
@@ -277,7 +280,7 @@ impl Table {
         if !numbers.iter().all(|value| (0.0..=full).contains(value)) {
             notes.push(format!(
                 "the column {} is not used as opacity, because it has values that are not numbers from 0 to 1 or 255",
-                column.name
+                shortened(&column.name)
             ));
             return None;
         }
@@ -311,16 +314,19 @@ impl Table {
             ("opacity", "opacity"),
             ("transparen", "opacity"),
         ];
+        /// Who has more of such columns knows them.
+        const MOST: usize = 8;
+        let mut found = 0;
         for column in &self.columns {
-            let name = column.plain_name();
-            let sign = SIGNS.iter().find(|(sign, _)| name.contains(sign));
+            let plain = column.plain_name();
+            let sign = SIGNS.iter().find(|(sign, _)| plain.contains(sign));
+            let Some((_, what)) = sign.filter(|_| found < MOST) else { continue };
+            let name = shortened(&column.name);
             // A note that says why a column is not used has said it already.
-            let is_noted = notes.iter().any(|note| note.contains(&column.name));
-            if let Some((_, what)) = sign.filter(|_| !is_noted) {
+            if !notes.iter().any(|note| note.contains(&name)) {
+                found += 1;
                 notes.push(format!(
-                    "the column {} is not used; to use it, add --{what}-by {}",
-                    shortened(&column.name),
-                    shortened(&column.name)
+                    "the column {name} is not used; to use it, add --{what}-by {name}"
                 ));
             }
         }
@@ -386,7 +392,7 @@ fn numbers_of(column: TableColumn) -> Result<Vec<f64>, TableError> {
         ColumnValues::Numbers(numbers) => Ok(numbers),
         ColumnValues::Labels(labels) => {
             let found = labels.names.first().map(|name| shortened(name)).unwrap_or_default();
-            Err(TableError::Text { column: column.name, found })
+            Err(TableError::Text { column: shortened(&column.name), found })
         }
     }
 }

@@ -105,6 +105,7 @@ impl Topology {
         loaded.cell = cell;
         let named = |note: &String| format!("the topology {}: {note}", self.path.display());
         loaded.notes = self.loaded.notes.iter().map(named).collect();
+        loaded.unknown.clone_from(&self.loaded.unknown);
         Ok(loaded)
     }
 }

@@ -113,17 +113,13 @@ pub(super) fn read_from_memory(
     let wanted = options.frame.unwrap_or_default();
     let mut source = io::Cursor::new(bytes);
     let index = frames.find(&mut source, None, options)?;
-    let loaded = frames.read(&mut source, &index, wanted, options);
-    match index.problem {
-        // Frames of binary data do not depend on what follows them.
-        Some(problem) if matches!(frames, Frames::Bytes { .. }) && wanted < index.frames.len() => {
-            let mut loaded = loaded?;
-            loaded.notes.push(problem.to_string());
-            Ok(loaded)
-        }
-        Some(problem) if loaded.is_ok() || wanted >= index.frames.len() => Err(problem),
-        _ => loaded,
+    if wanted >= index.frames.len()
+        && let Some(problem) = index.problem
+    {
+        return Err(problem);
     }
+    let loaded = frames.read(&mut source, &index, wanted, options)?;
+    index.with_problem(loaded)
 }
 
 /// Where the frames of a file are.
@@ -136,10 +132,25 @@ pub(super) struct FrameIndex {
     pub(super) is_whole: bool,
     /// What is wrong after the last frame, as where a program is still writing.
     pub(super) problem: Option<LoadError>,
+    /// Whether a complete frame is right whatever follows it, as in binary data that say how long they are.
+    pub(super) stands_alone: bool,
     /// Notes for the user on every frame.
     pub(super) notes: Vec<String>,
     /// Reads the frames, if they are binary data.
     pub(super) reader: Option<Box<dyn FrameReader>>,
+}
+
+impl FrameIndex {
+    /// A frame, with a note on what is wrong after the last one; or else this as an error, because a wrong number of atoms
+    /// in a text makes what follows them wrong.
+    fn with_problem(self, mut loaded: Loaded) -> Result<Loaded, LoadError> {
+        match self.problem {
+            Some(problem) if self.stands_alone => loaded.notes.push(problem.to_string()),
+            Some(problem) => return Err(problem),
+            None => {}
+        }
+        Ok(loaded)
+    }
 }
 
 /// Where a frame is in its file.
@@ -252,13 +263,13 @@ impl Trajectory {
     }
 
     /// Reads one frame, counted from 0, where what follows the frames that were found must be another frame or the end
-    /// of the file: so a wrong number of atoms is noticed.
+    /// of the file: so a wrong number of atoms is noticed. Of binary data, where it need not be, a note says what is wrong.
     ///
     /// # Errors
     /// As [`Trajectory::frame`], and then [`Trajectory::problem`].
     pub fn into_frame(mut self, index: usize) -> Result<Loaded, LoadError> {
         let loaded = self.frame(index)?;
-        self.index.problem.map_or(Ok(loaded), Err)
+        self.index.with_problem(loaded)
     }
 }
 

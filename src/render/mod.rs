@@ -18,6 +18,7 @@ use crate::image::outline;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky};
 
 mod check;
+mod deep;
 mod integrator;
 mod notes;
 mod studio;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::deep::may_exceed;
 use super::{Integrator, RenderSettings};
 use crate::image::color::LinearRgb;
 use crate::light::{LightKind, SkyLight};
@@ -18,11 +19,24 @@ pub enum SettingsNote {
     MattInStudio,
     /// The integrator `primary` stops at the first sphere, whatever its opacity.
     OpacityIgnored,
+    /// More translucent surfaces seem to lie behind each other than the studio integrator draws.
+    ManySurfaces {
+        /// [`Studio::max_surfaces`](super::Studio::max_surfaces).
+        most: u32,
+    },
 }
 
 impl fmt::Display for SettingsNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        let text = match self {
+            Self::ManySurfaces { most } => {
+                return write!(
+                    f,
+                    "so many clear spheres seem to lie behind each other that some are not seen: of each ray, the {most} \
+                     nearest surfaces are drawn, two for each sphere; set `max_surfaces` in `[studio]`, up to 64, or \
+                     higher opacities"
+                );
+            }
             Self::NoLight => {
                 "no light: nothing shines on this scene, and its spheres will be black; add \
                  [[lights]], or give a light, the sky or a sphere a color and a strength above zero"
@@ -34,7 +48,8 @@ impl fmt::Display for SettingsNote {
                 "primary rays ignore opacity, and all spheres are drawn as if they were opaque; choose \
                  the integrator `studio` or `path` to see through them"
             }
-        })
+        };
+        f.write_str(text)
     }
 }
 
@@ -51,12 +66,16 @@ impl RenderSettings {
                 matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. })
             })
         };
+        let most = self.studio_parameters().map(|studio| studio.max_surfaces);
+        let is_deep = |most: u32| is_translucent() && may_exceed(scene, most);
         let notes = [
             (SettingsNote::NoLight, self.is_dark(scene)),
             (SettingsNote::MattInStudio, self.studio_parameters().is_some() && needs_paths()),
             (SettingsNote::OpacityIgnored, self.integrator.is_primary() && is_translucent()),
         ];
-        notes.into_iter().filter(|(_, holds)| *holds).map(|(note, _)| note).collect()
+        let deep =
+            most.filter(|most| is_deep(*most)).map(|most| SettingsNote::ManySurfaces { most });
+        notes.into_iter().filter(|(_, holds)| *holds).map(|(note, _)| note).chain(deep).collect()
     }
 
     /// Whether the picture has lighting but nothing emits light.

@@ -2,7 +2,7 @@
 
 use super::data::{Data, Element};
 use super::value::DEFAULT_COLOR;
-use crate::color_by::{ColorByError, ColorKey, Mapped};
+use crate::color_by::{ColorByError, ColorKey, Mapped, Mapping};
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::sphere::Sphere;
@@ -61,6 +61,13 @@ impl Data {
         &self,
         mut loaded: Loaded,
     ) -> Result<(DataSpheres, Option<ColorKey>, Vec<String>), DataError> {
+        let Mapping { color, radius, .. } = &self.mapping;
+        let is_given = |species: &str| {
+            let by_species =
+                self.elements_by.is_empty() || self.elements_by.iter().any(|c| c == "species");
+            by_species && self.elements.iter().any(|element| element.name == species)
+        };
+        loaded.correct_notes(color.is_some(), radius.is_some(), is_given);
         let mut notes = std::mem::take(&mut loaded.notes);
         if loaded.colors.is_none() && loaded.opacities.is_none() && !self.asks_for_text() {
             let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &[])?;
@@ -104,7 +111,10 @@ impl Data {
             }
             let element = element_at(index);
             let mut surface = element.map_or(self.surface, |element| element.surface);
-            surface.opacity *= sphere.surface.opacity;
+            // Columns take precedence over what the file says by itself, here too.
+            if self.mapping.opacity.is_none() {
+                surface.opacity *= sphere.surface.opacity;
+            }
             sphere.surface = mapped.surface(surface, index);
             if let Some(Element { radius, color, .. }) = element {
                 // Columns take precedence over tables of elements.

@@ -15,6 +15,10 @@ mod span;
 mod value;
 mod words;
 mod write;
+mod write_annotations;
+mod write_data;
+mod write_surfaces;
+mod write_values;
 
 pub use data::{Data, Element};
 pub use data_spheres::{DataError, DataSpheres};

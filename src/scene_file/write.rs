@@ -5,13 +5,17 @@ use std::fmt::Write as _;
 use toml::Value;
 
 use super::data::Data;
+use super::write_annotations::annotations;
+use super::write_data::data_keys;
+use super::write_surfaces::Surfaces;
+use super::write_values::{color, degrees_of, string};
+use crate::annotate::AnnotationPlan;
 use crate::camera::CameraParameters;
 use crate::camera::film::Film;
-use crate::image::color::LinearRgb;
 use crate::image::encoding::{Bits, Encoding};
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use crate::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
-use crate::scene::material::{Material, SurfaceProperties};
+use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 
 /// Everything that a scene file can say.
@@ -21,6 +25,8 @@ pub struct Contents<'a> {
     pub film: Film,
     /// How the picture is encoded.
     pub encoding: Encoding,
+    /// What is drawn over the picture.
+    pub annotations: AnnotationPlan,
     /// The camera. Without a position, it would frame the scene again.
     pub camera: CameraParameters,
     /// All settings for rendering.
@@ -74,6 +80,7 @@ pub fn write(contents: &Contents<'_>) -> String {
     out(format!("\n[film]\nwidth = {width}\nheight = {height}\ny = \"{y}\""));
     out(camera(&contents.camera));
     out(output(&contents.encoding));
+    annotations(&contents.annotations).into_iter().for_each(&mut out);
     if !settings.integrator.is_primary() {
         out(sampling(&settings.sampling, settings.is_denoised));
         settings.ground.iter().for_each(|one| out(ground(one)));
@@ -103,77 +110,6 @@ pub fn write(contents: &Contents<'_>) -> String {
     }
     surfaces.tables().into_iter().for_each(out);
     text
-}
-
-/// Surface properties that have a name in the file.
-#[derive(Default)]
-struct Surfaces(Vec<SurfaceProperties>);
-
-impl Surfaces {
-    /// The key for surface properties, unless they are those that hold without one.
-    fn key(&mut self, surface: SurfaceProperties, base: SurfaceProperties) -> Option<String> {
-        if surface == base {
-            return None;
-        }
-        let known = self.0.iter().position(|one| *one == surface);
-        let index = known.unwrap_or_else(|| {
-            self.0.push(surface);
-            self.0.len() - 1
-        });
-        Some(format!("material = \"surface-{index}\""))
-    }
-
-    fn tables(&self) -> Vec<String> {
-        let table = |(index, surface): (usize, &SurfaceProperties)| {
-            let opacity = surface.opacity;
-            let keys = match surface.material {
-                Material::Lambert { specular, roughness } => {
-                    format!(
-                        "kind = \"lambert\"\nspecular = {specular:?}\nroughness = {roughness:?}"
-                    )
-                }
-                Material::Conductor { roughness } => {
-                    format!("kind = \"conductor\"\nroughness = {roughness:?}")
-                }
-                Material::Dielectric { ior, roughness, attenuation_distance } => {
-                    let attenuation = attenuation_distance
-                        .map_or(String::new(), |far| format!("\nattenuation_distance = {far:?}"));
-                    format!(
-                        "kind = \"dielectric\"\nior = {ior:?}\nroughness = {roughness:?}{attenuation}"
-                    )
-                }
-                Material::Emissive { strength } => {
-                    format!("kind = \"emissive\"\nstrength = {strength:?}")
-                }
-            };
-            format!("\n[materials.surface-{index}]\n{keys}\nopacity = {opacity:?}")
-        };
-        self.0.iter().enumerate().map(table).collect()
-    }
-}
-
-/// The keys at the top of the file that concern its data.
-fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
-    let mut lines = vec![format!("data = {}", string(&data.file))];
-    lines.extend(data.format.as_ref().map(|name| format!("format = {}", string(name))));
-    lines.extend(data.frame.map(|frame| format!("frame = {frame}")));
-    lines.extend(data.radius.map(|radius| format!("radius = {radius:?}")));
-    if data.radius_scale.to_bits() != 1.0_f64.to_bits() {
-        lines.push(format!("radius_scale = {:?}", data.radius_scale));
-    }
-    lines.extend(data.color.map(|one| format!("color = {}", color(one))));
-    lines.extend(surfaces.key(data.surface, SurfaceProperties::default()));
-    let strings =
-        |list: &[String]| list.iter().map(|one| string(one)).collect::<Vec<_>>().join(", ");
-    if !data.elements_by.is_empty() {
-        lines.push(format!("elements_by = [{}]", strings(&data.elements_by)));
-    }
-    if !data.leave_out.is_empty() {
-        let columns = data.leave_out.iter();
-        let columns = columns.map(|(name, list)| format!("{} = [{}]", string(name), strings(list)));
-        lines.push(format!("leave_out = {{ {} }}", columns.collect::<Vec<_>>().join(", ")));
-    }
-    lines
 }
 
 fn camera(parameters: &CameraParameters) -> String {
@@ -209,8 +145,9 @@ fn inline(value: &Value) -> String {
 fn output(encoding: &Encoding) -> String {
     let (exposure, tone) = (encoding.exposure(), encoding.tone().name());
     let (bits, transparent) = (encoding.bits().count(), encoding.transparent());
+    let dpi = encoding.dots_per_inch().map_or(String::new(), |dpi| format!("\ndpi = {dpi:?}"));
     format!(
-        "\n[output]\nexposure = {exposure:?}\ntone = \"{tone}\"\nbits = {bits}\ntransparent = {transparent}"
+        "\n[output]\nexposure = {exposure:?}\ntone = \"{tone}\"\nbits = {bits}\ntransparent = {transparent}{dpi}"
     )
 }
 
@@ -305,41 +242,6 @@ fn ground(ground: &Ground) -> String {
     format!(
         "\n[ground]\npoint = {point:?}\nnormal = {normal:?}\ncolor = {color}\nshadow_catcher = {catcher}"
     )
-}
-
-/// A colour: in 8-bit sRGB if that is exact, and as a linear triple otherwise.
-fn color(color: LinearRgb) -> String {
-    let [r, g, b] = color.to_srgb8();
-    if LinearRgb::from_srgb8([r, g, b]) == color {
-        return format!("\"#{r:02x}{g:02x}{b:02x}\"");
-    }
-    format!("{:?}", color.to_array())
-}
-
-/// An angle in degrees from which `is_same` finds the same radians: a round number if one does.
-fn degrees_of(radians: f64, is_same: impl Fn(f64) -> bool) -> f64 {
-    let exact = radians.to_degrees();
-    let round = [1e2, 1e6, 1e9].map(|digits| (exact * digits).round() / digits);
-    let near = [exact, exact.next_up(), exact.next_down()];
-    let further = [exact.next_up().next_up(), exact.next_down().next_down()];
-    let all = round.into_iter().chain(near).chain(further);
-    all.into_iter().find(|degrees| is_same(degrees.to_radians())).unwrap_or(exact)
-}
-
-/// A text in quotes.
-fn string(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
-            }
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }
 
 impl Bits {

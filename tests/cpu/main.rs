@@ -14,6 +14,8 @@ mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
 mod arrays;
+#[path = "../support/binary_files/mod.rs"]
+mod binary_files;
 #[path = "../support/damage.rs"]
 mod damage;
 #[path = "../support/seeds/mod.rs"]

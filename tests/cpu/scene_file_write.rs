@@ -1,5 +1,6 @@
 //! Scene files that are written: what is read from them again is what was written.
 
+use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::CameraParameters;
 use pinhole::light::{LightKind, SkyLight};
 use pinhole::render::{DepthCue, Occlusion, Outline, Studio};
@@ -21,6 +22,7 @@ fn round_trip(settings: &RenderSettings, scene: &Scene) -> (RenderSettings, Stri
     let contents = Contents {
         film: Film::new(24, 18).unwrap(),
         encoding: Encoding::default(),
+        annotations: AnnotationPlan::default(),
         camera: CameraParameters::default(),
         settings,
         sky_image: image.as_ref().map(|_| "a \"sky\".hdr".to_owned()),
@@ -100,21 +102,15 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
     assert_eq!(round_trip(&dark, &scene).0, dark, "no light is not the default light");
 }
 
-#[test]
-fn film_output_camera_data_and_spheres_are_read_as_they_were_written() {
-    let text = "data = 'a \\ \"b\".dat'\nformat = 'xyz'\nframe = 3\nradius_scale = 0.75\nmaterial = 'gold'\n\
-                elements_by = ['residue', 'chain']\nleave_out = { residue = ['HOH', 'SO 4'] }\n\
-                [film]\nwidth = 31\nheight = 17\ny = 'down'\n\
-                [output]\nexposure = 0.1\ntone = 'agx'\nbits = 16\ntransparent = true\n\
-                [camera.thin-lens]\neye = [0.1, 1e-7, 1e7]\nlook_at = [0, 0, 0]\naperture_radius = 0.25\nzoom = 2\n\
-                [materials.gold]\nkind = 'conductor'\nroughness = 0.3\n[materials.plain]\nkind = 'lambert'\n\
-                [elements.'O 1']\ncolor = [0.1, 0.2, 0.3]\nmaterial = 'plain'\n[elements.H]\nradius = 0.1\nopacity = 0.5\n\
-                [[spheres]]\ncenter = [0.1, 0.2, 1e-300]\nradius = 0.3\ncolor = 'tomato'\nopacity = 0.25\n";
-    let file = SceneFile::parse(text).unwrap();
+/// What is read from the file that is written of what this text says; it must be the same.
+#[track_caller]
+fn round_trip_file(text: &str) -> SceneFile {
+    let file = SceneFile::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let spheres: Vec<Sphere> = file.spheres().collect();
     let contents = Contents {
         film: file.film,
         encoding: file.encoding,
+        annotations: file.annotations.clone(),
         camera: file.camera_parameters(),
         settings: &RenderSettings::studio(),
         sky_image: None,
@@ -125,10 +121,41 @@ fn film_output_camera_data_and_spheres_are_read_as_they_were_written() {
     let again = SceneFile::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(again.film, file.film);
     assert_eq!(again.encoding, file.encoding);
+    assert_eq!(again.annotations, file.annotations, "{text}");
     assert_eq!(again.camera_parameters(), file.camera_parameters());
     assert_eq!(again.data(), file.data(), "{text}");
     assert_eq!(again.spheres().collect::<Vec<_>>(), spheres);
     assert_eq!(again.integrator(), Some(IntegratorKind::Studio));
+    again
+}
+
+#[test]
+fn everything_else_is_read_as_it_was_written() {
+    let text = "topology = 'b \\u{e9}.pdb'\ncolumns = ['x', '\"y\"', '']\n\
+                color_by = { column = '|v|', map = 'Vik_r', reverse = true, range = ['2.5%', 1e-3], log = true, \
+                missing = '#010203' }\nradius_by = { column = 'd', factor = 0.1 }\nopacity_by = 'w'\n\
+                emission_by = { column = 'T \\\"\\\"', factor = 1e9 }\n\
+                [legend]\ntitle = 'a \"b\"'\nposition = [0.1, 0.9]\n\
+                [scale_bar]\nlength = 0.3\nunit = 'µm'\nposition = 'bottom-right'\n\
+                [[labels]]\ntext = '''a\nb'''\nposition = 'top'\n[[labels]]\ntext = ''\n\
+                [text]\nscale = 1.7\ncolor = '#fedcba'\npanel = 'never'\n";
+    round_trip_file(&format!("data = 'a.dcd'\n{text}"));
+    let annotations =
+        round_trip_file("[legend]\n[scale_bar]\n[text]\npanel = 'auto'\n").annotations;
+    assert!(annotations.legend.is_some() && annotations.scale_bar.is_some());
+    for range in ["['', '98%']", "[-1, '']", "['', '']", "[0, 1]"] {
+        round_trip_file(&format!("data = 'a'\ncolor_by = {{ column = 'x', range = {range} }}\n"));
+    }
+    let text = "data = 'a \\ \"b\".dat'\nformat = 'xyz'\nframe = 3\nradius_scale = 0.75\nmaterial = 'gold'\n\
+                elements_by = ['residue', 'chain']\nleave_out = { residue = ['HOH', 'SO 4'] }\n\
+                [film]\nwidth = 31\nheight = 17\ny = 'down'\n\
+                [output]\nexposure = 0.1\ntone = 'agx'\nbits = 16\ntransparent = true\ndpi = 299.7\n\
+                [camera.thin-lens]\neye = [0.1, 1e-7, 1e7]\nlook_at = [0, 0, 0]\naperture_radius = 0.25\nzoom = 2\n\
+                [materials.gold]\nkind = 'conductor'\nroughness = 0.3\n[materials.plain]\nkind = 'lambert'\n\
+                [elements.'O 1']\ncolor = [0.1, 0.2, 0.3]\nmaterial = 'plain'\n[elements.H]\nradius = 0.1\nopacity = 0.5\n\
+                [[spheres]]\ncenter = [0.1, 0.2, 1e-300]\nradius = 0.3\ncolor = 'tomato'\nopacity = 0.25\n";
+    let again = round_trip_file(text);
+    assert_eq!(again.spheres().count(), 1);
     assert_eq!(Data::of_file("a").radius_scale, 1.0);
     let gold = SurfaceProperties { material: Material::Conductor { roughness: 0.3 }, opacity: 1.0 };
     assert_eq!(again.data().unwrap().surface, gold);

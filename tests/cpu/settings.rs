@@ -132,6 +132,31 @@ fn what_is_odd_is_noted() {
     }
 }
 
+/// A ball of a thousand spheres is deep, and what is behind many of them is seen if they are clear enough.
+#[test]
+fn surfaces_that_are_left_out_are_noted() {
+    let ball = |count: u32, opacity: f32| {
+        let mut random = fastrand::Rng::with_seed(5);
+        let inside = std::iter::repeat_with(|| [(); 3].map(|()| 2.0 * random.f64() - 1.0))
+            .filter(|center| center.iter().map(|c| c * c).sum::<f64>() < 1.0);
+        let spheres = inside
+            .take(count as usize)
+            .map(|center| Sphere::new(center, 0.15, LinearRgb::WHITE).with_opacity(opacity));
+        Scene::new(&spheres.collect::<Vec<_>>()).unwrap()
+    };
+    let studio = RenderSettings::studio();
+    let deep = vec![SettingsNote::ManySurfaces { most: 16 }];
+    for (count, opacity, notes) in
+        [(1000, 0.1, &deep), (1000, 0.5, &vec![]), (100, 0.1, &vec![]), (1000, 1.0, &vec![])]
+    {
+        assert_eq!(studio.notes(&ball(count, opacity)), *notes, "{count} {opacity}");
+    }
+    assert!(deep[0].to_string().contains("the 16 nearest surfaces"), "{}", deep[0]);
+    let more = Studio { max_surfaces: 64, ..Studio::default() };
+    let more = RenderSettings { integrator: Integrator::Studio(more), ..studio };
+    assert_eq!(more.notes(&ball(1000, 0.1)), []);
+}
+
 /// Where nothing is hit, a transparent picture has neither colour nor alpha; elsewhere it is as it was.
 #[test]
 fn primary_rays_may_have_no_background() {

@@ -127,7 +127,7 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
         stop_rule.check_without_light()?;
     }
     input.settings.notes(&input.scene).iter().for_each(|note| notes.tell(note.to_string()));
-    let annotations = annotation.for_input(&input)?;
+    let annotations = annotation.for_input(&input, |text| notes.tell(text.to_string()))?;
     let outputs = outputs.with_annotations(annotations.clone());
     let layers = outputs.layers(&encoding);
     let eyes = if input.eyes.is_some() { 2 } else { 1 };

@@ -9,9 +9,10 @@ use super::{Source, default_color, extension, read};
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::{Format, data_format};
+use crate::kind_color;
 use crate::progress;
 use pinhole::camera::film::Film;
-use pinhole::color_by::{ColorKey, Mapping};
+use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::load::{self, Loaded};
 use pinhole::scene::Scene;
@@ -33,6 +34,8 @@ pub(super) struct Found {
     pub(super) has_atoms: bool,
     /// What colors mean, if a column gives them.
     pub(super) color_key: Option<ColorKey>,
+    /// The colors by kind that no flag asked for.
+    pub(super) kinds: Option<ColorBy>,
     /// Where the size of the picture comes from.
     pub(super) size_from: String,
 }
@@ -77,10 +80,17 @@ impl Source {
             return self.contents_of_text(&self.text()?);
         };
         let mut loaded = self.read_data(path, format, &self.options).map_err(as_usage)?;
-        let mut notes = std::mem::take(&mut loaded.notes);
         let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
-        let mapping = self.color.apply_to(&Mapping::default())?;
+        let mut mapping = self.color.apply_to(&Mapping::default())?;
+        loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
+        let mut notes = std::mem::take(&mut loaded.notes);
+        let kinds = kind_color::by_kind(&loaded, &self.options);
+        let kinds = kinds.filter(|_| mapping.color.is_none());
+        if let Some(by) = &kinds {
+            notes.push(format!("{}: {}", path.display(), kind_color::note(by)));
+            mapping.color = Some(by.clone());
+        }
         let color = self.options.color.unwrap_or_else(default_color);
         let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
         notes.extend_from_slice(mapped.notes());
@@ -92,9 +102,9 @@ impl Source {
             ));
         }
         let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
-        let files = vec![path.clone()];
+        let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
         let size_from = String::new();
-        let found = Found { notes, files, sky_image: None, has_atoms, color_key, size_from };
+        let found = Found { notes, files, sky_image: None, has_atoms, color_key, kinds, size_from };
         self.prepared(file, scene, found)
     }
 
@@ -116,7 +126,10 @@ impl Source {
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
         let data_file = file.data().map(|data| self.resolve(&data.file));
-        let files = [Some(self.path.clone()), data_file, sky_image.clone()];
+        let topology = file.data().and_then(|data| data.topology.as_ref());
+        let topology =
+            self.options.topology.clone().or_else(|| topology.map(|file| self.resolve(file)));
+        let files = [Some(self.path.clone()), data_file, topology, sky_image.clone()];
         let files = files.into_iter().flatten().collect();
         let scene = match data {
             DataSpheres::Spheres(spheres) => file.scene(&spheres),
@@ -125,7 +138,7 @@ impl Source {
         };
         let scene = scene.with_context(file_name)?;
         let size_from = String::new();
-        let found = Found { notes, files, sky_image, has_atoms, color_key, size_from };
+        let found = Found { notes, files, sky_image, has_atoms, color_key, kinds: None, size_from };
         self.prepared(file, scene, found)
     }
 

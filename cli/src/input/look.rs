@@ -83,16 +83,17 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, found } = contents;
-        let Found { notes, files, sky_image, color_key, has_atoms, size_from } = found;
+        let Found { notes, files, sky_image, color_key, kinds, has_atoms, size_from } = found;
         let report = Report {
             path: self.path.display().to_string(),
             spheres: scene.len(),
             has_atoms,
             style: file.style(),
             view: look.view,
+            color_by: kinds.as_ref().map(|by| by.column.clone()),
         };
         let (film, encoding, annotations) = (file.film, file.encoding, file.annotations.clone());
-        let data = self.data(&file)?;
+        let data = self.data(&file, kinds)?;
         let own_spheres = file.spheres().collect();
         let Look { camera, eyes, settings, parameters, .. } = look;
         Ok(Input {

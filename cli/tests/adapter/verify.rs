@@ -120,11 +120,20 @@ const PATHS: &str = "integrator = 'path'\n[film]\nwidth = 40\nheight = 30\n[came
 fn paths(_: &'static Headless) {
     let folder = folder();
     std::fs::write(folder.path().join("paths.toml"), PATHS).unwrap();
-    let found = table(&folder, "verify paths.toml --paths 3 --json a.json");
+    let found = table(&folder, "verify paths.toml --paths 3 --json a.json --report page");
     assert!(found.contains("\n3600 paths, ") && found.contains(", 0 violations\n"), "{found}");
     let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["paths"]["paths"], 3600);
+    let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
+    for words in [
+        "and so are the 3\u{202f}600 light paths.",
+        "<td class=\"name\">start</td><td class=\"number\">3\u{202f}600</td>",
+        "stages, none of them not legal.",
+        "as the integrator <code>path</code> renders the same view, with 16 samples of each pixel;",
+    ] {
+        assert!(page.contains(words), "{words}\n{page}");
+    }
     assert_eq!(json["paths"]["stages"]["start"]["checked"], 3600);
     assert_eq!((&json["paths"]["legal"], &json["legal"]), (&true.into(), &true.into()));
     // Without path tracing, the document has no key about paths.

@@ -180,12 +180,12 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "a.npy --frame 0",
             2,
-            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif); remove it",
+            "--frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif, .gsd, .dcd, .trr, .xtc); remove it",
         ),
         (
             "a.bin --format raw-f32x4 --radius 1",
             2,
-            "--radius applies only to data that can lack radii (.xyz, .extxyz, .lammpstrj, .dump, .data, .lmp, .npy, .npz, .csv, .tsv); remove it",
+            "--radius applies only to data that can lack radii (.xyz, .extxyz, .lammpstrj, .dump, .data, .lmp, .las, .gsd, .npy, .npz, .csv, .tsv, .ply, .vtp, .vtu); remove it",
         ),
         (
             "water.xyz --color red",
@@ -205,7 +205,7 @@ fn flags_that_do_not_apply_to_the_data() {
         (
             "data.toml",
             1,
-            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif); remove it",
+            "data.toml: `data`: frame applies only to trajectories (.xyz, .extxyz, .pdb, .ent, .lammpstrj, .dump, .cif, .mmcif, .gsd, .dcd, .trr, .xtc); remove it",
         ),
     ] {
         refused(&folder, arguments, code, line);

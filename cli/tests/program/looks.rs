@@ -2,7 +2,14 @@
 
 use crate::support::{Folder, SCENE, WATER, decode};
 
-const DATA: [(&str, &str); 2] = [("water.xyz", WATER), ("scene.toml", SCENE)];
+const DATA: [(&str, &str); 6] = [
+    ("water.xyz", WATER),
+    ("scene.toml", SCENE),
+    ("beads.csv", "x,y,z,d,w,t\n0,0,0,1,0.5,1\n1,0,0.5,0.7,0.9,10\n0,2,0,1.5,nan,30\n"),
+    ("kinds.csv", "x,y,z,species\n0,0,0,head\n1,2,0,tail\n3,0,0,head\n"),
+    ("clear.csv", "x,y,z,radius,alpha,q\n0,0,0,1,51,1\n0,0.5,1,1,102,0.5\n3,0,0,1,255,0.2\n"),
+    ("plain.txt", "0,0,0,1\n1,2,0,2\n3,0,0,3.5\n"),
+];
 
 /// The picture that a command renders.
 #[track_caller]
@@ -23,6 +30,16 @@ fn a_printed_scene_gives_the_same_bytes() {
         "water.xyz --size 24x24 --style fast --camera panorama",
         "scene.toml --style illustration --seed 7",
         "scene.toml --samples 4",
+        "water.xyz --size 60x45 --color-by y --cmap batlow_r --cmap-reverse --range 2%, --legend=left --samples 2",
+        "water.xyz --size 60x45 --color-by species --legend --legend-title Kind --scale-bar=Å@0.9,0.9 --label a@top \
+         --label b --text-scale 1.5 --text-color navy --panel always --dpi 300 --samples 2",
+        "beads.csv --size 60x45 --radius-by d*0.5 --opacity-by w --emission-by t*2 --color-by t --log --samples 2",
+        "beads.csv --size 30x20 --style fast --radius-by d --color-by w --missing-color tomato",
+        "kinds.csv --size 30x20 --legend --samples 2",
+        "clear.csv --size 30x20 --samples 2",
+        "clear.csv --size 30x20 --samples 2 --opacity-by q",
+        "kinds.csv --size 30x20 --color navy --samples 2",
+        "plain.txt --format csv --columns x,y,z,q --size 30x20 --color-by q --samples 2",
         "scene.toml --camera thin-lens --aperture-radius 0.1 --samples 2",
     ] {
         let run = folder.run(&format!("render {arguments} --print-scene --quiet")).succeeded();
@@ -54,6 +71,11 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
         "water.xyz: 3 atoms; --style flat --view 30,20 --turn 5"
     );
     assert_eq!(start("scene.toml"), "scene.toml: 1 sphere");
+    assert_eq!(
+        start("kinds.csv"),
+        "kinds.csv: 3 atoms; --style default --view z --color-by species"
+    );
+    assert_eq!(start("kinds.csv --color red"), "kinds.csv: 3 atoms; --style default --view z");
     assert_eq!(said("water.xyz --quiet"), None);
 }
 
@@ -118,4 +140,53 @@ fn views_that_contradict_are_refused() {
             picture(&folder, &format!("water.xyz --size 12x9 --samples 1 --view {view} {up}"));
         }
     }
+}
+
+/// Opacities of a file itself are not lost where no scene file asks for them.
+#[test]
+fn a_file_may_say_how_clear_its_spheres_are() {
+    let folder = Folder::with(&DATA);
+    let small = "clear.csv --size 30x20 --samples 2";
+    let own = picture(&folder, small);
+    std::fs::write(folder.path("q.csv"), DATA[4].1.replace("alpha", "beta")).unwrap();
+    assert!(own != picture(&folder, "q.csv --size 30x20 --samples 2"));
+    assert!(own != picture(&folder, &format!("{small} --opacity-by q")));
+}
+
+/// Kinds that are no elements are told apart, unless a flag says otherwise.
+#[test]
+fn kinds_are_colored_where_nothing_else_gives_colors() {
+    let folder = Folder::with(&DATA);
+    let small = "--size 30x20 --style flat --view z";
+    let run = folder.run(&format!("render kinds.csv {small} -o a.png --backend cpu"));
+    let note = "note: kinds.csv: there are no colors; the spheres are colored by species; --color CSS gives all one color";
+    assert!(run.stderr.lines().any(|line| line == note), "{}", run.stderr);
+    let by = |flags: &str| picture(&folder, &format!("kinds.csv {small} {flags}"));
+    let (default, explicit, one) = (by(""), by("--color-by species"), by("--color #123456"));
+    assert!(default == explicit && default != one);
+    assert!(by("--color-by x") != default);
+    let is = |wanted: [u8; 3]| decode(&one).2.chunks(3).any(|pixel| pixel == wanted);
+    assert!(is([0x12, 0x34, 0x56]) && !is([0xe6, 0x9f, 0x00]));
+}
+
+/// What a scene file says about names that are no elements is not asked for again.
+#[test]
+fn a_note_leaves_out_what_a_scene_file_gives() {
+    let folder = Folder::with(&[("beads.xyz", "3\n\nC 0 0 0\nXa 2 0 0\nXb 4 0 0\n")]);
+    let said = |scene: &str| {
+        std::fs::write(folder.path("scene.toml"), scene).unwrap();
+        let run = folder.run("render scene.toml -o out.png --backend cpu --size 8x8");
+        let lines = run.stderr.lines().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(run.code, 0, "{lines:?}");
+        lines
+    };
+    let base = "data = 'beads.xyz'\n";
+    let [all] = &said(base)[..] else { panic!() };
+    assert!(all.contains("elements: Xa, Xb; they are drawn in pink with radius 2"), "{all}");
+    let [one] = &said(&format!("{base}[elements.Xa]\nradius = 1\n"))[..] else { panic!() };
+    assert!(one.contains("beads.xyz: these species") && one.contains("elements: Xb; "), "{one}");
+    let both = format!("{base}[elements.Xa]\nradius = 1\n[elements.Xb]\ncolor = 'red'\n");
+    assert_eq!(said(&both), [""; 0]);
+    let [colored] = &said(&format!("color_by = 'species'\n{base}"))[..] else { panic!() };
+    assert!(colored.contains("Xa, Xb; they are drawn with radius 2"), "{colored}");
 }

@@ -22,8 +22,6 @@ pub(in crate::gpu) struct Flow<'a> {
     encoder: Option<CommandEncoder>,
     /// Number of workgroups of searches in the encoder.
     gathered: u64,
-    /// Number of samples that the tile has after the round that is being recorded.
-    end: u32,
     /// Tiles that the encoder accumulates samples of, each with its number of samples after that.
     accumulated: Vec<(usize, u32)>,
     /// The submission that the device is executing.
@@ -54,7 +52,6 @@ impl<'a> Flow<'a> {
             recorder: Recorder::new(frame, passes.advance(), headless.is_indirect()),
             encoder: None,
             gathered: 0,
-            end: 0,
             accumulated: Vec::new(),
             submitted: None,
             last_done: Instant::now(),
@@ -73,11 +70,9 @@ impl<'a> Flow<'a> {
         &mut self,
         tile: usize,
         steps: &[Step<'a>],
-        end: u32,
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         self.begin(tile);
-        self.end = end;
         steps.iter().try_for_each(|step| self.step(step, after))
     }
 
@@ -106,9 +101,7 @@ impl<'a> Flow<'a> {
             if step.is_search() {
                 self.gathered += whole.count() * weight;
             }
-            if step.moment == Some(Moment::Accumulated) {
-                self.accumulated.push((self.recorder.tile, self.end));
-            }
+            self.note_samples(step);
             return if self.gathered >= submission_size { self.send(after) } else { Ok(()) };
         }
         self.send(after)?;
@@ -118,12 +111,23 @@ impl<'a> Flow<'a> {
         {
             self.record(step, Some(slice));
             self.gathered = slice.count() * weight;
-            if left.is_empty() && step.moment == Some(Moment::Accumulated) {
-                self.accumulated.push((self.recorder.tile, self.end));
+            if left.is_empty() {
+                self.note_samples(step);
+            } else if step.moment == Some(Moment::Accumulated) {
+                // All pixels of a tile must have the same number of samples when the caller may end the work.
+                self.send(&mut || Ok(()))?;
+                continue;
             }
             self.send(after)?;
         }
         Ok(())
+    }
+
+    /// Notes how many samples the tile has after a dispatch, if it completes some.
+    fn note_samples(&mut self, step: &Step<'a>) {
+        if step.moment == Some(Moment::Accumulated) {
+            self.accumulated.push((self.recorder.tile, step.samples_after()));
+        }
     }
 
     fn record(&mut self, step: &Step<'a>, slice: Option<Groups>) {

@@ -212,7 +212,7 @@ impl Work<'_> {
                 let in_tile = f64::from(start - samples.start) / count;
                 let done = count * (tile as f64 + in_tile) / tiles as f64;
                 let part = (f64::from(samples.start) + done) / total;
-                flow.round(tile, &round.steps(start..end)?, end, &mut || match go_on(part) {
+                flow.round(tile, &round.steps(start..end)?, &mut || match go_on(part) {
                     true => Ok(()),
                     false => Err(GpuError::Stopped),
                 })?;

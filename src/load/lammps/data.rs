@@ -82,14 +82,14 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
                 let mass = number(value).filter(|mass| mass.is_finite());
                 let mass = mass.ok_or(LammpsError::Mass {
                     line,
-                    found: String::from_utf8_lossy(value).into_owned(),
+                    found: shortened(&String::from_utf8_lossy(value)),
                 })?;
-                types.masses.push((String::from_utf8_lossy(name).into_owned(), mass));
+                types.add_mass(String::from_utf8_lossy(name).into_owned(), mass);
                 Ok(())
             })?,
             b"Atom Type Labels" => file.each_pair(|_, name, label| {
                 let text = |text| String::from_utf8_lossy(text).into_owned();
-                types.labels.push((text(name), text(label)));
+                types.add_label(text(name), text(label));
                 Ok(())
             })?,
             _ => file.skip_section(),
@@ -249,19 +249,13 @@ fn numbers_of<const COUNT: usize>(line: &[u8]) -> Option<[f64; COUNT]> {
     Some(numbers)
 }
 
-/// A column of text from one of another.
-pub(super) fn relabelled(
-    column: &TableColumn,
-    name: &str,
-    of: impl Fn(&str) -> String,
-) -> Option<TableColumn> {
+/// A column of text from another one, with other texts in place of its names.
+pub(super) fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
     let ColumnValues::Labels(labels) = &column.values else { return None };
     let mut labels = labels.clone();
-    labels.names.iter_mut().for_each(|label| *label = of(label));
     // Several types may be of one element.
     let mut unique = crate::load::labels::LabelsBuilder::default();
-    let renumbered: Vec<u32> =
-        labels.names.iter().map(|name| unique.index(name.as_bytes())).collect();
+    let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
     labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
     labels.names = unique.names;
     Some(TableColumn::labels(name, labels))

@@ -1,5 +1,7 @@
 //! Tells the chemical elements of types by their labels or masses.
 
+use std::collections::HashMap;
+
 use mendeleev::Element;
 
 use super::data::relabelled;
@@ -11,54 +13,77 @@ use crate::text::shortened;
 /// What a data file says about types. Types are numbers, as text, or labels.
 #[derive(Debug, Default)]
 pub(super) struct Types {
-    pub(super) masses: Vec<(String, f64)>,
+    /// The mass of each type, by its number or label. Of several the first counts.
+    masses: Vec<(String, f64)>,
     /// The label of each number.
-    pub(super) labels: Vec<(String, String)>,
+    labels: HashMap<String, String>,
 }
 
 impl Types {
-    fn label_of<'a>(&'a self, name: &'a str) -> &'a str {
-        let label = self.labels.iter().find(|(number, _)| number == name);
-        label.map_or(name, |(_, label)| label)
+    pub(super) fn add_mass(&mut self, name: String, mass: f64) {
+        self.masses.push((name, mass));
     }
 
-    /// The symbol of a type, by its label or else by its mass.
-    fn symbol_of(&self, name: &str) -> Option<String> {
-        let label = self.label_of(name);
-        if label.parse::<f64>().is_err() && appearance(label).is_element {
-            return Some(label.to_owned());
+    pub(super) fn add_label(&mut self, number: String, label: String) {
+        self.labels.entry(number).or_insert(label);
+    }
+
+    fn label_of<'a>(&'a self, name: &'a str) -> &'a str {
+        self.labels.get(name).map_or(name, String::as_str)
+    }
+
+    /// The symbol of each type, by its label or else by its mass.
+    fn symbols_of(&self, names: &[String]) -> Vec<Option<String>> {
+        // The place of a mass in the file, by the number or label that it has there and by the label of the number.
+        let mut places = HashMap::new();
+        for (place, (name, _)) in self.masses.iter().enumerate() {
+            for name in [name, self.label_of(name)] {
+                places.entry(name).or_insert(place);
+            }
         }
         // Where nothing has another mass than 1, masses are in units of their own.
-        if self.masses.iter().all(|(_, mass)| (mass - 1.0).abs() < 1e-9) {
-            return None;
-        }
-        let of_type =
-            |found: &str| found == name || found == label || self.label_of(found) == label;
-        let (_, mass) = self.masses.iter().find(|(found, _)| of_type(found))?;
-        let distance = |element: &Element| (f64::from(element.atomic_weight()) - mass).abs();
-        let nearest = Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        // Programs round masses to one digit after the point.
-        (distance(nearest) < 0.06).then(|| nearest.symbol().to_owned())
+        let has_masses = self.masses.iter().any(|(_, mass)| (mass - 1.0).abs() >= 1e-9);
+        let symbol = |name: &String| {
+            let label = self.label_of(name);
+            if label.parse::<f64>().is_err() && appearance(label).is_element {
+                return Some(label.to_owned());
+            }
+            let place = [name, label].into_iter().filter_map(|name| places.get(name)).min();
+            let (_, mass) = self.masses[*place.filter(|_| has_masses)?];
+            let distance = |element: &Element| (f64::from(element.atomic_weight()) - mass).abs();
+            let nearest =
+                Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            // Programs round masses to one digit after the point.
+            (distance(nearest) < 0.06).then(|| nearest.symbol().to_owned())
+        };
+        names.iter().map(symbol).collect()
     }
 }
 
 /// Gives the types their labels, and the atoms the elements that these or the masses tell. Returns a note.
 pub(super) fn name_types(table: &mut Table, types: &Types) -> Option<String> {
+    /// How many types the note names.
+    const MOST: usize = 16;
     let column = table.columns.iter().find(|column| column.name == "type")?;
     let ColumnValues::Labels(labels) = &column.values else { return None };
-    let symbols: Vec<_> = labels.names.iter().map(|name| (name, types.symbol_of(name))).collect();
-    let known: Vec<String> = symbols
-        .iter()
-        .filter_map(|(name, symbol)| {
-            let (label, symbol) = (types.label_of(name), symbol.as_ref()?);
-            (label != symbol).then(|| format!("{} is {symbol}", shortened(label)))
-        })
+    let symbols = types.symbols_of(&labels.names);
+    let named = || labels.names.iter().zip(&symbols);
+    let mut known = named().filter_map(|(name, symbol)| {
+        let (label, symbol) = (types.label_of(name), symbol.as_ref()?);
+        (label != symbol).then(|| format!("{} is {symbol}", shortened(label)))
+    });
+    let mut shown: Vec<String> = known.by_ref().take(MOST).collect();
+    let more = known.count();
+    if more > 0 {
+        shown.push(format!("{more} more"));
+    }
+    let species: Vec<&str> = named()
+        .map(|(name, symbol)| symbol.as_deref().unwrap_or_else(|| types.label_of(name)))
         .collect();
-    let is_any = symbols.iter().any(|(_, symbol)| symbol.is_some());
-    let name_of =
-        |name: &str| types.symbol_of(name).unwrap_or_else(|| types.label_of(name).to_owned());
-    let species = is_any.then(|| relabelled(column, "species", name_of)).flatten();
-    let types = relabelled(column, "type", |name| types.label_of(name).to_owned())?;
+    let is_any = symbols.iter().any(Option::is_some);
+    let species = is_any.then(|| relabelled(column, "species", &species)).flatten();
+    let labels: Vec<&str> = labels.names.iter().map(|name| types.label_of(name)).collect();
+    let types = relabelled(column, "type", &labels)?;
     table.columns.retain(|column| column.name != "type");
     table.columns.push(types);
     let has_elements = table.columns.iter().any(|column| column.name == "element");
@@ -67,6 +92,6 @@ pub(super) fn name_types(table: &mut Table, types: &Types) -> Option<String> {
     }
     table.columns.extend(species);
     let note =
-        format!("types are taken as chemical elements by their masses: {}", known.join(", "));
-    (!known.is_empty()).then_some(note)
+        format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
+    (!shown.is_empty()).then_some(note)
 }

@@ -3,6 +3,7 @@
 use super::LammpsError;
 use super::data::listed;
 use crate::load::rows::{Field, Kind, Lines, Rows, Values};
+use crate::text::shortened;
 
 /// The columns of each style, as the manual's page of `read_data` lists them.
 const STYLES: [(&str, &str); 22] = [
@@ -55,7 +56,7 @@ pub(super) fn fields_of(
     let names: Vec<String> = if given.is_empty() {
         let columns = match &style {
             Some(style) => {
-                let unknown = || LammpsError::UnknownStyle { line, style: style.clone() };
+                let unknown = || LammpsError::UnknownStyle { line, style: shortened(style) };
                 columns_of(style).ok_or_else(unknown)?
             }
             None if found == 5 || has_images(5) => columns_of("atomic").unwrap_or_default(),

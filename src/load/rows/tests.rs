@@ -21,6 +21,19 @@ fn values(columns: Vec<TableColumn>) -> Vec<(String, ColumnValues)> {
     columns.into_iter().map(|column| (column.name, column.values)).collect()
 }
 
+/// Columns for so many rows as there are lines would take 80 GB.
+#[test]
+fn short_lines_of_many_columns_take_little_memory() {
+    let fields = vec![Field::new("a", Kind::Number); 100_000];
+    let lines = "1\n".repeat(100_000);
+    let error = rows(&lines).read(&fields).map(drop).unwrap_err();
+    let wanted = LineError::Missing { line: 3, column: 2, what: "a".into(), columns: 1 };
+    assert_eq!(error, wanted);
+    let skipped = Field::new("a", Kind::Skipped);
+    let all = rows("1 2\n1 2").read(&[skipped.clone(), skipped]);
+    assert_eq!(all.map(|columns| columns.len()), Ok(0));
+}
+
 #[test]
 fn pieces_are_joined_in_order() {
     let mut random = fastrand::Rng::with_seed(3);

@@ -30,6 +30,7 @@ impl Declared {
                 ));
             };
             let count: usize = count.parse().map_err(|_| {
+                let (count, name) = (shortened(count), shortened(name));
                 format!("Properties: `{count}` is not a valid number of columns for {name}")
             })?;
             if let ("z" | "numbers", "I", 1) = (name.to_ascii_lowercase().as_str(), kind, count) {
@@ -56,17 +57,18 @@ fn add_fields(name: &str, kind: &str, count: usize, fields: &mut Vec<Field>) -> 
         "R" | "I" => Kind::Number,
         _ => {
             return Err(format!(
-                "Properties: {name} has the type `{}`, which is none of R, I, S and L",
+                "Properties: {} has the type `{}`, which is none of R, I, S and L",
+                shortened(name),
                 shortened(kind)
             ));
         }
     };
+    let name = shortened(name);
     if count > MAX_COLUMNS - fields.len().min(MAX_COLUMNS) {
         return Err(format!(
             "Properties: with the {count} of {name} there are more columns than {MAX_COLUMNS}, which are the most"
         ));
     }
-    let name = shortened(name);
     fields.extend((0..count).map(|i| {
         let name = match (count, i) {
             (1, _) => name.clone(),

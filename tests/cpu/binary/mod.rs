@@ -9,6 +9,8 @@ use pinhole::SphereArray;
 use pinhole::load::{Format, LoadError, Loaded, Options};
 use tempfile::TempDir;
 
+use crate::binary_files::topology as topology_file;
+
 /// Reads a file in memory.
 fn read(format: &str, bytes: &[u8], options: &Options) -> Result<Loaded, LoadError> {
     Format::of_name(format).unwrap().read(bytes, options)
@@ -26,9 +28,8 @@ fn spheres(loaded: &Loaded) -> Vec<[f64; 4]> {
 /// A topology of so many oxygen atoms, and options that name it.
 fn topology(atoms: usize) -> (TempDir, Options) {
     let folder = TempDir::new().unwrap();
-    let path = folder.path().join("top.xyz");
-    std::fs::write(&path, format!("{atoms}\n\n{}", "O 0 0 0\n".repeat(atoms))).unwrap();
-    (folder, Options::default().with_topology(path))
+    let options = Options::default().with_topology(topology_file(folder.path(), atoms));
+    (folder, options)
 }
 
 /// The message of an error, which has one line.

@@ -152,6 +152,21 @@ fn one_pass(headless: &'static Headless) {
             assert_eq!(one, several, "{name}");
         }
     }
+    // A picture of several tiles. Before the device is known to be fast, even one sample is several submissions.
+    let mut view = named("studio_ambient_occlusion");
+    let spheres: Vec<[f32; 4]> = (0..1000_u32)
+        .map(|i| {
+            let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|c| 0.45 * c as f32 - 2.2);
+            [x, y, z, 0.25]
+        })
+        .collect();
+    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
+    view.film = Film::new(800, 600).unwrap();
+    view.settings.sampling.samples = 1;
+    let [one, several] = [headless, &several].map(|device| {
+        device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
+    });
+    assert!(one == several, "the large picture differs");
 }
 
 /// Samples that are recorded one by one and summed in f64 give the same picture, regardless of the number of samples in

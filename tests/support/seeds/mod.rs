@@ -3,8 +3,10 @@
 //! A new format gets one function here and one row in [`SEEDS`]; a test fails until it has.
 
 mod arrays;
+mod lammps;
 mod points;
 mod text;
+mod trajectories;
 
 use std::path::Path;
 
@@ -35,9 +37,17 @@ const SEEDS: &[(&str, Maker)] = &[
     ("xyz", |_| text::xyz()),
     ("extxyz", |_| text::extxyz()),
     ("pdb", |_| text::pdb()),
+    ("lammps-dump", |_| lammps::dump()),
+    ("lammps-data", |_| lammps::data()),
+    ("mmcif", |_| text::mmcif()),
     ("las", |_| points::las()),
+    ("gsd", |_| trajectories::gsd()),
+    ("dcd", trajectories::dcd),
+    ("trr", trajectories::trr),
+    ("xtc", trajectories::xtc),
     ("npy", |_| arrays::npy()),
     ("npz", |_| arrays::npz()),
+    ("csv", |_| text::csv()),
     ("ply", |_| points::ply()),
     ("raw-f32x4", |_| arrays::raw()),
     ("vtk", |_| points::vtk()),

@@ -1,9 +1,10 @@
-//! Good files of formats that are text with one atom on each line, one of them compressed.
+//! Good files of formats that are text, one of them compressed.
 
 use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use pinhole::load::Options;
 
 use super::Seed;
 
@@ -33,4 +34,49 @@ pub(super) fn pdb() -> Vec<Seed> {
     let models =
         format!("{cell}MODEL        1\n{atoms}ENDMDL\nMODEL        2\n{atoms}TER\nENDMDL\nEND\n");
     vec![Seed::new(models), Seed::new([cell, atoms].concat())]
+}
+
+pub(super) fn mmcif() -> Vec<Seed> {
+    let cell = "_cell.length_a 10.0\n_cell.length_b 20\n_cell.length_c 30.00(2)\n_cell.angle_alpha 80\n\
+                _cell.angle_beta 100\n_cell.angle_gamma '110'\n";
+    let names = [
+        "group_PDB",
+        "type_symbol",
+        "auth_atom_id",
+        "label_alt_id",
+        "auth_comp_id",
+        "auth_asym_id",
+        "auth_seq_id",
+        "pdbx_PDB_ins_code",
+        "Cartn_x",
+        "Cartn_y",
+        "Cartn_z",
+        "occupancy",
+        "pdbx_PDB_model_num",
+    ];
+    let header: String = names.map(|name| format!("_atom_site.{name}\n")).concat();
+    let model = |number: u32| {
+        format!(
+            "ATOM C CA A ALA A 7 ? 1.5 -2.25 103.125 0.40 {number}\n\
+             ATOM C CA B ALA A 7 ? 2.5 -2.25 103.125 0.60 {number} # a comment\n\
+             HETATM ? \"O5'\" . DA\n;B\n; 42 . 0 0 .5 1 {number}\n"
+        )
+    };
+    let models = format!("data_4HHB\n{cell}loop_\n{header}{}{}#\n", model(1), model(2));
+    let small = "data_x\n_cell_length_a 10\n_cell_length_b 20\n_cell_length_c 30\n_cell_angle_alpha 90\n\
+                 _cell_angle_beta 90\n_cell_angle_gamma 90\nloop_\n_atom_site_label\n_atom_site_fract_x\n\
+                 _atom_site_fract_y\n_atom_site_fract_z\nFe1 0.5000(3) -0.25 1\nC12A 0 0 0\nloop_\n_other\nFe1\n";
+    vec![Seed::new(models.replace('\n', "\r\n")), Seed::new(models), Seed::new(small)]
+}
+
+pub(super) fn csv() -> Vec<Seed> {
+    let table = "# made by hand\nname,x,y,z,radius,element,q,note\n\"a, b\",1,-2.5,3,0.5,O,,\"two\nlines\"\n\
+                 c,4,5,6e-3,2,H,NA,\n";
+    let bare = "1 2 3\n4\t5 6\n";
+    let named = Options::default().with_columns(["x", "y", "z"]);
+    vec![
+        Seed::new(table),
+        Seed::new("# x; y; z; id\n1;2;3;7\n\n4;5;6;A2\n"),
+        Seed::with_options(bare, named),
+    ]
 }

@@ -158,7 +158,7 @@ pub(super) fn files() -> Vec<Case> {
          info scene
          info folder.toml
          info spheres.bin
-         info no-radius.npy
+         info ten-columns.npy
          info cut.npy
          info water.xyz --frame 1
          info scene.toml --frame 1

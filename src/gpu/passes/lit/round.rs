@@ -46,6 +46,11 @@ impl Step<'_> {
         self.rays
     }
 
+    /// Number of samples that every pixel has after the dispatch, if it completes samples.
+    pub(in crate::gpu) fn samples_after(&self) -> u32 {
+        self.dispatch.sample + self.dispatch.count
+    }
+
     /// Number of layers of workgroups, each of which covers the area of a tile.
     pub(in crate::gpu) fn layers(&self) -> u32 {
         match self.work {
@@ -138,7 +143,7 @@ impl<'a> Round<'a> {
         let rays = self.lighting.rays_of_sample();
         let at_once = (self.scene.rays_at_once(SAMPLES_AT_ONCE * rays) / rays).max(1);
         let starts = (0..dispatch.count).step_by(at_once as usize);
-        let mut steps: Vec<_> = starts
+        starts
             .map(|start| {
                 let count = at_once.min(dispatch.count - start);
                 Step {
@@ -154,14 +159,10 @@ impl<'a> Round<'a> {
                     in_flight: 1,
                     rays: count * rays,
                     is_search: true,
-                    moment: None,
+                    moment: Some(Moment::Accumulated),
                 }
             })
-            .collect();
-        if let Some(last) = steps.last_mut() {
-            last.moment = Some(Moment::Accumulated);
-        }
-        steps
+            .collect()
     }
 }
 
