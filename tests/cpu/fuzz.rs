@@ -37,7 +37,8 @@ fn damaged_files_end_with_spheres_or_one_line() {
             let file = folder.path().join("file");
             let taken = read_all(format, &bytes, &seed.options, &file, &mut random);
             let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
-            assert!(taken < SLOW, "{}, input {number}: {taken:?}", format.name);
+            // A busy machine may be slow, but what hangs is slower. The long run in `benches` measures.
+            assert!(taken < 60 * SLOW, "{}, input {number}: {taken:?}", format.name);
         }
     }
 }
