@@ -1,5 +1,6 @@
 //! Renders several pictures, while the next one is read and the one before is written.
 
+use std::cell::RefCell;
 use std::collections::HashSet;
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -127,7 +128,10 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
         stop_rule.check_without_light()?;
     }
     input.settings.notes(&input.scene).iter().for_each(|note| notes.tell(note.to_string()));
-    let annotations = annotation.for_input(&input, |text| notes.tell(text.to_string()))?;
+    let found = RefCell::new(Vec::new());
+    let annotations =
+        annotation.for_input(&input, |text| found.borrow_mut().push(text.to_string()))?;
+    found.into_inner().into_iter().for_each(|note| notes.tell(note));
     let outputs = outputs.with_annotations(annotations.clone());
     let layers = outputs.layers(&encoding);
     let eyes = if input.eyes.is_some() { 2 } else { 1 };
