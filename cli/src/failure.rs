@@ -34,10 +34,6 @@ pub(super) enum Failure {
     )]
     Stopped,
     /// The user stopped it after some of several files were complete, as the message says.
-    #[cfg_attr(
-        not(feature = "gpu"),
-        expect(dead_code, reason = "without a device the program exits at once")
-    )]
     StoppedBetween(&'static str),
 }
 
