@@ -88,7 +88,7 @@ pub fn column<'a>(
     Err(unknown(name, columns))
 }
 
-/// Finds a column of numbers, as [`column`] does.
+/// Finds a column of numbers, as [`column()`] does.
 ///
 /// # Errors
 /// Returns an error if there is no such column, or its values are text.

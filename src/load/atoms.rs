@@ -9,8 +9,9 @@ use std::collections::HashSet;
 use altloc::Candidate;
 use element::Residue;
 
-use super::elements::{Appearance, UnknownSpecies, appearance};
+use super::elements::{Appearance, appearance};
 use super::labels::{LabelsBuilder, Memo, retain};
+use super::unknown_species::UnknownSpecies;
 use super::{Column, ColumnValues, Loaded};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere_array::SphereArray;

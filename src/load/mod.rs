@@ -71,6 +71,8 @@ mod table;
 #[allow(dead_code, reason = "not every binary format needs one")]
 mod topology;
 mod trajectory;
+#[cfg_attr(not(feature = "table"), allow(dead_code, reason = "atoms come with a feature"))]
+mod unknown_species;
 #[cfg(feature = "vtk")]
 mod vtk;
 #[cfg(feature = "xyz")]

@@ -11,10 +11,11 @@ use names::{
 #[allow(unused_imports, reason = "not every format asks what names mean")]
 pub(super) use names::{has_positions, is_element, must_be_numbers};
 
-use super::elements::{UnknownSpecies, appearance};
+use super::elements::appearance;
 use super::format::Options;
 use super::loaded::{Column, ColumnValues, Labels, Loaded};
 use super::spacing;
+use super::unknown_species::UnknownSpecies;
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::sphere_array::SphereArray;
