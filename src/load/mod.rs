@@ -61,6 +61,8 @@ pub mod raw;
 #[cfg(feature = "table")]
 #[allow(dead_code, reason = "not every format has lines of values")]
 mod rows;
+#[cfg(any(feature = "ply", feature = "vtk"))]
+mod scalar;
 mod source;
 #[cfg(feature = "table")]
 mod spacing;

@@ -11,8 +11,9 @@ mod header;
 mod tests;
 
 pub use error::PlyError;
-use header::{Element, Encoding, Header, Scalar};
+use header::{Element, Encoding, Header};
 
+use super::binary::Order;
 use super::error::LoadError;
 use super::format::Options;
 use super::loaded::Loaded;
@@ -59,11 +60,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, LoadError>
 fn columns(element: &Element, values: Vec<Option<Vec<f64>>>) -> Vec<TableColumn> {
     let named = element.properties.iter().zip(values);
     let column = |(property, values): (&header::Property, Option<Vec<f64>>)| {
-        let full = match property.scalar {
-            Scalar::U8 => Some(255.0),
-            Scalar::U16 => Some(65535.0),
-            _ => None,
-        };
+        let full = property.scalar.full();
         Some(TableColumn { full, ..TableColumn::numbers(&property.name, values?) })
     };
     named.filter_map(column).collect()
@@ -96,12 +93,7 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
             let mut number = || {
                 let word = words.next().ok_or_else(|| refused(None))?;
                 let text = std::str::from_utf8(word).unwrap_or_default();
-                // The number is the one that a binary file has.
-                let number = match property.scalar {
-                    Scalar::F32 => text.parse::<f32>().map(f64::from),
-                    _ => text.parse(),
-                };
-                number.map_err(|_| refused(Some(word)))
+                property.scalar.parse(text).ok_or_else(|| refused(Some(word)))
             };
             let first = number()?;
             match values {
@@ -134,11 +126,12 @@ fn of_text(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColum
 /// Reads the vertices of a binary file.
 fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableColumn>, PlyError> {
     let is_little = header.encoding == Encoding::LittleEndian;
+    let order = if is_little { Order::Little } else { Order::Big };
     let mut rest = data;
     let at = |rest: &[u8]| header.bytes + data.len() - rest.len();
     for element in &header.elements[..vertex] {
         let before = rest;
-        rest = walk(rest, element, is_little, |_, _| {})
+        rest = walk(rest, element, order, |_, _| {})
             .map_err(|index| too_few_bytes(at(before), element, index))?;
     }
     let element = &header.elements[vertex];
@@ -154,14 +147,14 @@ fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableCol
         let mut offset = 0;
         for property in &element.properties {
             let (scalar, from) = (property.scalar, offset);
-            let number = |row: usize| decoded(&vertices[row * size + from..], scalar, is_little);
+            let number = |row: usize| scalar.decode(&vertices[row * size + from..], order);
             values.push(Some(parallel::try_map(element.count as usize, number).map_err(memory)?));
             offset += scalar.size();
         }
         after
     } else {
         values.extend(element.properties.iter().map(|p| p.list.is_none().then(Vec::new)));
-        walk(rest, element, is_little, |index, value| {
+        walk(rest, element, order, |index, value| {
             if let Some(values) = &mut values[index] {
                 values.push(value);
             }
@@ -187,7 +180,7 @@ fn too_few_bytes(byte: usize, element: &Element, index: u64) -> PlyError {
 fn walk<'a>(
     data: &'a [u8],
     element: &Element,
-    is_little: bool,
+    order: Order,
     mut number: impl FnMut(usize, f64),
 ) -> Result<&'a [u8], u64> {
     // A number of elements without properties takes no bytes, so it could be any.
@@ -198,7 +191,7 @@ fn walk<'a>(
     for index in 0..element.count {
         for (at, property) in element.properties.iter().enumerate() {
             let first = property.list.unwrap_or(property.scalar);
-            let value = (rest.len() >= first.size()).then(|| decoded(rest, first, is_little));
+            let value = (rest.len() >= first.size()).then(|| first.decode(rest, order));
             let value = value.ok_or(index)?;
             rest = &rest[first.size()..];
             if property.list.is_some() {
@@ -210,27 +203,4 @@ fn walk<'a>(
         }
     }
     Ok(rest)
-}
-
-/// Decodes the number at the start of `bytes`, or 0 if there are too few: readers check that before.
-fn decoded(bytes: &[u8], scalar: Scalar, is_little: bool) -> f64 {
-    macro_rules! number {
-        ($type:ty) => {
-            bytes.first_chunk().map_or(0.0, |bytes| {
-                let decode =
-                    if is_little { <$type>::from_le_bytes } else { <$type>::from_be_bytes };
-                decode(*bytes).into()
-            })
-        };
-    }
-    match scalar {
-        Scalar::I8 => number!(i8),
-        Scalar::U8 => number!(u8),
-        Scalar::I16 => number!(i16),
-        Scalar::U16 => number!(u16),
-        Scalar::I32 => number!(i32),
-        Scalar::U32 => number!(u32),
-        Scalar::F32 => number!(f32),
-        Scalar::F64 => number!(f64),
-    }
 }

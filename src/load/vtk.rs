@@ -14,11 +14,11 @@ use std::collections::HashSet;
 
 use document::{Array, Document};
 pub use error::VtkError;
-use values::Scalar;
 
 use super::error::LoadError;
 use super::format::Options;
 use super::loaded::Loaded;
+use super::scalar::Scalar;
 use super::table::{Table, TableColumn};
 use crate::text::{one_line, shortened, without_byte_order_mark};
 
@@ -103,11 +103,7 @@ fn columns(document: &Document<'_>, notes: &mut Vec<String>) -> Result<Vec<Table
     let mut columns = Vec::new();
     for (at, group) in groups.into_iter().enumerate() {
         let array = if at == 0 { positions } else { kept[at - 1] };
-        let full = match array.scalar {
-            Scalar::U8 => Some(255.0),
-            Scalar::U16 => Some(65535.0),
-            _ => None,
-        };
+        let full = array.scalar.full();
         let parts = ["red", "green", "blue", "alpha"];
         for (component, numbers) in group.into_iter().enumerate() {
             let name = if at == 0 {

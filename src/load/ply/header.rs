@@ -1,6 +1,7 @@
 //! The header of a PLY file: which elements follow, and what each consists of.
 
 use super::{PlyError, starts};
+use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
 
 /// How the data after the header are stored.
@@ -9,19 +10,6 @@ pub(super) enum Encoding {
     Ascii,
     LittleEndian,
     BigEndian,
-}
-
-/// The type of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
 }
 
 #[derive(Debug)]
@@ -49,29 +37,19 @@ pub(super) struct Header {
     pub(super) bytes: usize,
 }
 
-impl Scalar {
-    fn of_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "char" | "int8" => Self::I8,
-            "uchar" | "uint8" => Self::U8,
-            "short" | "int16" => Self::I16,
-            "ushort" | "uint16" => Self::U16,
-            "int" | "int32" => Self::I32,
-            "uint" | "uint32" => Self::U32,
-            "float" | "float32" => Self::F32,
-            "double" | "float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    pub(super) const fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
+/// Returns the type of this name.
+fn scalar_of_name(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "char" | "int8" => Scalar::I8,
+        "uchar" | "uint8" => Scalar::U8,
+        "short" | "int16" => Scalar::I16,
+        "ushort" | "uint16" => Scalar::U16,
+        "int" | "int32" => Scalar::I32,
+        "uint" | "uint32" => Scalar::U32,
+        "float" | "float32" => Scalar::F32,
+        "double" | "float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 impl Element {
@@ -132,7 +110,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, PlyError> {
                     _ => return Err(refused("write `property TYPE NAME`".to_owned())),
                 };
                 let of_name = |name: &str| {
-                    Scalar::of_name(name).ok_or_else(|| {
+                    scalar_of_name(name).ok_or_else(|| {
                         refused(format!("`{}` is not a type of PLY", shortened(&one_line(name))))
                     })
                 };

@@ -8,7 +8,9 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
 use super::VtkError;
-use super::values::{Encoding, Scalar};
+use super::values::{Encoding, scalar_of_name};
+use crate::load::binary::Order;
+use crate::load::scalar::Scalar;
 use crate::text::{one_line, shortened};
 
 /// What a file says of its points.
@@ -103,7 +105,7 @@ struct Parser<'a> {
 
 impl<'a> Parser<'a> {
     fn new() -> Self {
-        let encoding = Encoding { is_little: true, is_wide: false, is_compressed: false };
+        let encoding = Encoding { order: Order::Little, is_wide: false, is_compressed: false };
         let (pieces, unused, appended) = (Vec::new(), Vec::new(), &[][..]);
         let document = Document {
             encoding,
@@ -210,7 +212,8 @@ impl<'a> Parser<'a> {
             }
         };
         let encoding = &mut self.document.encoding;
-        encoding.is_little = !one_of("byte_order", ["LittleEndian", "BigEndian"])?;
+        let is_big = one_of("byte_order", ["LittleEndian", "BigEndian"])?;
+        encoding.order = if is_big { Order::Big } else { Order::Little };
         encoding.is_wide = one_of("header_type", ["UInt32", "UInt64"])?;
         let kind = attribute(element, "type")?.unwrap_or_default();
         if !["PolyData", "UnstructuredGrid"].contains(&kind.as_str()) {
@@ -288,7 +291,7 @@ fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Prob
     let name = attribute(element, "Name")?.unwrap_or_default();
     let shown = shortened(&one_line(&name));
     let kind = attribute(element, "type")?.unwrap_or_default();
-    let Some(scalar) = Scalar::of_name(&kind) else {
+    let Some(scalar) = scalar_of_name(&kind) else {
         if kind == "String" {
             return Ok(Err(format!("the array {shown}, which is text")));
         }

@@ -7,58 +7,35 @@ use data_encoding::BASE64;
 use flate2::bufread::ZlibDecoder;
 
 use super::document::{Array, Data, Document};
+use crate::load::binary::{Number, Order};
+use crate::load::scalar::Scalar;
 use crate::parallel;
 use crate::text::{one_line, shortened};
 
 /// How a file stores bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encoding {
-    pub(super) is_little: bool,
+    pub(super) order: Order,
     /// Whether lengths before the data are u64, and not u32.
     pub(super) is_wide: bool,
     pub(super) is_compressed: bool,
 }
 
-/// The type of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Scalar {
-    pub(super) fn of_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "Int8" => Self::I8,
-            "UInt8" => Self::U8,
-            "Int16" => Self::I16,
-            "UInt16" => Self::U16,
-            "Int32" => Self::I32,
-            "UInt32" => Self::U32,
-            "Int64" => Self::I64,
-            "UInt64" => Self::U64,
-            "Float32" => Self::F32,
-            "Float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    const fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
+/// Returns the type of this name.
+pub(super) fn scalar_of_name(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "Int8" => Scalar::I8,
+        "UInt8" => Scalar::U8,
+        "Int16" => Scalar::I16,
+        "UInt16" => Scalar::U16,
+        "Int32" => Scalar::I32,
+        "UInt32" => Scalar::U32,
+        "Int64" => Scalar::I64,
+        "UInt64" => Scalar::U64,
+        "Float32" => Scalar::F32,
+        "Float64" => Scalar::F64,
+        _ => return None,
+    })
 }
 
 /// Reads an array of a piece with this number of points: one list of numbers for each component.
@@ -70,7 +47,7 @@ pub(super) fn numbers(
     let components = array.components;
     let count = usize::try_from(points).ok().and_then(|points| points.checked_mul(components));
     let count = count.ok_or_else(|| format!("{points} points are too many"))?;
-    let Encoding { is_little, .. } = document.encoding;
+    let Encoding { order, .. } = document.encoding;
     let (text, is_base64) = match &array.data {
         Data::Ascii(text) => return of_text(text, array, count),
         Data::Base64(text) => {
@@ -103,7 +80,7 @@ pub(super) fn numbers(
     }
     let column = |component: usize| {
         let number = |row: usize| {
-            decoded(&bytes[(row * components + component) * size..], array.scalar, is_little)
+            array.scalar.decode(&bytes[(row * components + component) * size..], order)
         };
         parallel::try_map(count / components, number)
             .map_err(|_| format!("there is not enough memory for {points} points"))
@@ -122,12 +99,7 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
     for index in 0..count {
         let word = words.next();
         let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
-        // The number is the one that a binary file has.
-        let number = match array.scalar {
-            Scalar::F32 => word.parse::<f32>().map(f64::from),
-            _ => word.parse(),
-        };
-        let number = number.map_err(|_| {
+        let number = array.scalar.parse(word).ok_or_else(|| {
             format!("number {index} is `{}`, which is not a number", shortened(&one_line(word)))
         })?;
         columns[index % components].push(number);
@@ -180,12 +152,9 @@ impl Stream<'_> {
         let bytes = self.take(N * scalar.size())?;
         let mut lengths = [0; N];
         for (length, bytes) in lengths.iter_mut().zip(bytes.chunks_exact(scalar.size())) {
-            let length_of = match (<[u8; 8]>::try_from(bytes), <[u8; 4]>::try_from(bytes)) {
-                (Ok(wide), _) if encoding.is_little => u64::from_le_bytes(wide),
-                (Ok(wide), _) => u64::from_be_bytes(wide),
-                (_, Ok(narrow)) if encoding.is_little => u32::from_le_bytes(narrow).into(),
-                (_, Ok(narrow)) => u32::from_be_bytes(narrow).into(),
-                _ => 0,
+            let length_of = match encoding.is_wide {
+                true => u64::decode(bytes, encoding.order),
+                false => u32::decode(bytes, encoding.order).into(),
             };
             *length = usize::try_from(length_of).unwrap_or(usize::MAX);
         }
@@ -237,30 +206,5 @@ impl Stream<'_> {
             }
         }
         Ok(all.into())
-    }
-}
-
-/// Decodes the number at the start of `bytes`, or 0 if there are too few: readers check that before.
-fn decoded(bytes: &[u8], scalar: Scalar, is_little: bool) -> f64 {
-    macro_rules! number {
-        ($type:ty) => {
-            bytes.first_chunk().map_or(0.0, |bytes| {
-                let decode =
-                    if is_little { <$type>::from_le_bytes } else { <$type>::from_be_bytes };
-                decode(*bytes) as f64
-            })
-        };
-    }
-    match scalar {
-        Scalar::I8 => number!(i8),
-        Scalar::U8 => number!(u8),
-        Scalar::I16 => number!(i16),
-        Scalar::U16 => number!(u16),
-        Scalar::I32 => number!(i32),
-        Scalar::U32 => number!(u32),
-        Scalar::I64 => number!(i64),
-        Scalar::U64 => number!(u64),
-        Scalar::F32 => number!(f32),
-        Scalar::F64 => number!(f64),
     }
 }
