@@ -1,6 +1,6 @@
 // The point where a ray hits a sphere or the ground, and the properties of the surface there.
 // provides: HIT_GROUND, HIT_NOTHING, OTHER_BRICK, Vertex, classify_hit, distance_from_camera, exit_distance_of,
-//   sphere_vertex, vertex_of
+//   ground_vertex, sphere_vertex, vertex_of
 // needs: Hit, NO_HIT, NO_ID, PATH_INSIDE, Ray, brick, dispatch, fence3, ground_distance, has, intersect, lighting,
 //   load_departure, material_index, opacity_of, shapes, sphere_color, sphere_normal, store_hit
 

@@ -5,14 +5,14 @@
 // Lamps of all kinds, with shadows, on surfaces that may have a specular lobe.
 // provides: lamp_light
 // needs: LAMBERT, LAMP_HEAD, LIGHTING_SHADOWS, Lamp, Seen, is_hidden, lamp_kind, lighting, lighting_has, reflected,
-//   sample_lamp, sample_pair, table
+//   sample_lamp, sample_pair, shade_of_lamp, table
 
 // The light of all lamps that a surface reflects.
-fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec3f {
+fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec4f {
     let share = select(0.0, seen.material.parameter, seen.material.kind == LAMBERT);
     let lobe = vec3f(share, seen.material.alpha, bitcast<f32>(seen.material.energies));
     let normal = seen.vertex.normal;
-    var sum = vec3f(0.0);
+    var sum = vec4f(0.0);
     for (var light = 0u; light < (number >> 31u) + lighting.light_count; light++) {
         let u = sample_pair(seed, number, 2u + light);
         var lamp = sample_lamp(light, seen.start.position, u);
@@ -25,9 +25,11 @@ fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec3f {
         let is_cast = is_before && !is_head && lighting_has(LIGHTING_SHADOWS);
         let to_center = seen.vertex.sphere.w * normal;
         if (is_cast && is_hidden(seen.start, seen.excluded, to_center, lamp.direction, lamp.distance)) {
+            sum += shade_of_lamp(light, seen);
             continue;
         }
-        sum += lamp.strength * reflected(lobe, normal, seen.out, lamp.direction, seen.albedo, seen.weight);
+        let bright = lamp.strength * reflected(lobe, normal, seen.out, lamp.direction, seen.albedo, seen.weight);
+        sum += vec4f(select(bright, vec3f(0.0), seen.is_caught), 0.0);
     }
     return sum;
 }
@@ -37,13 +39,13 @@ fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec3f {
 // provides: lamp_light
 // needs: LAMP_HEAD, Seen, fence3, lamp_kind, lighting, table
 
-fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec3f {
-    var sum = vec3f(0.0);
+fn lamp_light(seen: Seen, seed: u32, number: u32) -> vec4f {
+    var sum = vec4f(0.0);
     for (var light = 0u; light < (number >> 31u) + lighting.light_count; light++) {
         let away = fence3(normalize(table(3u * light).xyz));
         let direction = select(away, seen.out, lamp_kind(light) == LAMP_HEAD);
         let cosine = max(dot(seen.vertex.normal, direction), 0.0);
-        sum += table(3u * light + 1u).rgb * (cosine * seen.albedo);
+        sum += vec4f(table(3u * light + 1u).rgb * (cosine * seen.albedo), 0.0);
     }
     return sum;
 }

@@ -3,47 +3,10 @@
 // Twin: src/cpu/light/studio.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: one_pass
-// needs: CameraRay, Departure, EMISSIVE, Hit, LIGHTING_TRANSPARENT, Material, NO_EMITTER, NO_HIT, NO_ID, PATH_BACK,
-//   Ray, Seen, Start, Sum, Vertex, camera_ray, dispatch, enter_scene, excluded_by, exit_distance_of, faded, film,
-//   filter_offset, frame, lamp_light, lighting, lighting_has, luminance, material_of, nearest_hit, open_share,
-//   pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex, start_fences, unit2
-
-struct Sample {
-    // Colour and opacity.
-    radiance: vec4f,
-    // Albedo of the surface.
-    albedo: vec3f,
-}
-
-// The light of a surface that reflects it, and does not emit.
-fn reflected_light(vertex: Vertex, material: Material, ray: Ray, lit: f32, seed: u32, number: u32) -> vec3f {
-    let albedo = vertex.color * lit;
-    let start = Start(vertex.position, select(0u, PATH_BACK, vertex.is_back));
-    let departure = Departure(vertex.id, vertex.shape_index, exit_distance_of(vertex, ray.direction), NO_EMITTER);
-    let excluded = excluded_by(departure);
-    let seen = Seen(vertex, material, start, excluded, -ray.direction, albedo, lit);
-    var radiance = lamp_light(seen, seed, number);
-    if ((number >> 31u) + lighting.occlusion_samples > 0u) {
-        radiance += albedo * lighting.ambient * open_share(seen, seed, number);
-    }
-    return radiance;
-}
-
-// The sample of a ray that hits a surface.
-fn surface_sample(made: CameraRay, hit: Hit, seed: u32, number: u32) -> Sample {
-    let vertex = sphere_vertex(made.ray, hit, false);
-    let material = material_of(vertex);
-    let is_emitter = material.kind == EMISSIVE;
-    let fade = faded(made.distance + vertex.distance);
-    let lit = 1.0 - fade;
-    let open = select(lighting.ambient, vec3f(0.0), lighting.occlusion_samples > 0u);
-    let own = select(open, vec3f(material.parameter), is_emitter);
-    var radiance = fade * lighting.cue_color + lit * vertex.color * own;
-    if (!is_emitter) {
-        radiance += reflected_light(vertex, material, made.ray, lit, seed, number);
-    }
-    return Sample(vec4f(radiance, 1.0), min(vertex.color, vec3f(1.0)));
-}
+// needs: CameraRay, Departure, Hit, LIGHTING_TRANSPARENT, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, camera_ray, dispatch,
+//   enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting, lighting_has, luminance,
+//   nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex,
+//   start_fences, surface_sample, unit2
 
 // There is no early return: with one, Mesa 22.3 fails to compile the kernel.
 fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
@@ -55,8 +18,13 @@ fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
     let entry = enter_scene(CameraRay(made.ray, 0.0, made.is_seen));
     let nothing = Departure(NO_ID, 0u, 0.0, NO_EMITTER);
     let hit = nearest_hit(entry, excluded_by(nothing), Hit(NO_HIT, NO_ID, 0u, 0.0));
-    if (hit.id != NO_ID) {
-        sample = surface_sample(made, hit, seed, number);
+    let on_ground = is_ground(made, hit);
+    if (on_ground || hit.id != NO_ID) {
+        var vertex = ground_vertex(made.ray, made.distance);
+        if (!on_ground) {
+            vertex = sphere_vertex(made.ray, hit, false);
+        }
+        sample = surface_sample(made, vertex, shown, seed, number);
     }
     return sample;
 }

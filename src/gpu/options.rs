@@ -20,8 +20,8 @@ pub struct HeadlessOptions {
     /// Whether indirect dispatches are used where the device supports them. Only experiments and tests turn them off.
     /// The picture does not depend on this option.
     pub indirect: bool,
-    /// Whether one pass takes whole samples of studios, where all spheres are opaque and in one brick and there is no
-    /// ground. It takes less time than several passes. Only experiments and tests turn it off. The picture is the same,
+    /// Whether one pass takes whole samples of studios, where all spheres are opaque and in one brick. It takes less
+    /// time than several passes. Only experiments and tests turn it off. The picture is the same,
     /// but for what a device rounds otherwise.
     pub one_pass: bool,
     /// Edits of the shader source. Only experiments and tests have any.

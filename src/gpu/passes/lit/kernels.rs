@@ -61,13 +61,21 @@ pub(in crate::gpu) enum SkyKind {
     Image,
 }
 
-/// The lamps of a studio that one pass computes.
+/// The studios of which one pass takes whole samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum Lamps {
-    /// At the eye or infinitely far away, without a size and without shadows; and all surfaces are matt.
+pub(in crate::gpu) enum OnePass {
+    /// Lamps at the eye or infinitely far away, without a size and without shadows; all surfaces are matt, and there is
+    /// no ground.
     Sharp,
-    /// Any.
-    Any,
+    /// Any lamps without a ground.
+    Lamps,
+    /// Any lamps and a ground.
+    Ground,
+}
+
+impl OnePass {
+    /// All of them.
+    pub(in crate::gpu) const ALL: [Self; 3] = [Self::Sharp, Self::Lamps, Self::Ground];
 }
 
 /// The paths that a dispatch processes.
@@ -197,7 +205,7 @@ pub(super) fn one_pass_kernel(
     camera: CameraKind,
     structure: Structure,
     exclude_by: ExcludeBy,
-    lamps: Lamps,
+    studio: OnePass,
 ) -> Kernel {
     let mut parts = base(Schedule::Pixels);
     parts.extend(light_search(structure, exclude_by));
@@ -214,16 +222,23 @@ pub(super) fn one_pass_kernel(
         part!("path/film_sums.wgsl"),
         part!("scene/lamp.wgsl"),
         part!("studio/faded.wgsl"),
-        part!("studio/open_share.wgsl"),
+        part!("studio/ambient_light.wgsl"),
+        part!("studio/one_surface.wgsl"),
         part!("studio/one_pass.wgsl"),
     ]);
-    parts.extend(match lamps {
-        Lamps::Sharp => vec![part!("studio/lamp_light.wgsl", "sharp")],
-        Lamps::Any => vec![
+    parts.extend(match studio {
+        OnePass::Sharp => vec![part!("studio/lamp_light.wgsl", "sharp")],
+        OnePass::Lamps | OnePass::Ground => vec![
             part!("path/microfacet.wgsl"),
             part!("studio/reflected.wgsl"),
             part!("studio/lamp_light.wgsl", "any"),
         ],
+    });
+    parts.extend(match studio {
+        OnePass::Sharp | OnePass::Lamps => vec![part!("studio/one_ground.wgsl", "none")],
+        OnePass::Ground => {
+            vec![part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")]
+        }
     });
     Kernel { entry_point: "one_pass", parts }
 }
@@ -418,8 +433,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         }
         let cameras = CameraKind::ALL.iter();
         kernels.extend(cameras.flat_map(|camera| {
-            [Lamps::Sharp, Lamps::Any]
-                .map(|lamps| one_pass_kernel(*camera, structure, exclude_by, lamps))
+            OnePass::ALL.map(|studio| one_pass_kernel(*camera, structure, exclude_by, studio))
         }));
         let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
         kernels.extend(searches.map(|of| of(structure, exclude_by)));

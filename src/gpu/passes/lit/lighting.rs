@@ -5,8 +5,9 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::kernels::{Lamps, Materials, Mode, SkyKind, Sources};
+use super::kernels::{Materials, Mode, OnePass, SkyKind, Sources};
 use super::records::LightingParameters;
+use super::round::BITS;
 use crate::camera::Camera;
 use crate::geometry::math::unit;
 use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
@@ -104,11 +105,18 @@ impl LightingData {
 }
 
 impl LightingData {
-    /// The lamps, if one pass can take whole samples of a scene of so many bricks.
-    pub(super) fn one_pass(&self, bricks: usize) -> Option<Lamps> {
+    /// The kind of studio, if one pass can take whole samples of a scene of so many bricks. With more lamps or
+    /// directions than several passes take at once, they would be summed in another order.
+    pub(super) fn one_pass(&self, bricks: usize) -> Option<OnePass> {
+        let is_few =
+            self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;
+        let is_one = self.mode == Mode::Studio && self.is_opaque && bricks == 1 && is_few;
         let has_ground = self.parameters.flags & flags::GROUND != 0;
-        let is_one = self.mode == Mode::Studio && self.is_opaque && bricks == 1 && !has_ground;
-        is_one.then_some(if self.is_sharp { Lamps::Sharp } else { Lamps::Any })
+        is_one.then_some(match (has_ground, self.is_sharp) {
+            (true, _) => OnePass::Ground,
+            (false, true) => OnePass::Sharp,
+            (false, false) => OnePass::Lamps,
+        })
     }
 
     /// Number of rays that a sample of a studio of opaque spheres takes at most.

@@ -5,7 +5,7 @@ use std::num::NonZeroU64;
 
 use wgpu::{BindGroupLayout, BindingType, Device};
 
-use super::kernels::{self, Lamps, Mode, Schedule, SkyKind};
+use super::kernels::{self, Mode, OnePass, Schedule, SkyKind};
 use super::pass::Pass;
 use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
 use crate::accel::{ListLayout, Structure};
@@ -30,8 +30,8 @@ pub(in crate::gpu) struct LitKey {
     pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
-    /// The lamps, if one pass takes whole samples, which needs a studio of one brick in which all spheres are opaque.
-    pub(in crate::gpu) one_pass: Option<Lamps>,
+    /// The kind of studio, if one pass takes whole samples, which needs one brick in which all spheres are opaque.
+    pub(in crate::gpu) one_pass: Option<OnePass>,
 }
 
 /// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
@@ -165,8 +165,8 @@ impl LitPasses {
         let surfaces = &scene.surface;
         let LitLayouts { frame, advance, film, samples, lighting, sky } = &layouts;
         let [exclude_by, light_exclude_by] = key.exclude_by;
-        if let Some(lamps) = key.one_pass {
-            let kernel = kernels::one_pass_kernel(key.camera, key.structure, exclude_by, lamps);
+        if let Some(studio) = key.one_pass {
+            let kernel = kernels::one_pass_kernel(key.camera, key.structure, exclude_by, studio);
             let groups = [samples, brick(0), lighting, &scene.appearance];
             return Ok(Self {
                 of_samples: SamplePasses::One(build(kernel, &groups)?),
@@ -275,8 +275,8 @@ mod tests {
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
                     let structure = Structure::NestedGrid(ListLayout::Copied);
-                    for lamps in [Lamps::Sharp, Lamps::Any] {
-                        let key = LitKey { structure, one_pass: Some(lamps), ..key };
+                    for studio in OnePass::ALL {
+                        let key = LitKey { structure, one_pass: Some(studio), ..key };
                         if mode == Mode::Studio {
                             LitPasses::new(&device, key, &[]).unwrap();
                         }

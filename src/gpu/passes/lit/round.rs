@@ -13,7 +13,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
 /// Number of lights that are tested before their contributions are added. Each has a bit in a word.
-const BITS: usize = 32;
+pub(super) const BITS: usize = 32;
 
 /// A dispatch of a round.
 #[derive(Clone, Copy, Debug)]
