@@ -57,24 +57,37 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
 
 fn find_any(search: Search, t_max: f32) -> bool {
     var stack: array<u32, BINARY_LEVELS>;
-    // The root, which is node 0, is on the stack.
-    var top = 1u;
+    var top = 0u;
     let slab = SlabRay(search.ray.origin, search.inverse);
-    while (top > 0u && spend(11u)) {
-        top--;
-        let node = stack[top];
-        for (var side = 0u; side < 2u; side++) {
-            let child = binary_child(slab, node, side);
-            if (child.entry > t_max) {
-                continue;
+    var node = 0u;
+    loop {
+        if (!spend(11u)) {
+            break;
+        }
+        let left = binary_child(slab, node, 0u);
+        let right = binary_child(slab, node, 1u);
+        if (any_in_child(search, left, t_max) || any_in_child(search, right, t_max)) {
+            return true;
+        }
+        let goes_left = left.count == BINARY_INNER && left.entry <= t_max;
+        let goes_right = right.count == BINARY_INNER && right.entry <= t_max;
+        if (goes_left && goes_right) {
+            stack[top] = left.link;
+            top++;
+        }
+        node = select(left.link, right.link, goes_right);
+        if (!goes_left && !goes_right) {
+            if (top == 0u) {
+                break;
             }
-            if (child.count == BINARY_INNER) {
-                stack[top] = child.link;
-                top++;
-            } else if (any_in_leaf(search, child.link, child.count, t_max)) {
-                return true;
-            }
+            top--;
+            node = stack[top];
         }
     }
     return false;
+}
+
+fn any_in_child(search: Search, child: BinaryChild, t_max: f32) -> bool {
+    let is_leaf = child.count != BINARY_INNER && child.entry <= t_max;
+    return is_leaf && any_in_leaf(search, child.link, child.count, t_max);
 }

@@ -26,6 +26,9 @@ struct Denoise {
 // Filtered light of each pixel, and the variance of its luminance.
 @group(0) @binding(4) var<storage, read_write> filtered: array<vec4f>;
 
+// A variance of light that is no noise. The filter adds as much to every variance.
+const NO_NOISE: f32 = 1e-8;
+
 // Weight of a B3 spline at a distance from its centre.
 fn spline(distance: i32) -> f32 {
     return select(select(0.0625, 0.25, distance == 1), 0.375, distance == 0);
@@ -54,18 +57,22 @@ fn denoise(@builtin(global_invocation_id) pixel: vec3u) {
     }
     let middle = pixel.y * denoise_pass.size.x + pixel.x;
     let light = lights[middle];
+    // A miss without noise is background, and stays as it is. The loops end at once there: software devices compute both
+    // sides of a branch, but leave a loop that no lane is in.
+    let is_quiet = dot(shapes[middle].xyz, shapes[middle].xyz) == 0.0 && light.w <= NO_NOISE;
+    let last = select(2, -3, is_quiet);
     var sum = vec3f(0.0);
     var variance = 0.0;
     var weights = 0.0;
-    for (var dy = -2; dy <= 2; dy++) {
-        for (var dx = -2; dx <= 2; dx++) {
+    for (var dy = -2; dy <= last; dy++) {
+        for (var dx = -2; dx <= last; dx++) {
             let at = vec2i(pixel.xy) + vec2i(dx, dy) * i32(denoise_pass.step);
             let is_in = all(at >= vec2i(0)) && all(at < vec2i(denoise_pass.size));
             let index = select(middle, u32(at.y) * denoise_pass.size.x + u32(at.x), is_in);
             let other = lights[index];
             let distance = f32(denoise_pass.step) * length(vec2f(f32(dx), f32(dy)));
             let change = luminance(other.rgb - light.rgb);
-            let noise = 4.0 * (light.w + other.w) + 1e-8;
+            let noise = 4.0 * (light.w + other.w) + NO_NOISE;
             let same = likeness(middle, index, max(distance, 1.0)) * exp(-change * change / noise);
             let weight = select(spline(abs(dx)) * spline(abs(dy)) * same, 0.0, !is_in);
             sum += weight * other.rgb;
@@ -73,5 +80,6 @@ fn denoise(@builtin(global_invocation_id) pixel: vec3u) {
             weights += weight;
         }
     }
-    filtered[middle] = vec4f(sum / weights, variance / (weights * weights));
+    let mean = vec4f(sum / weights, variance / (weights * weights));
+    filtered[middle] = select(mean, light, is_quiet);
 }

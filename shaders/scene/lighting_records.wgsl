@@ -23,6 +23,9 @@ struct DispatchParameters {
     paths: u32,
     // Index of the first workgroup.
     first: vec2u,
+    // The first of the tile's workgroups whose rays may hit the scene's box, and their number.
+    visible_first: vec2u,
+    visible_size: vec2u,
 }
 
 struct LightingParameters {

@@ -3,17 +3,21 @@
 // Twin: src/cpu/light/studio.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: one_pass
-// needs: CameraRay, Departure, Hit, LIGHTING_TRANSPARENT, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, camera_ray, dispatch,
-//   enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting, lighting_has, luminance,
-//   nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex,
-//   start_fences, surface_sample, unit2
+// needs: CameraRay, Departure, Hit, LIGHTING_TRANSPARENT, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, WORKGROUP_SIDE,
+//   camera_ray, dispatch, enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting,
+//   lighting_has, luminance, nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair,
+//   sphere_vertex, start_fences, surface_sample, unit2
+
+fn background() -> vec3f {
+    return select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
+}
 
 // There is no early return: with one, Mesa 22.3 fails to compile the kernel.
 fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
     let offset = filter_offset(sample_pair(seed, number, 0u));
     let lens = unit2(sample_pair(seed, number, 1u));
     let made = camera_ray(sample_location(pixel, offset), lens);
-    let shown = select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
+    let shown = background();
     var sample = Sample(vec4f(shown, 0.0), vec3f(0.0));
     let entry = enter_scene(CameraRay(made.ray, 0.0, made.is_seen));
     let nothing = Departure(NO_ID, 0u, 0.0, NO_EMITTER);
@@ -46,12 +50,20 @@ fn one_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     var albedo = others.rgb;
     // If this number depended on a uniform only, Mesa's lavapipe would compile the kernel again for every dispatch.
     let count = dispatch.count + (index >> 31u);
-    for (var i = 0u; i < count; i++) {
+    // All rays of a workgroup outside the visible region show the background.
+    let place = pixel / WORKGROUP_SIDE - dispatch.visible_first;
+    let traced = select(0u, count, all(place < dispatch.visible_size));
+    for (var i = 0u; i < traced; i++) {
         let sample = take_sample(in_film, seed, dispatch.sample + i + (index >> 31u));
         let light = luminance(sample.radiance.rgb);
         sum = plus(sum, vec4f(sample.radiance.rgb, light * light));
         alpha += sample.radiance.w;
         albedo += sample.albedo;
+    }
+    let shown = background();
+    let light = luminance(shown);
+    for (var i = traced; i < count; i++) {
+        sum = plus(sum, vec4f(shown, light * light));
     }
     film[3u * index] = vec4f(sum.value.rgb, alpha);
     film[3u * index + 1u] = sum.rest;

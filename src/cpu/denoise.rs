@@ -4,6 +4,9 @@ use crate::image::Image;
 use crate::image::denoise::{Guided, MissingGuide, PASSES};
 use crate::parallel;
 
+/// A variance of light that is no noise: a miss with no more is background, and stays as it is.
+const NO_NOISE: f64 = 1e-8;
+
 /// Returns a picture with less noise: light is averaged among pixels of similar shape and colour.
 ///
 /// # Errors
@@ -33,6 +36,10 @@ fn filtered(
 ) -> [f64; 4] {
     let middle = (j * width + i) as usize;
     let light = lights[middle];
+    let [x, y, z, _] = guided.shapes[middle];
+    if [x, y, z] == [0.0; 3] && light[3] <= NO_NOISE {
+        return light;
+    }
     let mut sum = [0.0; 4];
     let mut weights = 0.0;
     for dy in -2..=2_i64 {
@@ -45,7 +52,7 @@ fn filtered(
             let other = lights[index];
             let distance = step as f64 * ((dx * dx + dy * dy) as f64).sqrt();
             let change = luminance(other) - luminance(light);
-            let noise = 4.0 * (light[3] + other[3]) + 1e-8;
+            let noise = 4.0 * (light[3] + other[3]) + NO_NOISE;
             let same = likeness(guided, middle, index, distance.max(1.0));
             let weight = spline(dx) * spline(dy) * same * (-change * change / noise).exp();
             for (sum, light) in sum.iter_mut().zip(&other[..3]) {

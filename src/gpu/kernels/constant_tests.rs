@@ -99,6 +99,8 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",
     "SMALLEST_SPOT",
+    // The reference has it in f64.
+    "NO_NOISE",
     // Slots of a path's state, and flags in it.
     "ORIGIN",
     "DIRECTION",

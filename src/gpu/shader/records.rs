@@ -327,7 +327,9 @@ mod tests {
                 list,
                 is_new,
                 paths,
-                first
+                first,
+                visible_first,
+                visible_size
             }),
             layout!(RecolorRange { first, count, shape_count, zero }),
             layout!(LightingParameters {

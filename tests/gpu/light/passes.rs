@@ -21,6 +21,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::passes::too_much_for_one_recording_is_refused", too_much),
         trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
         trial("light::passes::one_pass_makes_the_picture_of_several", one_pass),
+        trial("light::passes::every_structure_makes_the_same_studio", structures),
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
         trial("light::passes::noise_is_measured_when_it_is_asked_for", noise),
@@ -180,6 +181,31 @@ fn one_pass(headless: &'static Headless) {
         device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
     });
     assert!(one == several, "the large picture differs");
+}
+
+/// Some structures are searched in one pass, and others in several.
+fn structures(headless: &'static Headless) {
+    for name in ["studio_ambient_occlusion", "studio_shadow_catcher"] {
+        let mut view = named(name);
+        view.settings.sampling.samples = 3;
+        let pictures = [
+            AccelChoice::Auto,
+            AccelChoice::Grid,
+            AccelChoice::Tree,
+            AccelChoice::BinaryTree,
+            AccelChoice::List,
+        ]
+        .map(|choice| {
+            let accel = headless.plan_accel(&view.scene, choice).build(view.scene.spheres());
+            let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
+            let go_on = &mut |_: &Progress| Decision::GoOn;
+            headless
+                .render_uploaded(&buffers, &view.seen(), &view.settings, LayerSet::COLOR, go_on)
+                .unwrap()
+                .image
+        });
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{name}");
+    }
 }
 
 /// Samples that are recorded one by one and summed in f64 give the same picture, regardless of the number of samples in

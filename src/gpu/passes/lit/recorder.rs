@@ -70,7 +70,13 @@ impl<'a> Recorder<'a> {
             return;
         }
         let tile = &self.frame.tiles[self.tile];
-        let dispatch = DispatchParameters { first: groups.first, ..step.dispatch };
+        let visible = &tile.frames[Area::Visible as usize];
+        let dispatch = DispatchParameters {
+            first: groups.first,
+            visible_first: visible.traced_first,
+            visible_size: visible.traced_size,
+            ..step.dispatch
+        };
         let [x, y] = groups.size;
         let (group, extent) = match step.work {
             Work::Pixels(area) => {

@@ -16,6 +16,8 @@ pub(in crate::gpu) struct DispatchParameters {
     pub(in crate::gpu) is_new: u32,
     pub(in crate::gpu) paths: u32,
     pub(in crate::gpu) first: [u32; 2],
+    pub(in crate::gpu) visible_first: [u32; 2],
+    pub(in crate::gpu) visible_size: [u32; 2],
 }
 
 /// Index of the list of paths whose sampled light must be tested, or of surfaces that studios illuminate:
