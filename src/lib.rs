@@ -133,6 +133,8 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
+#[cfg(feature = "color-by")]
+pub mod added;
 #[cfg(feature = "annotate")]
 pub mod annotate;
 pub mod camera;
@@ -156,6 +158,8 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+#[cfg(feature = "color-by")]
+pub mod select;
 #[cfg(feature = "scene-file")]
 pub mod style;
 mod text;
