@@ -132,7 +132,9 @@ impl Bonds {
             }
         }
         if base.cell.is_some() {
-            added.notes.push("bonds across the borders of the periodic cell are not drawn".to_owned());
+            added
+                .notes
+                .push("bonds across the borders of the periodic cell are not drawn".to_owned());
         }
         Ok(())
     }

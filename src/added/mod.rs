@@ -14,8 +14,9 @@ mod string;
 use std::collections::HashMap;
 
 use crate::image::color::LinearRgb;
-use crate::load::{Labels, Loaded};
+use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::material::SurfaceProperties;
+#[cfg(feature = "scene-file")]
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
 use crate::scene::{Appearance, Colors};
@@ -31,6 +32,9 @@ pub struct Additions {
     pub cell: Option<CellEdges>,
     /// Bonds between atoms.
     pub bonds: Option<Bonds>,
+    /// Whether spheres keep their radii with bonds, because the user chose them. Others become smaller: atoms of elements
+    /// by the factor 0.3, others by 0.6, so that the sticks between them can be seen.
+    pub keeps_radii: bool,
 }
 
 /// The spheres that were added, after those of the data.
@@ -79,37 +83,42 @@ impl Additions {
     /// Whether nothing is added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        *self == Self::default()
+        self.cell.is_none() && self.bonds.is_none()
     }
 
-    /// The factor by which bonds make a sphere of a species smaller, so that the sticks between spheres can be seen; 1
-    /// without bonds.
+    /// The factor by which bonds make a sphere of a species smaller, if the user did not choose its radius.
+    #[cfg(feature = "scene-file")]
     pub(crate) fn radius_factor(&self, species: Option<&str>) -> f64 {
-        self.bonds.as_ref().map_or(1.0, |_| bonds::radius_factor(species))
+        match &self.bonds {
+            Some(_) if !self.keeps_radii => bonds::radius_factor(species),
+            _ => 1.0,
+        }
     }
 
-    /// Makes all spheres of data smaller, as bonds need it. Data whose radii the user chose stays as it is.
+    /// Makes spheres of data smaller, if bonds need it and the user did not choose the radii.
     pub(crate) fn shrink(&self, loaded: &mut Loaded) {
-        if self.bonds.is_none() {
+        if self.bonds.is_none() || self.keeps_radii {
             return;
         }
-        let factors: Option<Vec<f64>> = loaded
-            .labels("species")
-            .map(|labels| labels.names.iter().map(|name| self.radius_factor(Some(name))).collect());
-        let other = self.radius_factor(None);
-        let indices = loaded.labels("species").map_or(&[][..], |labels| &labels.indices).to_vec();
+        let labels = loaded.columns.iter().find_map(|column| match &column.values {
+            ColumnValues::Labels(labels) if column.name == "species" => Some(labels),
+            _ => None,
+        });
+        let factor_of = |name: &String| bonds::radius_factor(Some(name));
+        let factors: Vec<f64> =
+            labels.map(|labels| labels.names.iter().map(factor_of).collect()).unwrap_or_default();
+        let indices = labels.map_or(&[][..], |labels| &labels.indices);
+        let other = bonds::radius_factor(None);
         let factor = |row: usize| {
-            let species = indices.get(row).map(|index| *index as usize);
-            factors.as_ref().zip(species).and_then(|(all, one)| all.get(one).copied())
+            let species = indices.get(row).and_then(|index| factors.get(*index as usize));
+            species.copied().unwrap_or(other)
         };
         match &mut loaded.spheres {
             SphereArray::F32(spheres) => spheres.iter_mut().enumerate().for_each(|(row, s)| {
-                s[3] = (f64::from(s[3]) * factor(row).unwrap_or(other)) as f32;
+                s[3] = (f64::from(s[3]) * factor(row)) as f32;
             }),
             SphereArray::F64(spheres) => {
-                spheres.iter_mut().enumerate().for_each(|(row, s)| {
-                    s[3] *= factor(row).unwrap_or(other);
-                });
+                spheres.iter_mut().enumerate().for_each(|(row, s)| s[3] *= factor(row));
             }
         }
     }
@@ -175,11 +184,11 @@ impl Added {
     }
 
     /// Adds the spheres to those that they were made for.
+    #[cfg(feature = "scene-file")]
     pub(crate) fn extend_spheres(&self, all: &mut Vec<Sphere>) {
-        let of_data = all.len();
         for ([x, y, z, radius], look) in self.spheres.iter().zip(self.looks()) {
             let like = match look {
-                Look::Sphere(index) => all.get(index as usize).filter(|_| of_data > 0).copied(),
+                Look::Sphere(index) => all.get(index as usize).copied(),
                 Look::Own(color) => Some(Sphere::new([0.0; 3], 1.0, color)),
             };
             let center = [*x, *y, *z];

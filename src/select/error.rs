@@ -79,6 +79,8 @@ pub enum SelectProblem {
     )]
     TwoTexts(String),
     /// Neither side is a column.
-    #[error("this compares two fixed values; one of them must be a column, without quotation marks")]
+    #[error(
+        "this compares two fixed values; one of them must be a column, without quotation marks"
+    )]
     NoColumn,
 }

@@ -179,8 +179,8 @@ impl<'a> Data<'a> {
             match operator {
                 _ if label.trim().is_empty() => false,
                 Operator::Equal | Operator::NotEqual => {
-                    let is_equal =
-                        label == wanted || numbers.is_some_and(|(a, b)| Operator::Equal.holds(a, b));
+                    let is_equal = label == wanted
+                        || numbers.is_some_and(|(a, b)| Operator::Equal.holds(a, b));
                     is_equal == (operator == Operator::Equal)
                 }
                 _ => numbers.is_some_and(|(a, b)| operator.holds(a, b)),
