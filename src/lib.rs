@@ -112,7 +112,7 @@
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, readers and the CPU
 //! reference on all cores. `dcd`, `gromacs`, `gsd`, `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`,
 //! `exr`, `hdr`, `las`, `ply`, `scene-file` and `vtk` are readers and writers, and `gzip` (default) reads compressed
-//! files. `color-by` turns columns into colours, and `annotate` draws legends, scale bars and labels.
+//! files. `color-by` turns columns into colours, selects by them, and adds bonds and cells; `annotate` draws legends, scale bars and labels.
 //! `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!

@@ -47,11 +47,11 @@ impl Default for Bonds {
 }
 
 /// The factor of the van der Waals radius that atoms with bonds have.
-const BALL: f64 = 0.3;
+const BALL: f64 = 0.25;
 
 /// The factor of the radius that spheres with bonds have that are not atoms of an element. Their radius is often such
 /// that neighbours touch.
-const OTHER_BALL: f64 = 0.6;
+const OTHER_BALL: f64 = 0.5;
 
 /// The radius of a stick, in radii of the smaller of the spheres that it joins.
 const STICK: f64 = 0.45;

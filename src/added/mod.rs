@@ -33,7 +33,7 @@ pub struct Additions {
     /// Bonds between atoms.
     pub bonds: Option<Bonds>,
     /// Whether spheres keep their radii with bonds, because the user chose them. Others become smaller: atoms of elements
-    /// by the factor 0.3, others by 0.6, so that the sticks between them can be seen.
+    /// by the factor 0.25, others by 0.5, so that the sticks between them can be seen.
     pub keeps_radii: bool,
 }
 
