@@ -19,11 +19,11 @@ const WIDTH: f64 = 1.0 / 300.0;
 /// The least such part, so that there are at most some hundred thousand spheres.
 const LEAST_WIDTH: f64 = 1.0 / 20_000.0;
 
-/// The distance of centres on an edge, in radii. At larger distances, pixels and spheres make a pattern on thin edges.
-const SPACING: f64 = 0.3;
+/// The distance of centres on an edge, in radii. Edges are a few pixels wide, where no one sees the spheres.
+const SPACING: f64 = 0.6;
 
-/// The colour of edges in 8-bit sRGB: a dark grey that is seen on white and on black.
-const COLOR: [u8; 3] = [0x4a, 0x50, 0x59];
+/// The colour of edges in 8-bit sRGB: a dark grey, near that of outlines, which are as wide as an edge.
+const COLOR: [u8; 3] = [0x33, 0x38, 0x3f];
 
 impl CellEdges {
     /// Edges of this width.

@@ -174,21 +174,18 @@ impl<'a> Data<'a> {
         if !is_equality && wanted_number.is_none() {
             return Err(self.error(other, SelectProblem::OrderOfText { column: one_line(name) }));
         }
-        let label_matches = |label: &String| {
+        let is_equal = |label: &String| {
             let numbers = number(label).zip(wanted_number);
-            match operator {
-                _ if label.trim().is_empty() => false,
-                Operator::Equal | Operator::NotEqual => {
-                    let is_equal = label == wanted
-                        || numbers.is_some_and(|(a, b)| Operator::Equal.holds(a, b));
-                    is_equal == (operator == Operator::Equal)
-                }
-                _ => numbers.is_some_and(|(a, b)| operator.holds(a, b)),
-            }
+            label == wanted || numbers.is_some_and(|(a, b)| Operator::Equal.holds(a, b))
+        };
+        let label_matches = |label: &String| match operator {
+            _ if label.trim().is_empty() => false,
+            Operator::Equal => is_equal(label),
+            Operator::NotEqual => !is_equal(label),
+            _ => number(label).zip(wanted_number).is_some_and(|(a, b)| operator.holds(a, b)),
         };
         let are_matches: Vec<bool> = labels.names.iter().map(label_matches).collect();
-        let is_known = is_there || are_matches.contains(&(operator == Operator::Equal));
-        if is_equality && !is_known && !labels.names.is_empty() {
+        if is_equality && !labels.names.is_empty() && !labels.names.iter().any(is_equal) {
             self.notes.push(absent(name, wanted, labels));
         }
         let of = |index: &u32| are_matches.get(*index as usize).copied().unwrap_or(false);

@@ -135,7 +135,7 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
         }
     }
     // All twelve edges have as many spheres as their length needs, and the corners have eight.
-    let [of_a, of_b, of_c] = [a, b, c].map(|edge| (edge.length() / (0.3 * radius)).ceil() as usize);
+    let [of_a, of_b, of_c] = [a, b, c].map(|edge| (edge.length() / (0.6 * radius)).ceil() as usize);
     let expected = [[of_a; 4], [of_b; 4], [of_c; 4]].concat();
     assert_eq!(on_edge.to_vec(), expected);
     assert_eq!(scene.added(), expected.iter().sum::<usize>() + 8);
