@@ -197,9 +197,9 @@ impl Added {
     }
 
     /// Adds the look of the spheres to that of `count` spheres.
-    pub(crate) fn extend_appearance(&self, appearance: Appearance, count: usize) -> Appearance {
-        let surfaces = self.surfaces(&appearance, count);
-        let colors = self.colors(&appearance, count);
+    pub(crate) fn extend_appearance(&self, appearance: &Appearance, count: usize) -> Appearance {
+        let surfaces = self.surfaces(appearance, count);
+        let colors = self.colors(appearance, count);
         match surfaces {
             Some((surfaces, indices)) => Appearance::new(colors).with_surfaces(surfaces, indices),
             None => {

@@ -135,7 +135,7 @@ impl Mapping {
         let count = loaded.spheres.len();
         let mut appearance = mapped.appearance(count, base, SurfaceProperties::default());
         if !added.is_empty() {
-            appearance = added.extend_appearance(appearance, count);
+            appearance = added.extend_appearance(&appearance, count);
             added.extend_array(&mut loaded.spheres);
         }
         let scene = Scene::from_parts(loaded.spheres, appearance)?.with_added(added.len());

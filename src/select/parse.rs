@@ -86,11 +86,11 @@ impl Operator {
     }
 
     /// Compares two numbers. NaN never matches.
+    #[allow(clippy::float_cmp, reason = "the user asks whether numbers are equal")]
     pub(super) fn holds(self, a: f64, b: f64) -> bool {
         match self {
-            #[allow(clippy::float_cmp, reason = "the user asks for equal numbers")]
             Self::Equal => a == b,
-            Self::NotEqual => a < b || a > b,
+            Self::NotEqual => a != b && !a.is_nan() && !b.is_nan(),
             Self::Less => a < b,
             Self::LessEqual => a <= b,
             Self::Greater => a > b,
