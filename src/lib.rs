@@ -112,7 +112,7 @@
 //! `gpu` (default) is the compute-shader renderer. `parallel` (default) runs builders, readers and the CPU
 //! reference on all cores. `dcd`, `gromacs`, `gsd`, `lammps`, `mmcif`, `npy`, `pdb`, `png` and `xyz` (default), `csv`,
 //! `exr`, `hdr`, `las`, `ply`, `scene-file` and `vtk` are readers and writers, and `gzip` (default) reads compressed
-//! files. `color-by` turns columns into colours, and `annotate` draws legends, scale bars and labels.
+//! files. `color-by` turns columns into colours, selects by them, and adds bonds and cells; `annotate` draws legends, scale bars and labels.
 //! `run-file` stores what a device rendered. `all-formats` is all of these formats. To embed only the
 //! renderer, use `default-features = false, features = ["gpu"]`. The command-line program is the package `pinhole-cli`.
 //!
@@ -133,6 +133,8 @@ extern crate self as pinhole;
 pub use glam;
 
 pub mod accel;
+#[cfg(feature = "color-by")]
+pub mod added;
 #[cfg(feature = "annotate")]
 pub mod annotate;
 pub mod camera;
@@ -156,6 +158,8 @@ pub mod render;
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+#[cfg(feature = "color-by")]
+pub mod select;
 #[cfg(feature = "scene-file")]
 pub mod style;
 mod text;

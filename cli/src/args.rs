@@ -60,6 +60,8 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]
+    pub(super) structure: super::structure_flags::StructureArgs,
+    #[command(flatten)]
     pub(super) color: super::color_flags::ColorArgs,
     #[command(flatten)]
     pub(super) light: LightArgs,

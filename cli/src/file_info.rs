@@ -82,6 +82,8 @@ pub(super) struct DataReport {
     pub(super) colors: bool,
     pub(super) opacities: bool,
     pub(super) cell: Option<[[f64; 3]; 3]>,
+    /// The corner from which the edges of the cell start.
+    pub(super) cell_origin: Option<[f64; 3]>,
     pub(super) columns: Vec<ColumnReport>,
 }
 
@@ -172,6 +174,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
         colors: loaded.colors.is_some(),
         opacities: loaded.opacities.is_some(),
         cell: loaded.cell,
+        cell_origin: loaded.cell.map(|_| loaded.cell_origin),
         columns: loaded.columns.iter().map(ColumnReport::new).collect(),
     });
     Ok(with_spheres(path, kind, &loaded))
@@ -268,7 +271,7 @@ fn of_scene(path: &Path, args: &FileArgs) -> Result<Report, Failure> {
         file: path.display().to_string(),
         bytes: path.metadata().ok().map(|found| found.len()),
         kind,
-        spheres: scene.len(),
+        spheres: scene.len() - scene.added(),
         min: bounds.as_ref().map(|bounds| bounds.min().to_array()),
         max: bounds.as_ref().map(|bounds| bounds.max().to_array()),
         radius_min: radii.clone().reduce(f64::min),

@@ -56,7 +56,9 @@ pub(super) fn readable(report: &Report) -> String {
         line("opacities", yes_or_no(data.opacities));
         if let Some(cell) = data.cell {
             let edges = cell.map(|edge| format!("({})", edge.map(short).join(" ")));
-            line("cell", edges.join(" "));
+            let origin = data.cell_origin.filter(|origin| origin.iter().any(|x| *x != 0.0));
+            let origin = origin.map(|origin| format!(" from ({})", origin.map(short).join(" ")));
+            line("cell", edges.join(" ") + &origin.unwrap_or_default());
         }
         if !data.columns.is_empty() {
             let rows: Vec<_> = data.columns.iter().map(row).collect();

@@ -23,7 +23,7 @@ pub(super) const HELP: &str = "The self-test runs computations on the adapter an
     outcome (ok, note, FAILED), words, figures.\n\n\
     JSON of a file: `version`, `file`, `bytes`, `kind` (data or scene), `spheres`, `min`, `max`, `radius_min`, \
     `radius_max`, `notes`. Of data also `format`, `compressed`, `frames`, `frame`, `problem`, `colors`, `opacities`, \
-    `cell`, `columns` (name, kind; of numbers min, max, nan; of text different, first). Of a scene also `width`, \
+    `cell`, `cell_origin`, `columns` (name, kind; of numbers min, max, nan; of text different, first). Of a scene also `width`, \
     `height`, `camera`, `stereo`, `integrator`, `samples`, `lights`, `files`. New versions may add keys, but do not \
     change these.";
 

@@ -17,6 +17,7 @@ use super::input_format::{Format, data_format};
 use super::light::LightFlags;
 pub(super) use super::read_file::read;
 use super::report::Report;
+use super::structure_flags::StructureFlags;
 use contents::Contents;
 pub(super) use frames::FoundFrames;
 use frames::OpenFrames;
@@ -103,6 +104,7 @@ pub(super) struct Source {
     /// The style of data files.
     style: Style,
     color: ColorFlags,
+    structure: StructureFlags,
     /// The open file, if several of its frames are read.
     frames: Option<OpenFrames>,
 }
@@ -144,6 +146,11 @@ impl Source {
         Self { color, ..self }
     }
 
+    /// Returns this source with flags that select spheres and add others.
+    pub(super) fn with_structure(self, structure: StructureFlags) -> Self {
+        Self { structure, ..self }
+    }
+
     /// Makes a source from a scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
@@ -156,6 +163,7 @@ impl Source {
             light: LightFlags::default(),
             style: Style::Fast,
             color: ColorFlags::default(),
+            structure: StructureFlags::default(),
             frames: None,
         }
     }
@@ -226,6 +234,8 @@ impl Source {
         }
         data.mapping = self.color.apply_to(&data.mapping)?;
         data.mapping.color = data.mapping.color.or(kinds);
+        data.select = self.structure.select.clone().or(data.select);
+        data.additions = self.structure.additions(&data.additions, false);
         Ok(Some(data))
     }
 

@@ -56,6 +56,7 @@ mod report;
 mod self_test;
 mod speak;
 mod stop_rule;
+mod structure_flags;
 #[cfg(feature = "gpu")]
 mod table;
 mod threads;

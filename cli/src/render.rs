@@ -29,6 +29,7 @@ use super::speak::tell;
 use super::stop_rule::StopRule;
 #[cfg(feature = "gpu")]
 use super::stop_rule::Watching;
+use super::structure_flags::StructureFlags;
 use super::threads;
 use super::views::Views;
 #[cfg(feature = "gpu")]
@@ -61,7 +62,10 @@ impl Job {
         let annotation =
             AnnotationFlags::new(&args.color.annotation, outputs.format(), color.names_column())?;
         Ok(Self {
-            source: Source::new(&args.input)?.with_light(light).with_color(color),
+            source: Source::new(&args.input)?
+                .with_light(light)
+                .with_color(color)
+                .with_structure(StructureFlags::new(&args.structure)?),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
             annotation,

@@ -22,8 +22,12 @@ pub(super) struct ReportArgs {
 pub(super) struct Report {
     /// The file that was rendered.
     pub(super) path: String,
-    /// The number of spheres in the scene.
+    /// The number of spheres in the scene, without those that were added to the data.
     pub(super) spheres: usize,
+    /// The number of spheres from which a selection kept these.
+    pub(super) selected_from: Option<usize>,
+    /// The number of bonds, if bonds are drawn.
+    pub(super) bonds: Option<usize>,
     pub(super) has_atoms: bool,
     pub(super) style: Option<Style>,
     /// The flags for the view, if there are such.
@@ -46,7 +50,7 @@ impl Report {
 
     fn line_with(&self, start: &str, elapsed: Duration) -> String {
         let noun = if self.has_atoms { "atom" } else { "sphere" };
-        let plural = if self.spheres == 1 { "" } else { "s" };
+        let plural = if self.selected_from.unwrap_or(self.spheres) == 1 { "" } else { "s" };
         let style = self.style.map(|style| format!("--style {}", style.name()));
         let flags: Vec<String> = style
             .into_iter()
@@ -54,8 +58,18 @@ impl Report {
             .chain(self.color_by.as_ref().map(|column| format!("--color-by {column}")))
             .collect();
         let flags = if flags.is_empty() { String::new() } else { format!("; {}", flags.join(" ")) };
-        let (path, count) = (&self.path, grouped(self.spheres));
-        format!("{path}: {start}{count} {noun}{plural}{flags}; {:.1} s", elapsed.as_secs_f64())
+        let count = match self.selected_from {
+            Some(all) => format!("kept {} of {}", grouped(self.spheres), grouped(all)),
+            None => grouped(self.spheres),
+        };
+        let bonds = self.bonds.map_or(String::new(), |bonds| {
+            format!(", {} bond{}", grouped(bonds), if bonds == 1 { "" } else { "s" })
+        });
+        let path = &self.path;
+        format!(
+            "{path}: {start}{count} {noun}{plural}{bonds}{flags}; {:.1} s",
+            elapsed.as_secs_f64()
+        )
     }
 }
 

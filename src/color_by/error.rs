@@ -3,6 +3,7 @@
 use super::column::ColumnError;
 use super::number::short;
 use super::scale::ScaleError;
+use crate::added::AddError;
 use crate::scene::SceneError;
 
 /// Why a column does not give colours, radii, opacities or strengths of light.
@@ -57,6 +58,9 @@ pub enum ColorByError {
     /// A sphere is out of range.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// Bonds or the edges of the cell cannot be added.
+    #[error(transparent)]
+    Add(#[from] AddError),
     /// A factor is not a positive number.
     #[error("the factor of `{column}` is {}; it must be finite and greater than 0", short(*.value))]
     Factor {

@@ -6,6 +6,7 @@ use super::column::numbers;
 use super::error::ColorByError;
 use super::surface::{EmissionBy, Strengths, check_factor, opacities, strengths};
 use super::{ColorBy, ColorKey, Coloring, is_kept};
+use crate::added::{Added, Additions, Base};
 use crate::image::color::LinearRgb;
 use crate::load::{Column, Loaded};
 use crate::scene::material::{Material, SurfaceProperties};
@@ -102,12 +103,27 @@ impl Mapping {
     ///
     /// # Errors
     /// Returns an error if a column cannot be used, or names the first sphere that is out of range.
-    pub fn scene(
+    pub fn scene(&self, loaded: Loaded, color: LinearRgb) -> Result<(Scene, Mapped), ColorByError> {
+        let (scene, mapped, _) = self.scene_with(loaded, color, &Additions::default())?;
+        Ok((scene, mapped))
+    }
+
+    /// Makes a scene like [`Mapping::scene`], with bonds or the edges of the cell after the spheres of the file. They do
+    /// not count for the range of colours.
+    ///
+    /// # Errors
+    /// The errors of [`Mapping::scene`], and an error if the file lacks what the additions need.
+    pub fn scene_with(
         &self,
         mut loaded: Loaded,
         color: LinearRgb,
-    ) -> Result<(Scene, Mapped), ColorByError> {
+        additions: &Additions,
+    ) -> Result<(Scene, Mapped, Added), ColorByError> {
         let mut mapped = self.apply(&mut loaded.spheres, &loaded.columns, &[])?;
+        if self.radius.is_none() {
+            additions.shrink(&mut loaded);
+        }
+        let added = additions.add(&Base::of(&loaded))?;
         if let (None, Some(of_file)) = (&mapped.opacities, &loaded.opacities) {
             let level = |opacity: &f32| (opacity * 255.0).round() as u8;
             mapped.opacities = Some(of_file.iter().map(level).collect());
@@ -117,8 +133,13 @@ impl Mapping {
             _ => Colors::One(color),
         };
         let count = loaded.spheres.len();
-        let appearance = mapped.appearance(count, base, SurfaceProperties::default());
-        Ok((Scene::from_parts(loaded.spheres, appearance)?, mapped))
+        let mut appearance = mapped.appearance(count, base, SurfaceProperties::default());
+        if !added.is_empty() {
+            appearance = added.extend_appearance(&appearance, count);
+            added.extend_array(&mut loaded.spheres);
+        }
+        let scene = Scene::from_parts(loaded.spheres, appearance)?.with_added(added.len());
+        Ok((scene, mapped, added))
     }
 }
 

@@ -12,12 +12,14 @@ pub struct Subject<'a> {
     origin: DVec3,
     /// Centres in that frame, and radii. If there are none, the box is framed.
     spheres: &'a [[f32; 4]],
+    /// The number of spheres at the end that were added to those of the data.
+    added: usize,
     bounds: Bounds,
 }
 
 impl From<Bounds> for Subject<'_> {
     fn from(bounds: Bounds) -> Self {
-        Self { origin: DVec3::ZERO, spheres: &[], bounds }
+        Self { origin: DVec3::ZERO, spheres: &[], added: 0, bounds }
     }
 }
 
@@ -31,7 +33,20 @@ impl<'a> Subject<'a> {
     /// Spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which is framed if
     /// there are no spheres.
     pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
-        Self { origin, spheres, bounds }
+        Self { origin, spheres, added: 0, bounds }
+    }
+
+    /// The same spheres, of which the last `added` are framed but do not count for what the data is like.
+    pub(crate) fn with_added(self, added: usize) -> Self {
+        Self { added, ..self }
+    }
+
+    /// The spheres of the data, or all if there are no such.
+    fn of_data(&self) -> &'a [[f32; 4]] {
+        match self.spheres.len().saturating_sub(self.added) {
+            0 => self.spheres,
+            count => &self.spheres[..count],
+        }
     }
 
     /// The axis-aligned box in world space.
@@ -73,7 +88,7 @@ impl<'a> Subject<'a> {
         parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most)
     }
 
-    /// The axis (0, 1 or 2) along which all centres of the spheres lie in one plane, if there is exactly one.
+    /// The axis (0, 1 or 2) along which all centres of the spheres of the data lie in one plane, if there is exactly one.
     #[must_use]
     pub fn flat_axis(&self) -> Option<usize> {
         let of_chunk = |_, chunk: &[[f32; 4]]| {
@@ -84,7 +99,7 @@ impl<'a> Subject<'a> {
                 ]
             })
         };
-        let extents = parallel::map_chunks(self.spheres, of_chunk).into_iter().reduce(
+        let extents = parallel::map_chunks(self.of_data(), of_chunk).into_iter().reduce(
             |[low, high], [l, h]| {
                 [
                     std::array::from_fn(|i| low[i].min(l[i])),
@@ -99,11 +114,11 @@ impl<'a> Subject<'a> {
         flat.next().filter(|_| flat.next().is_none())
     }
 
-    /// The mean radius of the spheres; `None` for a box.
+    /// The mean radius of the spheres of the data; `None` for a box.
     #[must_use]
     pub fn mean_radius(&self) -> Option<f64> {
         let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|s| f64::from(s[3])).sum::<f64>();
-        let sum: f64 = parallel::map_chunks(self.spheres, of_chunk).into_iter().sum();
-        (!self.spheres.is_empty()).then(|| sum / self.spheres.len() as f64)
+        let sum: f64 = parallel::map_chunks(self.of_data(), of_chunk).into_iter().sum();
+        (!self.spheres.is_empty()).then(|| sum / self.of_data().len() as f64)
     }
 }

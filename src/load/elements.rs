@@ -41,16 +41,21 @@ pub(super) struct Appearance {
 ///
 /// A species that is not an element gets the radius 2 Å and the colour deep pink.
 pub(super) fn appearance(species: &str) -> Appearance {
-    let element = match species.parse::<usize>() {
-        Ok(number) => Element::list().get(number.wrapping_sub(1)).copied(),
-        Err(_) => by_symbol(species.trim_end_matches(|c: char| !c.is_ascii_alphabetic())),
-    };
+    let element = element(species);
     let color = element.and_then(|e| e.jmol_color()).map_or(FALLBACK_COLOR, |c| [c.r, c.g, c.b]);
     let radius = element
         .and_then(|e| VAN_DER_WAALS.get(e.atomic_number() as usize - 1).copied())
         .filter(|radius| *radius > 0.0)
         .unwrap_or(FALLBACK_RADIUS);
     Appearance { radius, color: LinearRgb::from_srgb8(color), is_element: element.is_some() }
+}
+
+/// Returns the element that a species is, written in any of these ways.
+pub(super) fn element(species: &str) -> Option<Element> {
+    match species.parse::<usize>() {
+        Ok(number) => Element::list().get(number.wrapping_sub(1)).copied(),
+        Err(_) => by_symbol(species.trim_end_matches(|c: char| !c.is_ascii_alphabetic())),
+    }
 }
 
 fn by_symbol(symbol: &str) -> Option<Element> {

@@ -153,6 +153,10 @@ impl Frame<'_> {
         loaded.columns = others;
         loaded.notes.extend(notes);
         loaded.cell = self.cell()?;
+        // The box of HOOMD-blue has its middle at the origin.
+        if let Some([a, b, c]) = loaded.cell {
+            loaded.cell_origin = std::array::from_fn(|axis| -0.5 * (a[axis] + b[axis] + c[axis]));
+        }
         Ok(loaded)
     }
 

@@ -21,6 +21,8 @@ pub struct Loaded {
     pub columns: Vec<Column>,
     /// The three edge vectors of the periodic cell, if the file has one.
     pub cell: Option<[[f64; 3]; 3]>,
+    /// The corner of the cell from which the edge vectors start; zero if the file does not say where it is.
+    pub cell_origin: [f64; 3],
     /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
     /// Notes for the user that are not errors, one line each and without the file's name.
@@ -57,6 +59,33 @@ pub struct Labels {
     pub indices: Vec<u32>,
 }
 
+impl Labels {
+    /// Leaves out the spheres for which `is_kept` is false, and texts that no sphere has then.
+    fn keep(&mut self, is_kept: &[bool]) {
+        retain(&mut self.indices, is_kept);
+        let mut renumbered: Vec<Option<u32>> = vec![None; self.names.len()];
+        let mut names = Vec::new();
+        for index in &mut self.indices {
+            let old = *index as usize;
+            // An index without a text stays one.
+            let (Some(new), Some(name)) = (renumbered.get_mut(old), self.names.get_mut(old)) else {
+                *index = u32::MAX;
+                continue;
+            };
+            *index = *new.get_or_insert_with(|| {
+                names.push(std::mem::take(name));
+                names.len() as u32 - 1
+            });
+        }
+        self.names = names;
+    }
+}
+
+fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
+    let mut is_kept = is_kept.iter();
+    values.retain(|_| is_kept.next().copied().unwrap_or(true));
+}
+
 impl Loaded {
     /// Makes a `Loaded` that has spheres and nothing else.
     #[must_use]
@@ -67,6 +96,7 @@ impl Loaded {
             opacities: None,
             columns: Vec::new(),
             cell: None,
+            cell_origin: [0.0; 3],
             frames: None,
             notes: Vec::new(),
             unknown: None,
@@ -108,6 +138,28 @@ impl Loaded {
             }
         }
         self.unknown = left;
+    }
+
+    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. What is
+    /// beyond the end of `is_kept` stays.
+    pub fn keep(&mut self, is_kept: &[bool]) {
+        match &mut self.spheres {
+            SphereArray::F32(spheres) => retain(spheres, is_kept),
+            SphereArray::F64(spheres) => retain(spheres, is_kept),
+        }
+        self.colors.iter_mut().for_each(|colors| retain(colors, is_kept));
+        self.opacities.iter_mut().for_each(|opacities| retain(opacities, is_kept));
+        for column in &mut self.columns {
+            match &mut column.values {
+                ColumnValues::Labels(labels) => labels.keep(is_kept),
+                ColumnValues::Numbers(numbers) => retain(numbers, is_kept),
+            }
+        }
+        // Nobody needs to know of species that are not in the picture.
+        let left: Option<Vec<String>> = self.labels("species").map(|labels| labels.names.clone());
+        if let Some(left) = left {
+            self.correct_notes(false, false, |name| left.iter().all(|other| other != name));
+        }
     }
 
     /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.

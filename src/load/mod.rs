@@ -20,6 +20,8 @@ mod atoms;
 #[cfg(feature = "binary")]
 #[allow(dead_code, reason = "not every format has every kind of number")]
 mod binary;
+#[cfg(all(feature = "color-by", feature = "table"))]
+mod covalent;
 #[cfg(feature = "csv")]
 pub mod csv;
 #[cfg(feature = "dcd")]
@@ -82,6 +84,8 @@ pub mod xyz;
 
 #[cfg(feature = "binary")]
 pub use binary::BinaryError;
+#[cfg(all(feature = "color-by", feature = "table"))]
+pub(crate) use covalent::{Covalent, covalent};
 pub use error::{LoadError, OptionError};
 pub use format::{Format, Options};
 pub use formats::FORMATS;

@@ -5,7 +5,7 @@
 //! columns: `Properties=name:type:columns:…`, as ASE and OVITO write it. A property of several numbers is several columns:
 //! `forces:R:3` is `forces.x`, `forces.y` and `forces.z`. What they mean follows from their names, as in all tables: of
 //! `species` (or `Z`), `pos`, `radius`, `color` and others spheres are made, and the rest become columns of [`Loaded`].
-//! `Lattice` is the cell. Lengths are taken as they are, in Å.
+//! `Lattice` is the cell, which starts at `Origin`. Lengths are taken as they are, in Å.
 
 use std::io;
 
@@ -98,6 +98,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadEr
         |message: String| XyzError::Properties { line: lines_before, message: one_line(&message) };
     let declared = Declared::of_comment(&comment).map_err(refused)?;
     let cell = columns::cell_of(&comment).map_err(refused)?;
+    let origin = columns::origin_of(&comment).map_err(refused)?;
     let rows = Rows { text: lines.rest, lines_before, may_be_longer: declared.is_plain };
     let table = Table { columns: rows.read(&declared.fields)? };
     let mut loaded = rows::into_loaded(table, options, |row| lines_before + row + 1).map_err(
@@ -111,6 +112,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadEr
         },
     )?;
     loaded.cell = cell;
+    loaded.cell_origin = origin.filter(|_| cell.is_some()).unwrap_or_default();
     let values = Lines::new(lines.rest).next().map_or(0, |line| Values { rest: line }.count());
     if declared.is_plain && values > declared.fields.len() {
         loaded.notes.push(format!(

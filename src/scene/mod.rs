@@ -47,6 +47,8 @@ pub struct Scene {
     /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
+    /// The number of spheres at the end that were added to those of the data.
+    added: usize,
 }
 
 /// Why spheres and an appearance do not make a scene.
@@ -185,7 +187,7 @@ impl Scene {
         bounds: Option<Bounds>,
     ) -> Self {
         let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
-        Self { origin, spheres, appearance, bounds }
+        Self { origin, spheres, appearance, bounds, added: 0 }
     }
 
     /// The same spheres, all with the same surface properties.
@@ -194,6 +196,20 @@ impl Scene {
         let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_surface(surface);
         self.appearance = Arc::new(SceneAppearance::new(appearance, self.spheres.len()));
         self
+    }
+
+    /// The same spheres, of which the last `count` were added to those of the data, such as the edges of a cell. They do
+    /// not count for what is chosen by the data: the mean radius, and whether it is flat.
+    #[must_use]
+    pub fn with_added(mut self, count: usize) -> Self {
+        self.added = count.min(self.spheres.len());
+        self
+    }
+
+    /// The number of spheres at the end that were added to those of the data; see [`Scene::with_added`].
+    #[must_use]
+    pub fn added(&self) -> usize {
+        self.added
     }
 
     /// A scene of only the opaque spheres in the same frame; `None` if all spheres are opaque.
@@ -293,7 +309,7 @@ impl Scene {
     /// What a camera should frame: all spheres, or a unit cube if there are none.
     #[must_use]
     pub fn subject(&self) -> Subject<'_> {
-        Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame())
+        Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame()).with_added(self.added)
     }
 
     /// The number of spheres.

@@ -5,16 +5,19 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::additions::AdditionKeys;
 use super::mapping::MappingKeys;
 use super::materials::Materials;
 use super::span::{Keys, Lines, Number, SceneFileError, WithSpan, range_of};
 use super::value::ColorValue;
 use super::words::unknown;
+use crate::added::Additions;
 use crate::color_by::Mapping;
 use crate::exact::Table;
 use crate::image::color::LinearRgb;
 use crate::load::FORMATS;
 use crate::scene::material::SurfaceProperties;
+use crate::select::Selection;
 
 /// A reference to a data file, and the keys of the scene file that concern its spheres.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +47,10 @@ pub struct Data {
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
+    /// Which spheres are kept; all if there is no such expression.
+    pub select: Option<Selection>,
+    /// The edges of the cell, and bonds.
+    pub additions: Additions,
     /// What columns decide: colours, radii, opacities, strengths of light.
     pub mapping: Mapping,
 }
@@ -87,6 +94,7 @@ pub(super) struct DataKeys {
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
     pub(super) mapping: MappingKeys,
+    pub(super) additions: AdditionKeys,
 }
 
 impl DataKeys {
@@ -110,7 +118,8 @@ impl DataKeys {
                 ("elements_by", range_of(&self.elements_by)),
                 ("leave_out", range_of(&self.leave_out)),
             ];
-            let mut orphans = orphans.into_iter().chain(self.mapping.spans());
+            let mut orphans =
+                orphans.into_iter().chain(self.mapping.spans()).chain(self.additions.spans());
             let orphan = orphans.find_map(|(key, span)| Some((key, span?.start)));
             return match orphan {
                 Some((key, start)) => Err(lines.span(start).error(format!(
@@ -130,6 +139,7 @@ impl DataKeys {
                 surface: materials.over(surface, material, opacity, lines)?,
             })
         });
+        let (select, additions) = self.additions.read(lines)?;
         Ok(Some(WithSpan {
             span: lines.span(file.span().start),
             value: Data {
@@ -145,6 +155,8 @@ impl DataKeys {
                 elements: elements.collect::<Result<_, _>>()?,
                 elements_by: self.elements_by.map(Spanned::into_inner).unwrap_or_default(),
                 leave_out: self.leave_out.into_iter().flat_map(Spanned::into_inner).collect(),
+                select,
+                additions,
                 mapping: self.mapping.read(lines)?,
             },
         }))
@@ -181,6 +193,8 @@ impl Data {
             elements: Vec::new(),
             elements_by: Vec::new(),
             leave_out: Vec::new(),
+            select: None,
+            additions: Additions::default(),
         }
     }
 }

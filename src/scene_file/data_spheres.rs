@@ -1,12 +1,15 @@
 //! Applies the keys of a scene file to the spheres of its data.
 
+use super::additions;
 use super::data::{Data, Element};
 use super::value::DEFAULT_COLOR;
+use crate::added::{AddError, Added};
 use crate::color_by::{ColorByError, ColorKey, Mapped, Mapping};
 use crate::image::color::LinearRgb;
 use crate::load::{ColumnValues, Labels, Loaded};
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
+use crate::select::{Kept, SelectError};
 
 /// The spheres of a scene's data.
 #[derive(Clone, Debug)]
@@ -19,10 +22,32 @@ pub enum DataSpheres {
     Mapped(SphereArray, Box<Mapped>),
 }
 
+/// The spheres of a scene's data, with all that the keys of the scene file say about them.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct AppliedData {
+    /// The spheres: first those of the data, then those that were added.
+    pub spheres: DataSpheres,
+    /// What colours mean, if a column gives them.
+    pub color_key: Option<ColorKey>,
+    /// Notes for the user, such as names that do not occur in the data.
+    pub notes: Vec<String>,
+    /// What the selection kept, if there is one.
+    pub kept: Option<Kept>,
+    /// What was added to the spheres of the data.
+    pub added: Added,
+}
+
 /// An error of applying the keys of a scene file to its data.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataError {
+    /// The selection does not apply to the data.
+    #[error("`select`: {0}")]
+    Select(#[from] SelectError),
+    /// Bonds or the edges of the cell cannot be added.
+    #[error(transparent)]
+    Add(#[from] AddError),
     /// A column cannot decide what it should.
     #[error(transparent)]
     ColorBy(#[from] ColorByError),
@@ -50,17 +75,30 @@ pub enum DataError {
     },
 }
 
+/// Factors of radii, which differ between species.
+struct RadiusFactors<'a> {
+    of_species: Vec<f64>,
+    labels: Option<&'a Labels>,
+    other: f64,
+}
+
+impl RadiusFactors<'_> {
+    fn of(&self, index: usize) -> f64 {
+        let species = self.labels.and_then(|labels| labels.indices.get(index));
+        let factor = species.and_then(|species| self.of_species.get(*species as usize));
+        factor.copied().unwrap_or(self.other)
+    }
+}
+
 impl Data {
     /// Applies the colours, radii and surface properties of the scene file to the spheres of its data, and leaves out
-    /// the spheres that it names. Returns the spheres, what their colours mean if a column gives them, and notes for the
-    /// user, such as names that do not occur in the data.
+    /// the spheres that it names and those that it does not select. Then adds bonds and the edges of the cell.
     ///
     /// # Errors
-    /// If the scene file names a column that the data does not have, or whose values cannot be used.
-    pub fn apply(
-        &self,
-        mut loaded: Loaded,
-    ) -> Result<(DataSpheres, Option<ColorKey>, Vec<String>), DataError> {
+    /// If the scene file names a column that the data does not have, or whose values cannot be used; if it selects
+    /// nothing; or if the data lacks what bonds or a box need.
+    pub fn apply(&self, mut loaded: Loaded) -> Result<AppliedData, DataError> {
+        let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let Mapping { color, radius, .. } = &self.mapping;
         let is_given = |species: &str| {
             let by_species =
@@ -69,16 +107,21 @@ impl Data {
         };
         loaded.correct_notes(color.is_some(), radius.is_some(), is_given);
         let mut notes = std::mem::take(&mut loaded.notes);
-        if loaded.colors.is_none() && loaded.opacities.is_none() && !self.asks_for_text() {
+        notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
+        if loaded.colors.is_none()
+            && loaded.opacities.is_none()
+            && !self.asks_for_text()
+            && self.additions.is_empty()
+        {
             let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &[])?;
             loaded.spheres.scale_radii(self.radius_scale);
             notes.extend_from_slice(mapped.notes());
-            let key = mapped.key().cloned();
+            let color_key = mapped.key().cloned();
             let spheres = match self.mapping.is_empty() {
                 true => DataSpheres::Array(loaded.spheres),
                 false => DataSpheres::Mapped(loaded.spheres, Box::new(mapped)),
             };
-            return Ok((spheres, key, notes));
+            return Ok(AppliedData { spheres, color_key, notes, kept, added: Added::default() });
         }
         let is_left_out = self.left_out(&loaded, &mut notes)?;
         let mapped = self.mapping.apply(&mut loaded.spheres, &loaded.columns, &is_left_out)?;
@@ -104,12 +147,14 @@ impl Data {
             })
         };
         let color = self.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
-        let mut spheres = Vec::new();
+        let factors = self.radius_factors(&loaded);
+        let (mut spheres, mut indices) = (Vec::new(), Vec::new());
         for (index, mut sphere) in loaded.colored_spheres(color).enumerate() {
             if is_left_out.get(index).copied().unwrap_or(false) {
                 continue;
             }
             let element = element_at(index);
+            sphere.radius *= factors.of(index);
             let mut surface = element.map_or(self.surface, |element| element.surface);
             // Columns take precedence over what the file says by itself, here too.
             if self.mapping.opacity.is_none() {
@@ -125,6 +170,9 @@ impl Data {
             sphere.color = mapped.color(index).unwrap_or(sphere.color);
             sphere.radius *= self.radius_scale;
             spheres.push(sphere);
+            if !self.additions.is_empty() {
+                indices.push(index);
+            }
         }
         if spheres.is_empty() && !is_left_out.is_empty() {
             notes.push(format!(
@@ -141,7 +189,27 @@ impl Data {
                 self.file
             )
         }));
-        Ok((DataSpheres::Spheres(spheres), mapped.key().cloned(), notes))
+        let added = additions::add(&self.additions, &mut spheres, &loaded, &indices)?;
+        notes.extend_from_slice(added.notes());
+        let (spheres, color_key) = (DataSpheres::Spheres(spheres), mapped.key().cloned());
+        Ok(AppliedData { spheres, color_key, notes, kept, added })
+    }
+
+    /// The factors of the radii of the data that bonds need.
+    fn radius_factors<'a>(&self, loaded: &'a Loaded) -> RadiusFactors<'a> {
+        let is_chosen = self.radius.is_some()
+            || self.mapping.radius.is_some()
+            || self.radius_scale.to_bits() != 1.0_f64.to_bits();
+        if is_chosen {
+            return RadiusFactors { of_species: Vec::new(), labels: None, other: 1.0 };
+        }
+        let labels = loaded.labels("species");
+        let factor = |name: &String| self.additions.radius_factor(Some(name));
+        RadiusFactors {
+            of_species: labels.map_or(Vec::new(), |l| l.names.iter().map(factor).collect()),
+            labels,
+            other: self.additions.radius_factor(None),
+        }
     }
 
     /// Whether keys ask for columns of text.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::additions::{BondsValue, BoxValue};
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
 use super::data::ElementTable;
 use super::lighting::{
@@ -63,6 +64,10 @@ pub(super) struct Document {
     pub(super) elements: BTreeMap<String, Spanned<Table<ElementTable>>>,
     pub(super) elements_by: Option<Spanned<Vec<String>>>,
     pub(super) leave_out: Option<Spanned<BTreeMap<String, Vec<String>>>>,
+    pub(super) select: Option<Spanned<String>>,
+    #[serde(rename = "box")]
+    pub(super) cell: Option<Spanned<BoxValue>>,
+    pub(super) bonds: Option<Spanned<BondsValue>>,
     pub(super) color_by: Option<Spanned<ByColumn<ColorTable>>>,
     pub(super) radius_by: Option<Spanned<ByColumn<ColumnTable>>>,
     pub(super) opacity_by: Option<Spanned<ByColumn<ColumnTable>>>,
@@ -117,6 +122,9 @@ impl Default for Document {
             elements: BTreeMap::new(),
             elements_by: None,
             leave_out: None,
+            select: None,
+            cell: None,
+            bonds: None,
             color_by: None,
             radius_by: None,
             opacity_by: None,

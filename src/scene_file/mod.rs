@@ -3,6 +3,7 @@
 //!
 //! The commented files `examples/*.toml` show every table and key.
 
+mod additions;
 mod annotations;
 mod data;
 mod data_spheres;
@@ -21,12 +22,13 @@ mod write_surfaces;
 mod write_values;
 
 pub use data::{Data, Element};
-pub use data_spheres::{DataError, DataSpheres};
+pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
 pub use span::SceneFileError;
 pub use value::DEFAULT_COLOR;
 pub use write::{Contents, write};
 
+use additions::AdditionKeys;
 use annotations::AnnotationTables;
 use data::DataKeys;
 use document::{Document, FilmTable, SphereTable};
@@ -121,6 +123,11 @@ impl SceneFile {
             elements_by: document.elements_by,
             leave_out: document.leave_out,
             mapping,
+            additions: AdditionKeys {
+                select: document.select,
+                cell: document.cell,
+                bonds: document.bonds,
+            },
         }
         .read(&materials, &lines)?;
         let spheres = document.spheres.into_iter();

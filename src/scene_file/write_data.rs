@@ -3,6 +3,7 @@
 use super::data::Data;
 use super::write_surfaces::Surfaces;
 use super::write_values::{color, string, strings};
+use crate::added::BondLength;
 use crate::color_by::{ColorBy, Limit, Limits, MISSING, Mapping};
 use crate::image::color::LinearRgb;
 use crate::scene::material::SurfaceProperties;
@@ -30,7 +31,18 @@ pub(super) fn data_keys(data: &Data, surfaces: &mut Surfaces) -> Vec<String> {
         let columns = columns.map(|(name, list)| format!("{} = {}", string(name), strings(list)));
         lines.push(format!("leave_out = {{ {} }}", columns.collect::<Vec<_>>().join(", ")));
     }
+    lines.extend(
+        data.select.as_ref().map(|select| format!("select = {}", string(&select.to_string()))),
+    );
     mapping_keys(&data.mapping, &mut lines);
+    lines.extend(data.additions.cell.as_ref().map(|cell| match cell.width {
+        Some(width) => format!("box = {{ width = {width:?} }}"),
+        None => "box = true".to_owned(),
+    }));
+    lines.extend(data.additions.bonds.as_ref().map(|bonds| match bonds.length {
+        BondLength::Covalent(factor) => format!("bonds = {factor:?}"),
+        BondLength::Below(length) => format!("bonds = {{ length = {length:?} }}"),
+    }));
     lines
 }
 

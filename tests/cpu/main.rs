@@ -10,6 +10,7 @@
 mod support;
 
 mod accel_trees;
+mod added;
 mod annotate;
 mod appearance;
 #[path = "../support/arrays.rs"]
@@ -55,6 +56,7 @@ mod scene_file;
 mod scene_file_light;
 mod scene_file_write;
 mod search;
+mod select;
 mod settings;
 mod soundness;
 mod stereo;

@@ -6,7 +6,7 @@ use pinhole::light::environment::Environment;
 use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
 use pinhole::load::{Column, ColumnValues, Labels, Loaded};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
-use pinhole::scene_file::{DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{AppliedData, DataSpheres, IntegratorKind, SceneFile};
 use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
 
 const SPHERE: &str = "[[spheres]]\ncenter = [1, 2, 3]\nradius = 1\n";
@@ -164,8 +164,8 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     let apply =
         |text: &str| parse(&format!("data = 'a.pdb'\n{text}")).data().unwrap().apply(molecule());
     let radii = |text: &str| {
-        let (atoms, _, notes) = apply(text).unwrap();
-        let DataSpheres::Spheres(atoms) = atoms else { panic!("atoms have colours") };
+        let AppliedData { spheres, notes, .. } = apply(text).unwrap();
+        let DataSpheres::Spheres(atoms) = spheres else { panic!("atoms have colours") };
         (atoms.iter().map(|atom| atom.radius).collect::<Vec<_>>(), notes)
     };
     let tables = "[elements.A]\nradius = 2\n[elements.HOH]\nradius = 5\n";
@@ -209,7 +209,7 @@ fn data_gets_common_properties_or_those_of_its_species() {
          [elements.O]\nradius = 3\ncolor = 'red'\n[elements.C1]\nmaterial = 'glass'\n[elements.X]\n",
     );
     let data = file.data().unwrap();
-    let (atoms, _, notes) = data.apply(molecule()).unwrap();
+    let AppliedData { spheres: atoms, notes, .. } = data.apply(molecule()).unwrap();
     assert_eq!(
         notes,
         ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]

@@ -148,6 +148,7 @@ fn everything_else_is_read_as_it_was_written() {
     }
     let text = "data = 'a \\ \"b\".dat'\nformat = 'xyz'\nframe = 3\nradius_scale = 0.75\nmaterial = 'gold'\n\
                 elements_by = ['residue', 'chain']\nleave_out = { residue = ['HOH', 'SO 4'] }\n\
+                select = 'x > 1 and chain == \"A\"'\nbox = { width = 0.25 }\nbonds = 1.3\n\
                 [film]\nwidth = 31\nheight = 17\ny = 'down'\n\
                 [output]\nexposure = 0.1\ntone = 'agx'\nbits = 16\ntransparent = true\ndpi = 299.7\n\
                 [camera.thin-lens]\neye = [0.1, 1e-7, 1e7]\nlook_at = [0, 0, 0]\naperture_radius = 0.25\nzoom = 2\n\

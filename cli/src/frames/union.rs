@@ -22,41 +22,48 @@ const SAMPLE: usize = 1 << 14;
 #[derive(Debug, Default)]
 pub(super) struct Union {
     spheres: Vec<[f64; 4]>,
+    /// Spheres that were added to those of the data.
+    added: Vec<[f64; 4]>,
 }
 
 impl Union {
     /// Adds the spheres of a scene.
     pub(super) fn add(&mut self, scene: &Scene) {
-        for chunk in scene.spheres().chunks(MOST / 2) {
-            if self.spheres.len() + chunk.len() > MOST {
-                self.reduce();
+        let origin = scene.origin();
+        let (of_data, added) = scene.spheres().split_at(scene.len() - scene.added());
+        for (all, new) in [(&mut self.spheres, of_data), (&mut self.added, added)] {
+            for chunk in new.chunks(MOST / 2) {
+                if all.len() + chunk.len() > MOST {
+                    reduce(all);
+                }
+                all.extend(chunk.iter().map(|sphere| in_world(origin, sphere)));
             }
-            let origin = scene.origin();
-            self.spheres.extend(chunk.iter().map(|sphere| in_world(origin, sphere)));
         }
     }
 
-    /// Leaves out spheres that lie within the others.
-    fn reduce(&mut self) {
-        let spheres = &self.spheres;
-        let golden = PI * (3.0 - 5.0_f64.sqrt());
-        let farthest = |index: usize| {
-            // Directions of a spiral, which are about equally far from each other.
-            let z = 1.0 - (2 * index + 1) as f64 / DIRECTIONS as f64;
-            let (sine, cosine) = (golden * index as f64).sin_cos();
-            let rho = (1.0 - z * z).sqrt();
-            let direction = DVec3::new(rho * cosine, rho * sine, z);
-            let reach = |&[x, y, z, radius]: &[f64; 4]| direction.dot(DVec3::new(x, y, z)) + radius;
-            spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
-        };
-        let kept: Vec<_> = (0..DIRECTIONS).into_par_iter().filter_map(farthest).collect();
-        self.spheres = kept.into_iter().chain(sample(spheres)).collect();
-    }
-
     /// Makes a scene of the spheres that are left.
-    pub(super) fn scene(self) -> Result<Scene, SceneError> {
-        Scene::from_f64(&self.spheres, LinearRgb::WHITE)
+    pub(super) fn scene(mut self) -> Result<Scene, SceneError> {
+        let added = self.added.len();
+        self.spheres.append(&mut self.added);
+        Ok(Scene::from_f64(&self.spheres, LinearRgb::WHITE)?.with_added(added))
     }
+}
+
+/// Leaves out spheres that lie within the others.
+fn reduce(spheres: &mut Vec<[f64; 4]>) {
+    let all = &*spheres;
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let farthest = |index: usize| {
+        // Directions of a spiral, which are about equally far from each other.
+        let z = 1.0 - (2 * index + 1) as f64 / DIRECTIONS as f64;
+        let (sine, cosine) = (golden * index as f64).sin_cos();
+        let rho = (1.0 - z * z).sqrt();
+        let direction = DVec3::new(rho * cosine, rho * sine, z);
+        let reach = |&[x, y, z, radius]: &[f64; 4]| direction.dot(DVec3::new(x, y, z)) + radius;
+        all.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
+    };
+    let kept: Vec<_> = (0..DIRECTIONS).into_par_iter().filter_map(farthest).collect();
+    *spheres = kept.into_iter().chain(sample(all)).collect();
 }
 
 /// Some of the spheres, at equal steps.
@@ -89,7 +96,9 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
         spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
     };
     let profile: Vec<_> = (0..PROFILE).into_par_iter().filter_map(farthest).collect();
-    let mut all: Vec<[f64; 4]> = sample(&spheres).collect();
+    let of_data = &spheres[..spheres.len() - scene.added()];
+    let mut all: Vec<[f64; 4]> = sample(of_data).collect();
+    let of_data = all.len();
     for step in 0..STEPS {
         let turn = DQuat::from_axis_angle(axis, TAU * step as f64 / STEPS as f64);
         all.extend(profile.iter().map(|&[x, y, z, radius]| {
@@ -97,7 +106,8 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
             [at.x, at.y, at.z, radius]
         }));
     }
-    Scene::from_f64(&all, LinearRgb::WHITE)
+    let added = all.len() - of_data;
+    Ok(Scene::from_f64(&all, LinearRgb::WHITE)?.with_added(added))
 }
 
 #[cfg(test)]
@@ -137,8 +147,8 @@ mod tests {
             })
             .collect();
         let whole = Scene::from_f64(&spheres, LinearRgb::WHITE).unwrap();
-        let mut union = Union { spheres };
-        union.reduce();
+        let mut union = Union { spheres, ..Union::default() };
+        reduce(&mut union.spheres);
         let reduced = union.scene().unwrap();
         assert!(reduced.len() < whole.len());
         for (whole, reduced) in supports(&whole).into_iter().zip(supports(&reduced)) {

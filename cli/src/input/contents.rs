@@ -11,12 +11,14 @@ use crate::failure::Failure;
 use crate::input_format::{Format, data_format};
 use crate::kind_color;
 use crate::progress;
+use pinhole::added::Additions;
 use pinhole::camera::film::Film;
 use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
 use pinhole::load::{self, Loaded};
 use pinhole::scene::Scene;
-use pinhole::scene_file::{Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::scene_file::{AppliedData, Data, DataSpheres, IntegratorKind, SceneFile};
+use pinhole::select::Kept;
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {
@@ -38,6 +40,10 @@ pub(super) struct Found {
     pub(super) kinds: Option<ColorBy>,
     /// Where the size of the picture comes from.
     pub(super) size_from: String,
+    /// What a selection kept.
+    pub(super) kept: Option<Kept>,
+    /// The number of bonds, if bonds are drawn.
+    pub(super) bonds: Option<usize>,
 }
 
 /// The data of a scene file.
@@ -49,6 +55,10 @@ struct FoundData {
     color: LinearRgb,
     notes: Vec<String>,
     has_atoms: bool,
+    kept: Option<Kept>,
+    bonds: Option<usize>,
+    /// The number of spheres that were added at the end.
+    added: usize,
 }
 
 /// Where the data of a scene file is, and the options for reading it.
@@ -82,9 +92,12 @@ impl Source {
         let mut loaded = self.read_data(path, format, &self.options).map_err(as_usage)?;
         let has_atoms = loaded.labels("species").is_some();
         let file_name = || path.display().to_string();
+        let selected = self.structure.select.as_ref().map(|select| select.apply(&mut loaded));
+        let kept = selected.transpose().context("--select").with_context(file_name)?;
         let mut mapping = self.color.apply_to(&Mapping::default())?;
         loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
         let mut notes = std::mem::take(&mut loaded.notes);
+        notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
         let kinds = kind_color::by_kind(&loaded, &self.options);
         let kinds = kinds.filter(|_| mapping.color.is_none());
         if let Some(by) = &kinds {
@@ -92,8 +105,13 @@ impl Source {
             mapping.color = Some(by.clone());
         }
         let color = self.options.color.unwrap_or_else(default_color);
-        let (scene, mapped) = mapping.scene(loaded, color).with_context(file_name)?;
+        let keeps_radii = self.options.radius.is_some();
+        let additions = self.structure.additions(&Additions::default(), keeps_radii);
+        let made = mapping.scene_with(loaded, color, &additions);
+        let (scene, mapped, added) = made.with_context(file_name)?;
         notes.extend_from_slice(mapped.notes());
+        notes.extend_from_slice(added.notes());
+        let bonds = additions.bonds.as_ref().map(|_| added.bonds());
         let color_key = mapped.key().cloned();
         if scene.is_empty() {
             notes.push(format!(
@@ -104,7 +122,17 @@ impl Source {
         let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
         let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
         let size_from = String::new();
-        let found = Found { notes, files, sky_image: None, has_atoms, color_key, kinds, size_from };
+        let found = Found {
+            notes,
+            files,
+            sky_image: None,
+            has_atoms,
+            color_key,
+            kinds,
+            size_from,
+            kept,
+            bonds,
+        };
         self.prepared(file, scene, found)
     }
 
@@ -120,7 +148,7 @@ impl Source {
     pub(super) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
         let file_name = || self.path.display().to_string();
         let file = self.parsed(text)?;
-        let FoundData { spheres: data, color_key, color, notes, has_atoms } =
+        let FoundData { spheres: data, color_key, color, notes, has_atoms, kept, bonds, added } =
             self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
@@ -136,9 +164,18 @@ impl Source {
             DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
             DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
         };
-        let scene = scene.with_context(file_name)?;
-        let size_from = String::new();
-        let found = Found { notes, files, sky_image, has_atoms, color_key, kinds: None, size_from };
+        let scene = scene.with_context(file_name)?.with_added(added);
+        let found = Found {
+            notes,
+            files,
+            sky_image,
+            has_atoms,
+            color_key,
+            kinds: None,
+            size_from: String::new(),
+            kept,
+            bonds,
+        };
         self.prepared(file, scene, found)
     }
 
@@ -196,7 +233,7 @@ impl Source {
                 ("--columns", !flags.columns.is_empty()),
             ];
             let given = given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag);
-            return match given.or(self.color.given()) {
+            return match given.or(self.color.given()).or(self.structure.given()) {
                 Some(flag) => Err(Failure::usage(format!(
                     "{}: {flag} applies to the `data` of a scene, but this scene has no `data`; remove {flag}",
                     self.path.display()
@@ -207,6 +244,9 @@ impl Source {
                     color: default_color(),
                     notes: Vec::new(),
                     has_atoms: false,
+                    kept: None,
+                    bonds: None,
+                    added: 0,
                 }),
             };
         };
@@ -215,10 +255,23 @@ impl Source {
             self.read_data(&path, format, &options).with_context(in_scene).map_err(as_usage)?;
         let has_atoms = loaded.labels("species").is_some();
         let mapping = self.color.apply_to(&data.mapping)?;
-        let data = Data { mapping, color: options.color, ..data };
-        let (spheres, color_key, notes) = data.apply(loaded).with_context(in_scene)?;
-        let color = options.color.unwrap_or_else(default_color);
-        Ok(FoundData { spheres, color_key, color, notes, has_atoms })
+        let additions = self.structure.additions(&data.additions, false);
+        let has_bonds = additions.bonds.is_some();
+        let select = self.structure.select.clone().or(data.select);
+        let (color, radius) = (options.color, options.radius);
+        let data = Data { mapping, color, radius, select, additions, ..data };
+        let AppliedData { spheres, color_key, notes, kept, added, .. } =
+            data.apply(loaded).with_context(in_scene)?;
+        Ok(FoundData {
+            spheres,
+            color_key,
+            color: color.unwrap_or_else(default_color),
+            notes,
+            has_atoms,
+            kept,
+            bonds: has_bonds.then_some(added.bonds()),
+            added: added.len(),
+        })
     }
 
     /// Finds the data of a scene file; `None` if it has none.

@@ -83,10 +83,13 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, found } = contents;
-        let Found { notes, files, sky_image, color_key, kinds, has_atoms, size_from } = found;
+        let Found { notes, files, sky_image, color_key, kinds, has_atoms, size_from, kept, bonds } =
+            found;
         let report = Report {
             path: self.path.display().to_string(),
-            spheres: scene.len(),
+            spheres: scene.len() - scene.added(),
+            selected_from: kept.map(|kept| kept.of),
+            bonds,
             has_atoms,
             style: file.style(),
             view: look.view,

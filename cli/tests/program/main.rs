@@ -21,5 +21,6 @@ mod pictures;
 mod shaders;
 mod snapshots;
 mod stereo;
+mod structure;
 mod support;
 mod verify;

@@ -109,7 +109,7 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
     let mut loaded = rows::into_loaded(table, options, line_of)?;
     if let [Some(x), Some(y), Some(z)] = ends {
         let cell = Cell::tilted([x.0, y.0, z.0], [x.1, y.1, z.1], tilt);
-        loaded.cell = Some(cell.edges);
+        (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     }
     loaded.notes.extend(notes);
     Ok(loaded)

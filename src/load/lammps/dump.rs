@@ -132,7 +132,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Loaded, LoadError> {
         }
         other => other,
     })?;
-    loaded.cell = Some(cell.edges);
+    (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     if is_noted {
         loaded.notes.push(
             "the types are the symbols of chemical elements, and are taken as such".to_owned(),

@@ -77,9 +77,11 @@ fn boxes_that_are_not_orthogonal() {
     // xlo = 0, xhi = 4, xy = -1, xz = 2, ylo = 0, yhi = 3, yz = 1, zlo = -1, zhi = 1.
     let tilted = scaled("ITEM: BOX BOUNDS xy xz yz pp pp ff\n-1 6 -1\n0 4 2\n-1 1 1\n");
     assert_eq!(tilted.cell, Some([[4.0, 0.0, 0.0], [-1.0, 3.0, 0.0], [2.0, 1.0, 2.0]]));
+    assert_eq!(tilted.cell_origin, [0.0, 0.0, -1.0]);
     assert_eq!(centers(&tilted), [[0.0, 0.0, -1.0], [5.0, 4.0, 1.0]]);
     let general = scaled("ITEM: BOX BOUNDS abc origin pp pp pp\n1 2 3 10\n0 1 0 20\n0 0 2 30\n");
     assert_eq!(general.cell, Some([[1.0, 2.0, 3.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]]));
+    assert_eq!(general.cell_origin, [10.0, 20.0, 30.0]);
     assert_eq!(centers(&general), [[10.0, 20.0, 30.0], [11.0, 23.0, 35.0]]);
 }
 

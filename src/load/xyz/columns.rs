@@ -112,14 +112,27 @@ pub(super) fn cell_of(comment: &str) -> Result<Option<[[f64; 3]; 3]>, String> {
     let Some(text) = value_of("Lattice", comment) else {
         return Ok(None);
     };
-    let numbers: Option<Vec<f64>> = text
-        .split_whitespace()
-        .map(|text| number(text.as_bytes()).filter(|number| number.is_finite()))
-        .collect();
-    match numbers.as_deref() {
+    match numbers_of(text).as_deref() {
         Some(&[ax, ay, az, bx, by, bz, cx, cy, cz]) => {
             Ok(Some([[ax, ay, az], [bx, by, bz], [cx, cy, cz]]))
         }
         _ => Err(format!("Lattice={} is not a list of nine finite numbers", shortened(text))),
     }
+}
+
+/// The corner of the cell, which OVITO writes as `Origin`.
+pub(super) fn origin_of(comment: &str) -> Result<Option<[f64; 3]>, String> {
+    let Some(text) = value_of("Origin", comment) else {
+        return Ok(None);
+    };
+    match numbers_of(text).as_deref() {
+        Some(&[x, y, z]) => Ok(Some([x, y, z])),
+        _ => Err(format!("Origin={} is not a list of three finite numbers", shortened(text))),
+    }
+}
+
+/// Finite numbers with white space between them.
+fn numbers_of(text: &str) -> Option<Vec<f64>> {
+    let number = |text: &str| number(text.as_bytes()).filter(|number| number.is_finite());
+    text.split_whitespace().map(number).collect()
 }

@@ -37,6 +37,7 @@ fn frames_inherit_from_the_first() {
         assert_eq!(first.column("image.y"), Some(&ColumnValues::Numbers(vec![-3.0, 0.0, 3.0])));
         let second = frame(&bytes, 1);
         assert_eq!(spheres(&second)[2], [106.0, 107.0, 108.0, 2.0]);
+        assert_eq!(first.cell_origin, [-13.75, -11.875, -15.0]);
         assert_eq!((second.cell, second.column("energy")), (Some(cell), first.column("energy")));
         // With another number of particles there are the defaults.
         let third = frame(&bytes, 2);

@@ -1,0 +1,185 @@
+//! Bonds between atoms.
+
+use glam::DVec3;
+
+use super::pairs::pairs;
+use super::{AddError, Added, Base, Look, string};
+#[cfg(feature = "table")]
+use crate::load::{Covalent, covalent};
+use crate::scene::sphere_array::SphereArray;
+use crate::text::shortened;
+
+/// Which atoms are bonded. Bonds are drawn as sticks, each half in the colour of its atom.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Bonds {
+    /// How close bonded atoms are.
+    pub length: BondLength,
+}
+
+/// How close bonded atoms are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BondLength {
+    /// Two atoms are bonded if they are closer than this factor times the sum of their covalent radii (Cordero et al.
+    /// 2008), unless both are hydrogen. Lengths are in Å.
+    Covalent(f64),
+    /// Two spheres of any kind are bonded if they are closer than this length.
+    Below(f64),
+}
+
+impl Bonds {
+    /// The factor of covalent radii by which bonds are found unless another is chosen: bonds may be a fifth longer than
+    /// usual, as `CovalentBond.is_bonded` of pymatgen allows. Psi4 uses 1.3.
+    pub const FACTOR: f64 = 1.2;
+
+    /// Bonds of this length.
+    #[must_use]
+    pub fn new(length: BondLength) -> Self {
+        Self { length }
+    }
+}
+
+impl Default for Bonds {
+    fn default() -> Self {
+        Self::new(BondLength::Covalent(Self::FACTOR))
+    }
+}
+
+/// The factor of the van der Waals radius that atoms with bonds have.
+const BALL: f64 = 0.25;
+
+/// The factor of the radius that spheres with bonds have that are not atoms of an element. Their radius is often such
+/// that neighbours touch.
+const OTHER_BALL: f64 = 0.5;
+
+/// The radius of a stick, in radii of the smaller of the spheres that it joins.
+const STICK: f64 = 0.45;
+
+/// The distance of centres on a stick, in radii of the stick. The surface is at most 2 % of the radius below that of a
+/// cylinder, and its normals lean by at most 11.5°.
+const SPACING: f64 = 0.4;
+
+/// The most spheres that are added for each sphere, on average, and however few there are.
+const MOST_ADDED: [usize; 2] = [256, 1 << 16];
+
+#[cfg(not(feature = "table"))]
+#[derive(Clone, Copy)]
+struct Covalent {
+    radius: f64,
+    is_hydrogen: bool,
+}
+
+/// Without readers of atoms, nobody knows elements.
+#[cfg(not(feature = "table"))]
+fn covalent(_: &str) -> Option<Covalent> {
+    None
+}
+
+/// The factor by which bonds make a sphere of a species smaller.
+pub(super) fn radius_factor(species: Option<&str>) -> f64 {
+    if species.and_then(covalent).is_some() { BALL } else { OTHER_BALL }
+}
+
+fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
+    let [x, y, z, radius] = match spheres {
+        SphereArray::F32(all) => all[index].map(f64::from),
+        SphereArray::F64(all) => all[index],
+    };
+    (DVec3::new(x, y, z), radius)
+}
+
+impl Bonds {
+    /// Adds the bonds between spheres.
+    pub(super) fn add(&self, base: &Base<'_>, added: &mut Added) -> Result<(), AddError> {
+        let count = base.spheres.len();
+        let points: Vec<DVec3> = (0..count).map(|index| center(base.spheres, index).0).collect();
+        let bonds = match self.length {
+            BondLength::Below(length) => {
+                check("length", length)?;
+                pairs(&points, length, |_, _, squared| squared > 0.0)?
+            }
+            BondLength::Covalent(factor) => {
+                check("factor", factor)?;
+                covalent_bonds(factor, base, &points, &mut added.notes)?
+            }
+        };
+        added.bonds = bonds.len();
+        let most = count.saturating_mul(MOST_ADDED[0]).saturating_add(MOST_ADDED[1]);
+        for [a, b] in bonds {
+            let ((from, ball_a), (to, ball_b)) =
+                (center(base.spheres, a as usize), center(base.spheres, b as usize));
+            let radius = STICK * ball_a.min(ball_b);
+            let (length, middle) = ((to - from).length(), 0.5 * (from + to));
+            let along = (to - from) / length;
+            // Where the stick comes out of a ball. What lies deeper cannot be seen.
+            let [out_a, out_b] =
+                [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
+            let halves = [
+                (a, from + out_a * along, middle, 0.5 * length - out_a),
+                (b, to - out_b * along, middle, 0.5 * length - out_b),
+            ];
+            for (atom, start, end, seen) in halves {
+                if !(seen > 0.0 && radius > 0.0) {
+                    continue;
+                }
+                let wanted = string::count(seen, radius, SPACING);
+                if wanted > (most - added.len().min(most)) as f64 {
+                    return Err(AddError::TooThin { spheres: count, most });
+                }
+                let string = string::between(start, end, radius, wanted as usize);
+                added.push(string, Look::Sphere(atom));
+            }
+        }
+        if base.cell.is_some() {
+            added
+                .notes
+                .push("bonds across the borders of the periodic cell are not drawn".to_owned());
+        }
+        Ok(())
+    }
+}
+
+fn check(what: &'static str, value: f64) -> Result<(), AddError> {
+    match value.is_finite() && value > 0.0 {
+        true => Ok(()),
+        false => Err(AddError::NotPositive { what, value }),
+    }
+}
+
+/// Finds pairs that are closer than `factor` times the sum of their covalent radii.
+fn covalent_bonds(
+    factor: f64,
+    base: &Base<'_>,
+    points: &[DVec3],
+    notes: &mut Vec<String>,
+) -> Result<Vec<[u32; 2]>, AddError> {
+    let labels = base.species.ok_or(AddError::NoElements)?;
+    let known: Vec<Option<Covalent>> = labels.names.iter().map(|name| covalent(name)).collect();
+    let largest = known.iter().flatten().map(|known| known.radius).fold(0.0, f64::max);
+    if largest <= 0.0 && !points.is_empty() {
+        return Err(AddError::NoElements);
+    }
+    let names = labels.names.iter().zip(&known);
+    let unknown: Vec<String> =
+        names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name)).collect();
+    if !unknown.is_empty() {
+        /// More names would make the line too long to read.
+        const NAMED: usize = 5;
+        let more = if unknown.len() > NAMED { ", …" } else { "" };
+        notes.push(format!(
+            "these species have no covalent radius and therefore no bonds: {}{more}; --bond-length L joins all that are \
+             closer",
+            unknown.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ")
+        ));
+    }
+    let of = |index: u32| {
+        let species = *labels.indices.get(index as usize)? as usize;
+        known.get(species).copied().flatten()
+    };
+    pairs(points, 2.0 * factor * largest, |a, b, squared| {
+        let Some((a, b)) = of(a).zip(of(b)) else { return false };
+        let most = factor * (a.radius + b.radius);
+        squared > 0.0 && squared < most * most && !(a.is_hydrogen && b.is_hydrogen)
+    })
+}
