@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
+use super::camera_path::CameraPathTable;
 use super::data::ElementTable;
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
@@ -33,6 +34,7 @@ pub(super) struct Document {
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
     pub(super) camera: Spanned<CameraParameters>,
+    pub(super) camera_path: Option<Table<CameraPathTable>>,
     #[serde(default)]
     pub(super) output: Table<OutputTable>,
     pub(super) background: Option<ColorValue>,
@@ -91,6 +93,7 @@ impl Default for Document {
             style: None,
             film: default_film(),
             camera: default_camera(),
+            camera_path: None,
             output: Table::default(),
             background: None,
             shading: None,

@@ -4,6 +4,7 @@
 //! The commented files `examples/*.toml` show every table and key.
 
 mod annotations;
+mod camera_path;
 mod data;
 mod data_spheres;
 mod document;
@@ -20,6 +21,7 @@ mod write_data;
 mod write_surfaces;
 mod write_values;
 
+pub use camera_path::parse_camera_path;
 pub use data::{Data, Element};
 pub use data_spheres::{DataError, DataSpheres};
 pub use lighting::IntegratorKind;
@@ -40,7 +42,7 @@ use words::unknown;
 
 use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
-use crate::camera::{Camera, CameraError, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters, CameraPath};
 use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
@@ -67,6 +69,7 @@ pub struct SceneFile {
     lighting: SceneLighting,
     data: Option<WithSpan<Data>>,
     camera: WithSpan<CameraParameters>,
+    camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
 }
 
@@ -173,6 +176,7 @@ impl SceneFile {
             lighting,
             data,
             camera: lines.spanned(document.camera),
+            camera_path: document.camera_path.map(|table| table.0.path(&lines)).transpose()?,
             spheres,
         })
     }
@@ -261,6 +265,12 @@ impl SceneFile {
     #[must_use]
     pub fn camera_parameters(&self) -> CameraParameters {
         self.camera.value
+    }
+
+    /// Returns the path along which the camera moves from picture to picture, if the file has one.
+    #[must_use]
+    pub fn camera_path(&self) -> Option<&CameraPath> {
+        self.camera_path.as_ref()
     }
 
     /// Returns the spheres that are in the file itself.
