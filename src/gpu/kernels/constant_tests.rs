@@ -57,6 +57,8 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LAMP_DIRECTIONAL", codes::lamp::DIRECTIONAL),
         ("LAMP_POINT", codes::lamp::POINT),
         ("LAMP_SPHERE", codes::lamp::SPHERE),
+        ("EMITTER_COLUMNS", lit::emitter_table::COLUMNS as u32),
+        ("EMITTER_ROWS", lit::emitter_table::ROWS as u32),
         ("LIGHT_CHANCE", codes::sampling::CHANCE),
         ("LIGHT_DIRECT", codes::sampling::DIRECT),
         ("LIGHT_MULTIPLE", codes::sampling::MULTIPLE),
