@@ -231,7 +231,7 @@ impl CameraPath {
                 let of_one: Vec<_> = points.iter().map(|(time, all)| (*time, all[i])).collect();
                 Curve::new(&of_one, self.eases)
             };
-            Places::Points { eye: curve(0), look_at: curve(1), up: curve(2) }
+            Places::Points(Box::new([0, 1, 2].map(curve)))
         };
         Ok(CameraMotion {
             places,
@@ -364,8 +364,13 @@ pub struct CameraMotion {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Places {
-    Points { eye: Curve, look_at: Curve, up: Curve },
-    Views { azimuth: Track, elevation: Track, up: DVec3 },
+    /// Eye, target and up.
+    Points(Box<[Curve; 3]>),
+    Views {
+        azimuth: Track,
+        elevation: Track,
+        up: DVec3,
+    },
 }
 
 impl CameraMotion {
@@ -373,9 +378,9 @@ impl CameraMotion {
     #[must_use]
     pub fn at(&self, time: f64) -> CameraOnPath {
         let place = match &self.places {
-            Places::Points { eye, look_at, up } => {
-                let (eye, look_at) = (eye.at(time), look_at.at(time));
-                PlaceOnPath::Point { eye, look_at, up: upright(look_at - eye, up.at(time)) }
+            Places::Points(curves) => {
+                let [eye, look_at, up] = curves.each_ref().map(|curve| curve.at(time));
+                PlaceOnPath::Point { eye, look_at, up: upright(look_at - eye, up) }
             }
             Places::Views { azimuth, elevation, up } => {
                 let from_y = DQuat::from_rotation_arc(DVec3::Y, *up);

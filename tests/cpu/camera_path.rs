@@ -76,7 +76,7 @@ fn up_is_perpendicular_to_the_view_and_of_unit_length() {
     for step in 0..=200 {
         let [eye, look_at, up] = points(&motion, f64::from(step) * 0.01);
         assert!((up.length() - 1.0).abs() < 1e-12);
-        assert!(up.dot((look_at - eye).normalize()).abs() < 1e-12, "{step}");
+        assert!(up.dot((look_at - eye).normalize_or_zero()).abs() < 1e-12, "{step}");
         assert!((up - before).length() < 0.2, "{step}: {before} {up}");
         before = up;
     }
@@ -115,7 +115,7 @@ fn views_turn_as_often_as_they_say() {
 /// Whatever direction is up, a view of a key is that of `--view`, and named axes are those of the world.
 #[test]
 fn views_are_those_of_viewpoints() {
-    for up in [DVec3::Y, DVec3::Z, DVec3::new(1.0, 2.0, -0.5).normalize()] {
+    for up in [DVec3::Y, DVec3::Z, DVec3::new(1.0, 2.0, -0.5).normalize_or_zero()] {
         for text in ["x", "-x", "y", "-y", "z", "-z", "iso", "30,20", "10,-90"] {
             let keys = vec![view(0.0, text, 25.0), view(1.0, "0,0", 0.0)];
             let path = CameraPath::new(keys, PathClock::Frames, true).unwrap();
@@ -125,7 +125,7 @@ fn views_are_those_of_viewpoints() {
             };
             let [expected, upward] = text.parse::<Viewpoint>().unwrap().axes(up, 25.0);
             assert_near(direction, expected);
-            let upward = (upward - upward.dot(direction) * direction).normalize();
+            let upward = (upward - upward.dot(direction) * direction).normalize_or_zero();
             assert_near(found, upward);
         }
     }
@@ -167,7 +167,7 @@ fn what_is_no_path_is_refused() {
     ));
     let rolled = path(&[a, with_up(b, DVec3::NEG_Y)]).unwrap();
     assert_eq!(rolled.motion(DVec3::Y), Err(CameraPathError::OppositeUp { key: 1 }));
-    assert!(rolled.motion(DVec3::Z).is_ok());
+    assert!(rolled.motion(DVec3::X).is_ok());
 }
 
 #[test]

@@ -42,7 +42,7 @@ pub(super) struct FramesArgs {
         long, help_heading = HEADING, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000)
     )]
     turntable: Option<u32>,
-    /// Let the camera move along the keyframes of this file, which holds what [camera_path] of a scene file does. Of one
+    /// Let the camera move along the keyframes of this file, which holds what `camera_path` of a scene file does. Of one
     /// frame, pictures up to the last key are made; --frames chooses some of them
     #[arg(
         long, help_heading = HEADING, value_name = "PATH.toml",

@@ -95,7 +95,7 @@ fn times_are_seconds_of_the_movie() {
 /// Two atoms at the ends of a rod: from the side the rod is long, from its end short, and it always fits.
 #[test]
 fn views_go_around_the_scene() {
-    let path = "[[keys]]\nframe = 0\nview = '0,0'\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
+    let path = "[[keys]]\nframe = 0\nview = '0,0'\nzoom = 1\n[[keys]]\nframe = 2\nview = '0,0'\nturn = 180\nzoom = 0.5\n";
     let rod = "2\nrod\nO -4 0 0\nO 4 0 0\n";
     let folder = Folder::with(&[("rod.xyz", rod), ("p.toml", path)]);
     folder.run(&format!("render rod.xyz -o f%d.png --camera-path p.toml {SMALL}")).succeeded();

@@ -8,7 +8,7 @@ use crate::camera::film::Film;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::tile_textures;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
-use crate::gpu::passes::lit::emitter_table;
+use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
 use crate::gpu::shader::records;
 use crate::image::LayerSet;

@@ -2,13 +2,13 @@
 
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
-use super::emitter_table;
 use super::lighting::LightingData;
 use super::passes::LitPasses;
 use super::records::{DispatchParameters, QUEUE_HEAD};
 use super::sizes::LitSizes;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::part;
 use crate::gpu::shader::records::FrameParameters;

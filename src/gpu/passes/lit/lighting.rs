@@ -6,11 +6,11 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::emitter_table;
 use super::kernels::{Lamps, Materials, Mode, SkyKind, Sources};
 use super::records::LightingParameters;
 use crate::camera::Camera;
 use crate::geometry::math::unit;
+use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::shader::records::NO_HIT;
 use crate::image::color::LinearRgb;

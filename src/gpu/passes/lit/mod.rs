@@ -9,7 +9,6 @@
 //! Nothing here submits or waits: [`Round::steps`] lists the dispatches of some samples, and [`Recorder`] records them
 //! into any encoder.
 
-pub(in crate::gpu) mod emitter_table;
 mod frame;
 mod kernels;
 mod lighting;

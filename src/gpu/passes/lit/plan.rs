@@ -1,6 +1,5 @@
 //! Planning the memory that a lit picture needs on the device and on the host.
 
-use super::emitter_table;
 use super::lighting::LightingData;
 use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
@@ -8,6 +7,7 @@ use crate::gpu::headless::plan::{
     DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count,
     total,
 };
+use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::scene::Scene;
 

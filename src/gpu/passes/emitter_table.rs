@@ -54,7 +54,7 @@ pub(in crate::gpu) fn limit(limits: &Limits) -> (&'static str, u64) {
 }
 
 /// Creates the texture and uploads the table.
-pub(super) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> TextureView {
+pub(in crate::gpu) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> TextureView {
     let size = extent(table.len());
     let texture = device.create_texture(&TextureDescriptor {
         label: Some("pinhole emitters"),
@@ -104,7 +104,7 @@ pub(super) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> Text
 }
 
 /// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
-pub(super) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
+pub(in crate::gpu) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
     let emitters = &scene.emitters;
     emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
         let EmissiveSphere { sphere, color, surface } = *emissive;
