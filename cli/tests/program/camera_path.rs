@@ -18,7 +18,7 @@ fn columns(png: &[u8]) -> [usize; 2] {
     let mut seen = (0..width as usize)
         .filter(|&column| (0..height as usize).any(|row| at(column, row) != at(0, 0)));
     let first = seen.next().unwrap();
-    [first, seen.last().unwrap_or(first)]
+    [first, seen.next_back().unwrap_or(first)]
 }
 
 #[test]
