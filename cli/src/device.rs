@@ -179,10 +179,18 @@ impl WantedAdapter {
     }
 }
 
+/// What errors of the library call the table of emissive spheres.
+#[cfg(feature = "gpu")]
+const EMITTERS: &str = "the table of emissive spheres";
+
 /// Turns an error of a device into a failure with the name of the adapter, and with what may help.
 #[cfg(feature = "gpu")]
 pub(super) fn explained(headless: &Headless, error: &GpuError) -> Failure {
     let remedy = match error {
+        // The reference would take hours for so many lights.
+        GpuError::Limit { what: EMITTERS, .. } => {
+            "; write light_sampling = \"chance\" into [path], which needs no table"
+        }
         GpuError::Limit { .. } => "; use --backend cpu, which has no such limit",
         _ => "",
     };

@@ -200,7 +200,14 @@ impl Source {
         self.input(self.contents_of_text(text)?)
     }
 
-    fn input(&self, contents: Contents) -> Result<Input, Failure> {
+    fn input(&self, mut contents: Contents) -> Result<Input, Failure> {
+        if contents.file.camera_path().is_some() {
+            contents.add_note(format!(
+                "{}: `camera_path` is not used, because this is one picture; for all, write a movie such as -o movie.apng, \
+                 or --frames : with -o f%04d.png",
+                self.path.display()
+            ));
+        }
         let sky = self.sky(&contents)?;
         let look = self.look(&contents.file, &contents.scene, sky, None)?;
         self.input_with(contents, look)

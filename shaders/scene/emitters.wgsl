@@ -1,6 +1,6 @@
 // Choosing an emissive sphere, and finding one by its id. Twin: src/light/emitters.rs.
 // provides: chosen_emitter, emitter_density, emitter_with_id
-// needs: Emitter, PI, cone_of_sphere, lighting, tables
+// needs: Emitter, PI, cone_of_sphere, emitter_words, lighting
 
 // The index of the first emitter whose word is at least `value`. Both the ids (word 0) and the largest random number
 // that chooses an emitter (word 1) ascend.
@@ -9,8 +9,8 @@ fn find_emitter(word: u32, value: u32) -> u32 {
     var count = lighting.emitter_count;
     for (var step = 0u; step < 32u && count > 0u; step++) {
         let half = count >> 1u;
-        let found = tables[lighting.emitter_first + 3u * (low + half) + 1u][word];
-        let is_before = found < value;
+        let words = emitter_words(3u * (low + half) + 1u);
+        let is_before = select(words.x, words.y, word == 1u) < value;
         low = select(low, low + half + 1u, is_before);
         count = select(half, count - half - 1u, is_before);
     }

@@ -4,7 +4,7 @@
 
 // Parameters of sky, ground and sampling, and the indices at which the tables start.
 @group(2) @binding(0) var<uniform> lighting: LightingParameters;
-// Tables of lights, emitters, materials and energies, one after another. They are stored as bits, because some are
+// Tables of lights, materials and energies, one after another. They are stored as bits, because some are
 // integers, which as f32 would be subnormal and might be flushed to zero.
 @group(2) @binding(1) var<storage, read> tables: array<vec4u>;
 

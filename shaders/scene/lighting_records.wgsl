@@ -54,16 +54,16 @@ struct LightingParameters {
     ground_color: vec3f,
     occlusion_samples: u32,
     seed: u32,
-    // Index of the first emitter in `tables`; `material_first` is that of the first material.
-    emitter_first: u32,
+    // Number of emissive spheres among which light sampling chooses.
     emitter_count: u32,
+    // Index of the first material in `tables`.
     material_first: u32,
+    // Number of light sources that are lights of the settings and not spheres of the scene.
+    lamp_sources: u32,
     environment_size: vec2u,
     // Cosine and sine of the rotation of the sky's image.
     environment_rotation: vec2f,
     environment_strength: f32,
-    // Number of light sources that are lights of the settings and not spheres of the scene.
-    lamp_sources: u32,
     // Distribution of samples in a pixel, see filter.wgsl.
     filter_table: array<vec4f, 65>,
 }

@@ -16,6 +16,8 @@ mod orthographic;
 mod panorama;
 #[cfg(feature = "scene-file")]
 mod parameters;
+mod path;
+mod path_curve;
 mod pinhole;
 #[cfg(feature = "scene-file")]
 mod pinhole_parameters;
@@ -40,6 +42,10 @@ pub use panorama::PanoramaCamera;
 pub use panorama::PanoramaParameters;
 #[cfg(feature = "scene-file")]
 pub use parameters::CameraParameters;
+pub use path::{
+    CameraKey, CameraMotion, CameraOnPath, CameraPath, CameraPathError, KeyPlace, PathClock,
+    PlaceOnPath,
+};
 pub use pinhole::PinholeCamera;
 #[cfg(feature = "scene-file")]
 pub use pinhole_parameters::PinholeParameters;

@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::additions::{BondsValue, BoxValue};
 use super::annotations::{LabelTable, LegendTable, ScaleBarTable, TextTable};
+use super::camera_path::CameraPathTable;
 use super::data::ElementTable;
 use super::lighting::{
     GroundTable, IntegratorKind, LightTable, PathTable, SamplingTable, SkyTable, StudioTable,
@@ -34,6 +35,7 @@ pub(super) struct Document {
     pub(super) film: Spanned<Table<FilmTable>>,
     #[serde(default = "default_camera")]
     pub(super) camera: Spanned<CameraParameters>,
+    pub(super) camera_path: Option<Table<CameraPathTable>>,
     #[serde(default)]
     pub(super) output: Table<OutputTable>,
     pub(super) background: Option<ColorValue>,
@@ -96,6 +98,7 @@ impl Default for Document {
             style: None,
             film: default_film(),
             camera: default_camera(),
+            camera_path: None,
             output: Table::default(),
             background: None,
             shading: None,

@@ -5,6 +5,7 @@
 
 mod additions;
 mod annotations;
+mod camera_path;
 mod data;
 mod data_spheres;
 mod document;
@@ -21,6 +22,7 @@ mod write_data;
 mod write_surfaces;
 mod write_values;
 
+pub use camera_path::parse_camera_path;
 pub use data::{Data, Element};
 pub use data_spheres::{AppliedData, DataError, DataSpheres};
 pub use lighting::IntegratorKind;
@@ -42,7 +44,7 @@ use words::unknown;
 
 use crate::annotate::AnnotationPlan;
 use crate::camera::film::Film;
-use crate::camera::{Camera, CameraError, CameraParameters};
+use crate::camera::{Camera, CameraError, CameraParameters, CameraPath};
 use crate::color_by::Mapped;
 use crate::image::color::LinearRgb;
 use crate::image::encoding::Encoding;
@@ -69,6 +71,7 @@ pub struct SceneFile {
     lighting: SceneLighting,
     data: Option<WithSpan<Data>>,
     camera: WithSpan<CameraParameters>,
+    camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
 }
 
@@ -180,6 +183,7 @@ impl SceneFile {
             lighting,
             data,
             camera: lines.spanned(document.camera),
+            camera_path: document.camera_path.map(|table| table.0.path(&lines)).transpose()?,
             spheres,
         })
     }
@@ -268,6 +272,12 @@ impl SceneFile {
     #[must_use]
     pub fn camera_parameters(&self) -> CameraParameters {
         self.camera.value
+    }
+
+    /// Returns the path along which the camera moves from picture to picture, if the file has one.
+    #[must_use]
+    pub fn camera_path(&self) -> Option<&CameraPath> {
+        self.camera_path.as_ref()
     }
 
     /// Returns the spheres that are in the file itself.

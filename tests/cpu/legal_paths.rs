@@ -74,6 +74,7 @@ fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
         max_depth: DEPTH,
         lighting,
         tables,
+        emitters: Vec::new(),
         sky: None,
         samples: Vec::new(),
     }

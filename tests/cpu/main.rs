@@ -25,6 +25,7 @@ mod seeds;
 mod basis;
 mod binary;
 mod camera;
+mod camera_path;
 mod camera_tables;
 mod color_by;
 mod comparator;

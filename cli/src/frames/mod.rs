@@ -2,7 +2,9 @@
 
 mod apng;
 mod gif;
+mod moving;
 mod names;
+mod numbers;
 mod range;
 mod run;
 mod sink;
@@ -13,12 +15,13 @@ mod union;
 mod video;
 mod y4m;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::args::{RenderArgs, Stereo};
 use super::failure::Failure;
+use moving::WantedPath;
 use range::FrameRange;
 pub(super) use run::run;
 use target::Target;
@@ -39,6 +42,13 @@ pub(super) struct FramesArgs {
         long, help_heading = HEADING, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000)
     )]
     turntable: Option<u32>,
+    /// Let the camera move along the keyframes of this file, which holds what `camera_path` of a scene file does. Of one
+    /// frame, pictures up to the last key are made; --frames chooses some of them
+    #[arg(
+        long, help_heading = HEADING, value_name = "PATH.toml",
+        conflicts_with_all = ["turntable", "eye", "look_at", "direction", "view", "turn", "margin"]
+    )]
+    camera_path: Option<PathBuf>,
     /// Let the camera frame this frame, and choose light and colors for it [default: all frames that are asked for]
     #[arg(long, help_heading = HEADING, value_name = "FRAME", allow_hyphen_values = true, conflicts_with = "turntable")]
     camera_from: Option<i64>,
@@ -60,9 +70,9 @@ enum Raw {
 }
 
 /// Which pictures of an input are made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Pictures {
-    Frames { range: FrameRange, camera_from: Option<FrameRange> },
+    Frames { range: FrameRange, camera_from: Option<FrameRange>, path: Option<WantedPath> },
     Turntable { count: u32 },
 }
 
@@ -70,6 +80,8 @@ enum Pictures {
 #[derive(Debug)]
 pub(super) struct Wanted {
     pictures: Pictures,
+    /// The output, for messages.
+    picture_name: String,
     target: Target,
     fps: u32,
     resume: bool,
@@ -78,11 +90,12 @@ pub(super) struct Wanted {
 impl Wanted {
     /// Returns what the flags ask for; `None` if they ask for one picture.
     pub(super) fn new(args: &RenderArgs) -> Result<Option<Self>, Failure> {
-        let FramesArgs { frames, turntable, camera_from, fps, resume, raw } = args.frames;
+        let FramesArgs { frames, turntable, camera_from, fps, resume, raw, .. } = args.frames;
+        let path = args.frames.camera_path.as_deref();
         let Some(output) = args.output.as_deref() else { return Ok(None) };
         let name = output.display().to_string();
         let movie = target::movie_of(output);
-        let is_asked = frames.is_some() || turntable.is_some();
+        let is_asked = frames.is_some() || turntable.is_some() || path.is_some();
         if !is_asked && movie.is_none() && raw.is_none() {
             if names::has_sign(output) {
                 return Err(Failure::usage(format!(
@@ -104,7 +117,7 @@ impl Wanted {
         }
         let target = Target::new(output, movie, raw.is_some(), &args.layers)?;
         let is_files = matches!(target, Target::Files { .. });
-        if is_files && fps.is_some() {
+        if is_files && fps.is_some() && path.is_none() {
             return Err(Failure::usage("--fps applies only to movies; remove it"));
         }
         if !is_files && resume {
@@ -127,14 +140,10 @@ impl Wanted {
             None => Pictures::Frames {
                 range: frames.unwrap_or(FrameRange::ALL),
                 camera_from: camera_from.map(FrameRange::One),
+                path: path.map(WantedPath::read).transpose()?,
             },
         };
-        if frames.is_none() && turntable.is_none() && args.input.view.frame.is_some() {
-            return Err(Failure::usage(format!(
-                "{name}: --frame names one frame, but a movie needs several; write --frames RANGE, or add --turntable N"
-            )));
-        }
-        Ok(Some(Self { pictures, target, fps: fps.unwrap_or(25), resume }))
+        Ok(Some(Self { pictures, picture_name: name, target, fps: fps.unwrap_or(25), resume }))
     }
 
     /// The path from which the format and the layers of the pictures follow.

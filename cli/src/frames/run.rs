@@ -10,18 +10,18 @@ use std::time::Instant;
 
 use anyhow::Context;
 
+use super::moving::{Moving, WantedPath};
 use super::names::numbered;
-use super::range::FrameRange;
+use super::numbers::{Numbers, numbers, wanted_path};
 use super::sink::{Message, STOPPED_BETWEEN, Sink};
 use super::status::Status;
-use super::target::Target;
 use super::turn::{Axis, turned, up_of};
 use super::union::{Union, swept};
 use super::{Pictures, Wanted};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::input::contents::Contents;
-use crate::input::{FoundFrames, Input, Look, Source};
+use crate::input::{Input, Look, Source};
 use crate::render::{Job, render_joined};
 use crate::speak::tell;
 use crate::views::Views;
@@ -33,13 +33,13 @@ use pinhole::scene::Scene;
 use pinhole::scene_file::SceneFile;
 
 /// Notes that were told, each of them once.
-struct Notes {
+pub(super) struct Notes {
     told: HashSet<String>,
     quiet: bool,
 }
 
 impl Notes {
-    fn tell(&mut self, note: String) {
+    pub(super) fn tell(&mut self, note: String) {
         if !self.quiet && !self.told.contains(&note) {
             tell(format_args!("note: {note}"));
             self.told.insert(note);
@@ -49,8 +49,10 @@ impl Notes {
 
 /// The pictures after the first, and how each of them differs from the one before.
 enum Rest {
-    /// Frames of the file.
-    Frames,
+    /// Frames of the file, which a moving camera may see.
+    Frames(Option<Box<Moving>>),
+    /// The same scene, which a moving camera sees.
+    Moving(Box<Moving>),
     /// Views of the same scene.
     Turntable(Box<Turntable>),
 }
@@ -67,7 +69,7 @@ struct Turntable {
 
 /// What changes from one picture to the next.
 enum Change {
-    Frame(Box<Contents>),
+    Frame(Box<Contents>, Option<Box<Look>>),
     View(Box<Look>),
 }
 
@@ -87,18 +89,8 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
     }
     let mut notes = Notes { told: HashSet::new(), quiet };
     threads::start()?;
-    let numbers = match wanted.pictures {
-        Pictures::Frames { range, camera_from } => {
-            let FoundFrames { count, note } = open_frames(&mut source, wanted)?;
-            note.into_iter().for_each(|note| notes.tell(note));
-            let all = in_range(range, count, "--frames")?;
-            let framed = camera_from.map(|frame| in_range(frame, count, "--camera-from"));
-            Numbers { framed: framed.transpose()?, all }
-        }
-        Pictures::Turntable { count } => {
-            Numbers { framed: None, all: (0..count as usize).collect() }
-        }
-    };
+    let path = wanted_path(&source, wanted, &mut notes)?;
+    let numbers = numbers(&mut source, wanted, path.as_ref(), &mut notes)?;
     let is_done = |number: usize| {
         let outputs = outputs.renamed(|path| numbered(path, number));
         wanted.resume && outputs.paths().all(|path| path.is_file())
@@ -111,9 +103,15 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
             .tell(format!("{done} of {total} frames are there already and are not rendered again"));
     }
     let Some(&first) = left.first() else { return Ok(()) };
-    let prepare = || match wanted.pictures {
-        Pictures::Frames { .. } => frames(&mut source, &numbers, first),
-        Pictures::Turntable { .. } => turntable(&source, total, first),
+    let prepare = || match (&wanted.pictures, &path) {
+        (Pictures::Turntable { .. }, _) => turntable(&source, total, first),
+        (Pictures::Frames { .. }, Some(path)) if numbers.is_still => {
+            still(&source, path, wanted.fps, numbers.index_of(first), first)
+        }
+        (Pictures::Frames { .. }, path) => {
+            let path = path.as_ref().map(|path| (path, wanted.fps));
+            frames(&mut source, &numbers, first, path)
+        }
     };
     let (prepared, opened) = device.open_beside(prepare)?;
     let Prepared { mut input, rest } = prepared;
@@ -156,8 +154,8 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
     let rendered = thread::scope(|scope| {
         let (send_next, next) = sync_channel(1);
         let (pictures, receiver) = sync_channel(1);
-        let left = &left;
-        scope.spawn(move || read(source, &rest, left, &send_next));
+        let (left, numbers) = (&left, &numbers);
+        scope.spawn(move || read(source, &rest, numbers, left, &send_next));
         let writing = scope.spawn({
             let sink = &sink;
             move || sink.write(&receiver)
@@ -202,30 +200,13 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
     }
 }
 
-/// The numbers of pictures.
-struct Numbers {
-    /// Those that the camera frames, if these are not all.
-    framed: Option<Vec<usize>>,
-    all: Vec<usize>,
-}
-
-/// Finds the frames of the file.
-fn open_frames(source: &mut Source, wanted: &Wanted) -> Result<FoundFrames, Failure> {
-    let name = source.name();
-    source.open_frames()?.map_err(|reason| {
-        let is_movie = !matches!(wanted.target, Target::Files { .. });
-        let remedy =
-            if is_movie { "--turntable N makes a movie of one frame" } else { "remove --frames" };
-        Failure::usage(format!("{name}: {reason}; {remedy}"))
-    })
-}
-
-fn in_range(range: FrameRange, count: usize, flag: &str) -> Result<Vec<usize>, Failure> {
-    range.of(count).map_err(|error| Failure::usage(format!("{flag}: {error}")))
-}
-
 /// Reads all frames for the camera and the colors, and then the first that is rendered.
-fn frames(source: &mut Source, numbers: &Numbers, first: usize) -> Result<Prepared, Failure> {
+fn frames(
+    source: &mut Source,
+    numbers: &Numbers,
+    first: usize,
+    path: Option<(&WantedPath, u32)>,
+) -> Result<Prepared, Failure> {
     let framed = numbers.framed.as_ref().unwrap_or(&numbers.all);
     let (mut union, mut colors) = (Union::default(), None);
     for (index, &number) in framed.iter().enumerate() {
@@ -240,9 +221,34 @@ fn frames(source: &mut Source, numbers: &Numbers, first: usize) -> Result<Prepar
     let framed = union.scene().with_context(|| source.name())?;
     let contents = frame(source, first)?;
     let sky = source.sky(&contents)?;
-    let look = source.look(&contents.file, &framed, sky, None)?;
+    let Some((path, fps)) = path else {
+        let look = source.look(&contents.file, &framed, sky, None)?;
+        let input = source.input_with(contents, look)?;
+        return Ok(Prepared { input, rest: Rest::Frames(None) });
+    };
+    let moving = Moving::new(source, path, fps, framed, Arc::clone(&contents.file), sky)?;
+    let look = moving.view(source, first, numbers.index_of(first))?;
     let input = source.input_with(contents, look)?;
-    Ok(Prepared { input, rest: Rest::Frames })
+    Ok(Prepared { input, rest: Rest::Frames(Some(Box::new(moving))) })
+}
+
+/// Reads the scene that a moving camera sees.
+fn still(
+    source: &Source,
+    path: &WantedPath,
+    fps: u32,
+    index: usize,
+    first: usize,
+) -> Result<Prepared, Failure> {
+    let contents = source.contents()?;
+    let sky = source.sky(&contents)?;
+    let mut framed = Union::default();
+    framed.add(&contents.scene);
+    let framed = framed.scene().with_context(|| source.name())?;
+    let moving = Moving::new(source, path, fps, framed, Arc::clone(&contents.file), sky)?;
+    let look = moving.view(source, first, index)?;
+    let input = source.input_with(contents, look)?;
+    Ok(Prepared { input, rest: Rest::Moving(Box::new(moving)) })
 }
 
 /// Reads one frame.
@@ -299,12 +305,21 @@ impl Turntable {
 fn read(
     mut source: Source,
     rest: &Rest,
+    numbers: &Numbers,
     left: &[usize],
     next: &SyncSender<Result<(usize, Change), Failure>>,
 ) {
     for &number in left.iter().skip(1) {
         let change = match rest {
-            Rest::Frames => frame(&mut source, number).map(Box::new).map(Change::Frame),
+            Rest::Frames(moving) => frame(&mut source, number).and_then(|contents| {
+                let view = |moving: &Moving| moving.view(&source, number, numbers.index_of(number));
+                let look = moving.as_deref().map(view).transpose()?.map(Box::new);
+                Ok(Change::Frame(Box::new(contents), look))
+            }),
+            Rest::Moving(moving) => {
+                let look = moving.view(&source, number, numbers.index_of(number));
+                look.map(Box::new).map(Change::View)
+            }
             Rest::Turntable(turntable) => {
                 turntable.view(&source, number).map(Box::new).map(Change::View)
             }
@@ -319,17 +334,22 @@ fn read(
 /// Turns the input of one picture into that of the next.
 fn apply(input: &mut Input, change: Change, notes: &mut Notes) -> Result<(), Failure> {
     match change {
-        Change::Frame(mut contents) => {
+        Change::Frame(mut contents, look) => {
+            if let Some(look) = look {
+                apply_look(input, *look);
+            }
             contents.take_notes().into_iter().for_each(|note| notes.tell(note));
             input.scene = contents.scene;
             let checked = input.settings.check(&input.scene);
             checked.with_context(|| input.report.path.clone())?;
         }
-        Change::View(look) => {
-            let is_transparent = input.settings.is_transparent;
-            (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
-            input.settings.is_transparent = is_transparent;
-        }
+        Change::View(look) => apply_look(input, *look),
     }
     Ok(())
+}
+
+fn apply_look(input: &mut Input, look: Look) {
+    let is_transparent = input.settings.is_transparent;
+    (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
+    input.settings.is_transparent = is_transparent;
 }

@@ -41,7 +41,7 @@ pub(super) fn up_of(camera: &CameraParameters) -> Option<DVec3> {
     up.try_normalize()
 }
 
-fn vector(value: &Value) -> Option<DVec3> {
+pub(super) fn vector(value: &Value) -> Option<DVec3> {
     let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_float).collect();
     Some(DVec3::from(<[f64; 3]>::try_from(numbers).ok()?))
 }

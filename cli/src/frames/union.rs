@@ -52,13 +52,8 @@ impl Union {
 /// Leaves out spheres that lie within the others.
 fn reduce(spheres: &mut Vec<[f64; 4]>) {
     let all = &*spheres;
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
     let farthest = |index: usize| {
-        // Directions of a spiral, which are about equally far from each other.
-        let z = 1.0 - (2 * index + 1) as f64 / DIRECTIONS as f64;
-        let (sine, cosine) = (golden * index as f64).sin_cos();
-        let rho = (1.0 - z * z).sqrt();
-        let direction = DVec3::new(rho * cosine, rho * sine, z);
+        let direction = of_spiral(index, DIRECTIONS);
         let reach = |&[x, y, z, radius]: &[f64; 4]| direction.dot(DVec3::new(x, y, z)) + radius;
         all.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
     };
@@ -108,6 +103,39 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
     }
     let added = all.len() - of_data;
     Ok(Scene::from_f64(&all, LinearRgb::WHITE)?.with_added(added))
+}
+
+/// The ball around a scene, as a scene: spheres on the ball's surface, and some of the scene's own for the mean radius.
+pub(super) fn around(scene: &Scene) -> Result<Scene, SceneError> {
+    let center = scene.bounds_to_frame().center();
+    let origin = scene.origin();
+    let spheres = || scene.spheres().iter().map(|sphere| in_world(origin, sphere));
+    let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
+    let Some(farthest) = spheres().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
+        return Scene::from_f64(&[], LinearRgb::WHITE);
+    };
+    let radius = farthest[3];
+    let beside = reach(&farthest) - radius;
+    let on_surface = (0..4 * DIRECTIONS).map(|index| {
+        let at = center + beside * of_spiral(index, 4 * DIRECTIONS);
+        [at.x, at.y, at.z, radius]
+    });
+    let of_data = scene.len() - scene.added();
+    let step = of_data.div_ceil(SAMPLE).max(1);
+    let mut all: Vec<[f64; 4]> = spheres().take(of_data).step_by(step).collect();
+    let of_data = all.len();
+    all.extend(on_surface);
+    let added = all.len() - of_data;
+    Ok(Scene::from_f64(&all, LinearRgb::WHITE)?.with_added(added))
+}
+
+/// One of the directions of a spiral, which are about equally far from each other.
+fn of_spiral(index: usize, count: usize) -> DVec3 {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let z = 1.0 - (2 * index + 1) as f64 / count as f64;
+    let (sine, cosine) = (golden * index as f64).sin_cos();
+    let rho = (1.0 - z * z).sqrt();
+    DVec3::new(rho * cosine, rho * sine, z)
 }
 
 #[cfg(test)]
@@ -166,5 +194,18 @@ mod tests {
             assert!((side - 4.5).abs() < 1e-6, "{side}");
         }
         assert!((y - 1.5).abs() < 1e-6 && (down - 0.5).abs() < 1e-6, "{y} {down}");
+    }
+
+    /// From any side, the ball is as wide as the farthest sphere reaches.
+    #[test]
+    fn a_ball_is_as_wide_from_all_sides() {
+        let rod = [[0.0, 0.0, 0.0, 0.5], [4.0, 0.0, 0.0, 0.5]];
+        let rod = Scene::from_f64(&rod, LinearRgb::WHITE).unwrap();
+        let ball = around(&rod).unwrap();
+        let expected = [4.5, 2.5, 2.5, 0.5, 2.5, 2.5];
+        for (found, expected) in supports(&ball).into_iter().zip(expected) {
+            assert!((0.0..0.02).contains(&(expected - found)), "{found} {expected}");
+        }
+        assert!(around(&Scene::from_f64(&[], LinearRgb::WHITE).unwrap()).unwrap().is_empty());
     }
 }

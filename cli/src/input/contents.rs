@@ -70,6 +70,11 @@ pub(super) struct DataPlace {
 }
 
 impl Contents {
+    /// Adds a note for the user.
+    pub(super) fn add_note(&mut self, note: String) {
+        self.found.notes.push(note);
+    }
+
     /// Returns the notes for the user, which are then empty.
     pub(crate) fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.found.notes)

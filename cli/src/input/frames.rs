@@ -1,6 +1,6 @@
 //! Several frames of one file, of which one at a time is read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::Result;
@@ -10,6 +10,7 @@ use crate::color_flags::ColorFlags;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::Format;
+use pinhole::camera::CameraPath;
 use pinhole::color_by::Limits;
 use pinhole::glam::DVec3;
 use pinhole::load::{self, Loaded, Trajectory};
@@ -76,9 +77,28 @@ impl Source {
         self.color = ColorFlags::with_limits(&self.color, limits);
     }
 
+    /// Whether a flag chooses one frame of the data.
+    pub(crate) fn has_frame(&self) -> bool {
+        self.options.frame.is_some()
+    }
+
+    /// The path along which the camera of a scene file moves, and whether flags replace that camera.
+    pub(crate) fn camera_path(&self) -> Result<Option<(CameraPath, bool)>, Failure> {
+        if matches!(self.format, Format::Data(_)) {
+            return Ok(None);
+        }
+        let file = self.parsed(&self.text()?)?;
+        Ok(file.camera_path().map(|path| (path.clone(), self.has_camera_of_flags())))
+    }
+
     /// The path, for messages.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
+    }
+
+    /// The path.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The direction that is up for the flags; `None` if the camera is that of a scene file.

@@ -28,6 +28,13 @@ pub(crate) struct Look {
     view: Option<String>,
 }
 
+impl Look {
+    /// The same look, of which no flag shows the view.
+    pub(crate) fn without_view(self) -> Self {
+        Self { view: None, ..self }
+    }
+}
+
 /// Changes a camera that has its position.
 pub(crate) type Turn<'a> = &'a dyn Fn(&CameraParameters) -> Result<CameraParameters>;
 

@@ -205,7 +205,7 @@ fn wrong_usage_is_one_line() {
         ("a.xyz -o f%d.png --frames a", "write START:END"),
         ("a.xyz -o f%d.png --frames : --camera-from 7", "--camera-from: there is no frame 7"),
         ("a.csv -o f%d.png --frames :", "have no frames"),
-        ("a.csv -o m.gif", "--turntable N makes a movie of one frame"),
+        ("a.csv -o m.gif", "make a movie of one frame"),
         ("s.toml -o f%d.png --frames :", "this scene has no `data`"),
         ("a.xyz -o - --frames :", "add --raw y4m"),
         ("a.xyz -o m.gif --raw y4m", "replace -o m.gif by -o -"),

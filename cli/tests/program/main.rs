@@ -8,6 +8,7 @@ mod npy_files;
 
 mod arrays;
 mod bad_input;
+mod camera_path;
 mod colors;
 mod file_info;
 mod frames;

@@ -221,6 +221,7 @@ fn new_recording(
         },
         lighting: uploaded_lighting(&lighting.parameters),
         tables: lighting.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
+        emitters: lighting.emitters.iter().map(|four| four.map(f32::to_bits)).collect(),
         sky: uploaded_sky(settings),
         samples: Vec::new(),
     }
@@ -252,7 +253,6 @@ fn uploaded_lighting(lighting: &LightingParameters) -> UploadedLighting {
         ground_point: lighting.ground_point,
         ground_color: lighting.ground_color,
         seed: lighting.seed,
-        emitter_first: lighting.emitter_first,
         emitter_count: lighting.emitter_count,
         material_first: lighting.material_first,
         environment_size: lighting.environment_size,

@@ -8,6 +8,7 @@ use crate::camera::film::Film;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::tile_textures;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
+use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
 use crate::gpu::shader::records;
 use crate::image::LayerSet;
@@ -195,6 +196,13 @@ impl RenderPlan {
         let checks = bound
             .flat_map(|planned| [(planned, binding), (planned, buffer)])
             .chain(self.tile_textures.iter().map(|planned| (planned, buffer)));
+        let largest = emitter_table::limit(limits);
+        let textures =
+            self.tile_textures.iter().filter(|planned| planned.name == emitter_table::NAME);
+        if let Some(planned) = textures.into_iter().find(|planned| planned.bytes > largest.1) {
+            let (what, (limit_name, limit)) = (emitter_table::WHAT, largest);
+            return Err(GpuError::Limit { what, needed: planned.bytes, limit_name, limit });
+        }
         for (planned, (limit_name, limit)) in checks {
             let needed = planned.bytes_per_binding;
             if needed > limit {

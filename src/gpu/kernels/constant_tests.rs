@@ -10,7 +10,7 @@ use crate::accel::binary_tree::BinaryNode;
 use crate::accel::shared::{LAST, LEAF_COUNT_SHIFT, LEAF_FIRST, NO_ENTRY, PACKED_ROOT, word};
 use crate::accel::wide_node::WideNode;
 use crate::accel::{self};
-use crate::gpu::passes::{lit, tiles};
+use crate::gpu::passes::{emitter_table, lit, tiles};
 use crate::gpu::shader::records;
 use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
@@ -57,6 +57,8 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LAMP_DIRECTIONAL", codes::lamp::DIRECTIONAL),
         ("LAMP_POINT", codes::lamp::POINT),
         ("LAMP_SPHERE", codes::lamp::SPHERE),
+        ("EMITTER_COLUMNS", emitter_table::COLUMNS as u32),
+        ("EMITTER_ROWS", emitter_table::ROWS as u32),
         ("LIGHT_CHANCE", codes::sampling::CHANCE),
         ("LIGHT_DIRECT", codes::sampling::DIRECT),
         ("LIGHT_MULTIPLE", codes::sampling::MULTIPLE),

@@ -1,6 +1,7 @@
 //! Passes over pixels and paths. Each is built once for a device and records into an encoder. None submits or waits.
 
 pub(in crate::gpu) mod bands;
+pub(in crate::gpu) mod emitter_table;
 pub(in crate::gpu) mod frame;
 pub(crate) mod hosted;
 pub(in crate::gpu) mod lit;

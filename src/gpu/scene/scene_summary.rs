@@ -31,6 +31,9 @@ pub(in crate::gpu) struct EmissiveSphere {
 }
 
 impl SceneSummary {
+    /// Bytes of an emissive sphere.
+    pub(in crate::gpu) const BYTES_PER_EMITTER: u64 = 8 + size_of::<EmissiveSphere>() as u64;
+
     pub(in crate::gpu) fn of(scene: &Scene) -> Self {
         let emitters = Emitters::of(scene);
         let emissive = |id: &u32| EmissiveSphere {

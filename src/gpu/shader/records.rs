@@ -352,13 +352,12 @@ mod tests {
                 ground_color,
                 occlusion_samples,
                 seed,
-                emitter_first,
                 emitter_count,
                 material_first,
+                lamp_sources,
                 environment_size,
                 environment_rotation,
                 environment_strength,
-                lamp_sources,
                 filter_table
             }),
         ];

@@ -268,10 +268,10 @@ impl PathCheck<'_> {
 
     fn occlude(&self, state: &PathState, open: f32) -> Result<StageOutcome, Mismatch> {
         let mut expected = Expected::default();
-        let PathRecording { tables, lighting, .. } = self.recording;
+        let PathRecording { emitters, .. } = self.recording;
         let emitter = state.departure().emitter;
         let sphere_of_light = (emitter != NO_EMITTER)
-            .then(|| tables.get(lighting.emitter_first as usize + 3 * emitter as usize))
+            .then(|| emitters.get((emitter as usize).saturating_mul(3)))
             .flatten()
             .map(|sphere| sphere.map(f32::from_bits));
         search::check_open(self.searched(), state, sphere_of_light, open, &mut expected).map(simple)

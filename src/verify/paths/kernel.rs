@@ -86,6 +86,10 @@ impl<'a> Kernel<'a> {
         self.recording.tables.get(at as usize).copied().unwrap_or_default()
     }
 
+    pub(super) fn emitter_words(&self, at: u32) -> [u32; 4] {
+        self.recording.emitters.get(at as usize).copied().unwrap_or_default()
+    }
+
     pub(super) fn table_numbers(&self, at: u32) -> [f32; 4] {
         self.table(at).map(f32::from_bits)
     }

@@ -178,11 +178,12 @@ impl Kernel<'_> {
     }
 
     fn emitter(&self, index: u32) -> Emitter {
-        let at = self.lighting().emitter_first.saturating_add(3 * index);
-        let [_, _, probability, _] = self.table_numbers(at + 1);
-        let [r, g, b, _] = self.table_numbers(at + 2);
+        let at = index.saturating_mul(3);
+        let numbers = |at: u32| self.emitter_words(at).map(f32::from_bits);
+        let [_, _, probability, _] = numbers(at.saturating_add(1));
+        let [r, g, b, _] = numbers(at.saturating_add(2));
         Emitter {
-            sphere: self.table_numbers(at),
+            sphere: numbers(at),
             probability: Number::recorded(probability),
             radiance: Vector::recorded([r, g, b]),
         }
@@ -191,8 +192,8 @@ impl Kernel<'_> {
     /// The index of the first emitter whose word is at least `value`.
     fn find_emitter(&self, word: usize, value: u32) -> u32 {
         let count = self.lighting().emitter_count;
-        let first = self.lighting().emitter_first;
-        let is_before = |index: u32| self.table(first + 3 * index + 1)[word] < value;
+        let words = |index: u32| self.emitter_words(index.saturating_mul(3).saturating_add(1));
+        let is_before = |index: u32| words(index)[word] < value;
         let (mut low, mut high) = (0, count);
         while low < high {
             let middle = low + (high - low) / 2;

@@ -23,8 +23,10 @@ pub struct PathRecording {
     pub max_depth: u32,
     /// The parameters of the lighting on the device.
     pub lighting: UploadedLighting,
-    /// The tables of lights, emitters, materials and energies, as bits.
+    /// The tables of lights, materials and energies, as bits.
     pub tables: Vec<[u32; 4]>,
+    /// The table of emitters, as bits: three entries for each.
+    pub emitters: Vec<[u32; 4]>,
     /// The image of the sky, if it has one.
     pub sky: Option<UploadedSky>,
     /// The samples in the order of their indices.
@@ -164,8 +166,6 @@ pub struct UploadedLighting {
     pub ground_color: [f32; 3],
     /// Seed of the random numbers.
     pub seed: u32,
-    /// Index of the first emitter in the tables.
-    pub emitter_first: u32,
     /// Number of emitters.
     pub emitter_count: u32,
     /// Index of the first material in the tables.

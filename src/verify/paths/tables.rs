@@ -40,7 +40,7 @@ impl Tables<'_> {
 pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
     let tables = Tables { words: &recording.tables, lighting: &recording.lighting };
     let lamps = check_lights(&tables, scene, recording)?;
-    let emitters = check_emitters(&tables, scene, recording)?;
+    let emitters = check_emitters(scene, recording)?;
     check_materials(&tables, scene)?;
     let is_image = match &recording.settings.sky.light {
         SkyLight::Image { environment, strength, .. } => {
@@ -122,11 +122,7 @@ fn check_lights(
 }
 
 /// Checks the table of emissive spheres, and returns how many of them light sampling chooses from.
-fn check_emitters(
-    tables: &Tables<'_>,
-    scene: &Scene,
-    recording: &PathRecording,
-) -> Result<u32, PathUploadError> {
+fn check_emitters(scene: &Scene, recording: &PathRecording) -> Result<u32, PathUploadError> {
     if !uses_light_sampling(recording) {
         return Ok(0);
     }
@@ -147,19 +143,24 @@ fn check_emitters(
     keep_first_of_equals(&mut ids, scene.spheres());
     let total: f64 = ids.iter().map(|id| weight(*id)).sum();
     let all = 2_f64.powi(32);
-    // Each emitter has one pick for certain, and picks are whole numbers.
-    let slack = (ids.len() as f64 + 2.0) / all;
+    // Each emitter has one pick for certain, and its share of the others. Picks are whole numbers, and the sum of all
+    // weights before an emitter is rounded as often as there are terms.
+    let others = all - ids.len() as f64;
+    let slack = 3.0 + 4.0 * f64::EPSILON * all * (ids.len() as f64 + 16.0);
     let mut before = 0.0;
     for (index, id) in ids.iter().enumerate() {
-        let at = tables.lighting.emitter_first.saturating_add(3 * index as u32);
-        let [found_id, last, ..] = tables.words(at + 1);
+        let words =
+            |at: usize| recording.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
+        let [found_id, last, probability, _] = words(1);
         let end = f64::from(last) + 1.0;
-        let probability = tables.numbers(at + 1)[2];
+        let probability = f32::from_bits(probability);
+        let sphere = words(0).map(f32::from_bits);
+        let [r, g, b, _] = words(2).map(f32::from_bits);
         let is_right = found_id == *id
-            && Vec4::from(tables.numbers(at)) == Vec4::from(scene.spheres()[*id as usize])
-            && are_near(tables.vector(at + 2), radiance(*id))
+            && Vec4::from(sphere) == Vec4::from(scene.spheres()[*id as usize])
+            && are_near([r, g, b], radiance(*id))
             && end > before
-            && ((end - before) / all - weight(*id) / total).abs() <= slack
+            && (end - before - 1.0 - weight(*id) / total * others).abs() <= slack
             && is_near(probability, (end - before) / all)
             && (index + 1 < ids.len() || last == u32::MAX);
         if !is_right {

@@ -1,5 +1,6 @@
 //! Tests that lit pictures of the GPU agree with those of the CPU reference for the same random numbers.
 
+mod emitters;
 mod passes;
 pub(crate) mod scenes;
 
@@ -36,7 +37,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("light::a_studio_that_lacks_its_occluders_is_an_error", no_occluders),
         trial("light::only_primary_rays_are_recorded", not_recorded),
     ];
-    agreements.chain(others).chain(passes::trials()).collect()
+    agreements.chain(others).chain(emitters::trials()).chain(passes::trials()).collect()
 }
 
 fn render(view: &LitView) -> Result<Image, Failed> {
@@ -44,8 +45,12 @@ fn render(view: &LitView) -> Result<Image, Failed> {
 }
 
 fn agree(view: &LitView) -> Result<(), Failed> {
-    let found = render(view)?;
     let wanted = cpu::render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL)?;
+    agree_with(view, &wanted)
+}
+
+fn agree_with(view: &LitView, wanted: &Image) -> Result<(), Failed> {
+    let found = render(view)?;
     let colors = found.color().iter().zip(wanted.color());
     let differences: Vec<f64> = colors
         .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).abs())).fold(0.0, f64::max))

@@ -8,6 +8,7 @@ use super::records::{DispatchParameters, QUEUE_HEAD};
 use super::sizes::LitSizes;
 use crate::gpu::error::{GpuError, check_storage_size, scoped};
 use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::part;
 use crate::gpu::shader::records::FrameParameters;
@@ -88,6 +89,12 @@ impl LitFrame {
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
         check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
+        let (limit_name, limit) = emitter_table::limit(&device.limits());
+        let needed = emitter_table::planned(lighting.emitters.len()).map_or(0, |table| table.bytes);
+        if needed > limit {
+            let what = emitter_table::WHAT;
+            return Err(GpuError::Limit { what, needed, limit_name, limit });
+        }
         if let Some(environment) = &lighting.sky {
             let bytes = 16 * environment.texels().len() as u64;
             check_storage_size(device, "the image of the sky", bytes)?;
@@ -297,7 +304,9 @@ impl Make<'_> {
         let record = self.filled("pinhole lighting", record, BufferUsages::UNIFORM);
         let tables = bytemuck::cast_slice(&lighting.tables);
         let tables = self.filled("pinhole tables", tables, BufferUsages::STORAGE);
-        self.group("pinhole lighting", layout, &[whole(0, &record), whole(1, &tables)])
+        let emitters = emitter_table::upload(self.device, self.queue, &lighting.emitters);
+        let emitters = (2, wgpu::BindingResource::TextureView(&emitters));
+        self.group("pinhole lighting", layout, &[whole(0, &record), whole(1, &tables), emitters])
     }
 
     fn sky(&self, layout: &BindGroupLayout, environment: &Environment) -> BindGroup {

@@ -136,7 +136,6 @@ pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Ker
     parts.extend([
         part!("accel/spend.wgsl"),
         part!("accel/brick.wgsl"),
-        part!("scene/lighting.wgsl"),
         part!("scene/emitter.wgsl"),
     ]);
     parts.extend(match exclude_by {

@@ -1,4 +1,5 @@
-//! The data of a lighting for kernels: one uniform record, and one buffer of lights, emitters, materials and energies.
+//! The data of a lighting for kernels: one uniform record, one buffer of lights, materials and energies, and the table
+//! of emitters.
 
 use std::sync::Arc;
 
@@ -10,7 +11,8 @@ use super::records::LightingParameters;
 use super::round::BITS;
 use crate::camera::Camera;
 use crate::geometry::math::unit;
-use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
+use crate::gpu::passes::emitter_table;
+use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::shader::records::NO_HIT;
 use crate::image::color::LinearRgb;
 use crate::light::codes::{self, lighting as flags};
@@ -26,8 +28,10 @@ use crate::scene::material::{Material, SurfaceProperties};
 pub(in crate::gpu) struct LightingData {
     pub(in crate::gpu) mode: Mode,
     pub(in crate::gpu) parameters: LightingParameters,
-    /// The tables of lights, emitters, materials and energies, which are never empty.
+    /// The tables of lights, materials and energies, which are never empty.
     pub(in crate::gpu) tables: Vec<[f32; 4]>,
+    /// The table of emitters, which is empty unless light sampling chooses among them.
+    pub(in crate::gpu) emitters: Vec<[f32; 4]>,
     /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
     pub(super) max_surfaces: u32,
@@ -59,10 +63,6 @@ impl LightingData {
             let source = sources.lamps.get(index).copied().unwrap_or(0);
             tables.extend(light_record(light, scene.origin, source));
         }
-        let emitter_first = tables.len() as u32;
-        if sources.emitters {
-            tables.extend(emitter_records(scene));
-        }
         let material_first = tables.len() as u32;
         let rows = scene.appearance.material_rows();
         let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
@@ -78,13 +78,17 @@ impl LightingData {
         parameters.light_count = lights.len() as u32;
         parameters.source_count = sources.count();
         parameters.lamp_sources = sources.lamps.len() as u32;
-        parameters.emitter_first = emitter_first;
         parameters.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
         parameters.material_first = material_first;
         Self {
             mode: mode_of(settings, scene, &sources),
             parameters,
             tables,
+            emitters: if sources.emitters {
+                emitter_table::records(scene).collect()
+            } else {
+                Vec::new()
+            },
             max_surfaces: match &settings.integrator {
                 Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
                 Integrator::Primary(_) | Integrator::Studio(_) => 1,
@@ -125,7 +129,7 @@ impl LightingData {
         1 + shadows as u32 + self.parameters.occlusion_samples
     }
 
-    /// Size of the tables on the device in bytes.
+    /// Size of the tables on the device in bytes, without that of emitters.
     pub(in crate::gpu) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }
@@ -292,25 +296,6 @@ fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] 
         }
     };
     [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
-}
-
-/// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
-fn emitter_records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
-    let emitters = &scene.emitters;
-    emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
-        let EmissiveSphere { sphere, color, surface } = *emissive;
-        // A surface that is not opaque emits the fraction of light that its opacity gives.
-        let strength = match surface.material {
-            Material::Emissive { strength } => strength * surface.opacity,
-            _ => 0.0,
-        };
-        let probability = emitters.probability(*id) as f32;
-        [
-            sphere,
-            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
-            four(color.to_array().map(|c| c * strength), 0.0),
-        ]
-    })
 }
 
 /// The record of a material in the layout of `shaders/scene/material.wgsl`.

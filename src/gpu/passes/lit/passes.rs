@@ -113,6 +113,11 @@ impl LitLayouts {
             min_binding_size: NonZeroU64::new(size_of::<DispatchParameters>() as u64),
         };
         let read = storage::<[f32; 4]>(true);
+        let emitters = BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        };
         let layout = |label, kinds: &[(u32, BindingType)]| layout_of(device, label, kinds);
         let common = [(0, frame), (2, queue), (3, paths), (4, dispatch)];
         let with = |more: &[(u32, BindingType)]| [&common, more].concat();
@@ -123,7 +128,7 @@ impl LitLayouts {
             samples: layout("pinhole samples", &[(0, frame), (2, queue), (4, dispatch), (5, film)]),
             lighting: layout(
                 "pinhole lighting",
-                &[(0, uniform::<LightingParameters>()), (1, read)],
+                &[(0, uniform::<LightingParameters>()), (1, read), (2, emitters)],
             ),
             sky: layout("pinhole sky", &[(0, read), (1, storage::<f32>(true))]),
         }

@@ -7,6 +7,7 @@ use crate::gpu::headless::plan::{
     DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count,
     total,
 };
+use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::scene::Scene;
 
@@ -28,7 +29,8 @@ impl RenderPlan {
         let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
         scene_buffers.extend(shadows);
 
-        let lighting = LightingData::new(settings, &SceneSummary::of(scene), view.camera);
+        let summary = SceneSummary::of(scene);
+        let lighting = LightingData::new(settings, &summary, view.camera);
         let sizes = LitSizes::new(limits, film, lighting.mode, settings.sampling.samples);
         let tile_size = sizes.tile;
         let tile_count = tile_count(film, tile_size);
@@ -52,7 +54,11 @@ impl RenderPlan {
             tile_buffers.push(PlannedBuffer::one("sky shares", shares));
             texels + shares
         });
-        let tile_textures = vec![PlannedBuffer::one("sums read-back", film_bytes)];
+        let mut tile_textures = vec![PlannedBuffer::one("sums read-back", film_bytes)];
+        tile_textures.extend(emitter_table::planned(lighting.emitters.len()));
+        // The table itself, its copy that is queued for the device, and the spheres that it was made from.
+        let emitters = (2 * size_of_val(&lighting.emitters[..])) as u64
+            + summary.emissive.len() as u64 * SceneSummary::BYTES_PER_EMITTER;
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = (total(&tile_buffers) + total(&tile_textures)).max(data_bytes);
 
@@ -69,7 +75,8 @@ impl RenderPlan {
         let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
         // The image of the sky is converted to four components, and its copy is queued for the device.
-        let picture = film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky);
+        let picture =
+            film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky + emitters);
         let moments = [
             (HostPeak::Building, data.accel.host_bytes().max(building + in_host(scene_bytes))),
             (HostPeak::Uploading, uploading + in_host(scene_bytes)),
@@ -216,6 +223,20 @@ mod tests {
         let after = planned(1.0, 512, &settings, LayerSet::COLOR, GPU);
         let layers = outline::LAYERS.bytes_per_pixel() - Layer::Color.bytes_per_pixel();
         assert_eq!(after.host_bytes, before.host_bytes + (layers << 18));
+    }
+
+    /// Emissive spheres are in a texture, which no limit of buffers bounds.
+    #[test]
+    fn emitters_are_bounded_by_the_layers_of_a_texture() {
+        let settings = RenderSettings::path();
+        let mut plan = planned(1.0, 64, &settings, LayerSet::COLOR, GPU);
+        assert_eq!(bytes(&plan, emitter_table::NAME), 0);
+        plan.tile_textures.extend(emitter_table::planned(3 * 300_000_000));
+        let limits = Limits::default();
+        assert_eq!(plan.check(&limits, None), Ok(()));
+        let low = Limits { max_texture_array_layers: 200, ..limits };
+        let refused = plan.check(&low, None).unwrap_err().to_string();
+        assert!(refused.starts_with("the table of emissive spheres needs 14"), "{refused}");
     }
 
     #[test]

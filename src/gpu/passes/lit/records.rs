@@ -61,14 +61,13 @@ pub(in crate::gpu) struct LightingParameters {
     pub(in crate::gpu) ground_color: [f32; 3],
     pub(in crate::gpu) occlusion_samples: u32,
     pub(in crate::gpu) seed: u32,
-    pub(in crate::gpu) emitter_first: u32,
     pub(in crate::gpu) emitter_count: u32,
     pub(in crate::gpu) material_first: u32,
+    pub(in crate::gpu) lamp_sources: u32,
     pub(in crate::gpu) environment_size: [u32; 2],
     pub(in crate::gpu) environment_rotation: [f32; 2],
     pub(in crate::gpu) environment_strength: f32,
-    pub(in crate::gpu) lamp_sources: u32,
-    pub(in crate::gpu) _pad: [u32; 2],
+    pub(in crate::gpu) _pad: [u32; 3],
     pub(in crate::gpu) filter_table: [[f32; 4]; 65],
 }
 

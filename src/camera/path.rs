@@ -1,0 +1,411 @@
+//! Cameras that move along a path, which is given by keyframes.
+
+use std::f64::consts::PI;
+
+use glam::{DQuat, DVec3};
+
+use super::path_curve::{Curve, Track};
+use super::{CameraError, Pose, Viewpoint};
+
+/// What the times of keyframes count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathClock {
+    /// Pictures, or the frames of a trajectory, from 0.
+    Frames,
+    /// Seconds of the movie.
+    Seconds,
+}
+
+/// Where the camera of a keyframe is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KeyPlace {
+    /// At a point, in scene units.
+    Point {
+        /// Position of the camera.
+        eye: DVec3,
+        /// The point at which the camera looks.
+        look_at: DVec3,
+        /// The direction that is up in the picture, if it is not that of the whole path.
+        up: Option<DVec3>,
+    },
+    /// On a sphere around the subject.
+    View {
+        /// From where the camera looks.
+        viewpoint: Viewpoint,
+        /// By how many degrees the camera is turned about the direction that is up, counter-clockwise seen from above.
+        /// Full turns count: from 0 to 720 the camera goes around twice.
+        turn: f64,
+    },
+}
+
+/// The camera of one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraKey {
+    /// The frame or second, see [`PathClock`].
+    pub time: f64,
+    /// Where the camera is.
+    pub place: KeyPlace,
+    /// Vertical field of view in radians; keys without it do not decide it.
+    pub fov_radians: Option<f64>,
+    /// How much the picture is enlarged about its middle; keys without it do not decide it.
+    pub zoom: Option<f64>,
+}
+
+/// Why keyframes do not make a path. Keys are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraPathError {
+    /// There are not enough keys.
+    #[error("a camera path needs at least two keys, but there {}", few(*count))]
+    TooFewKeys {
+        /// How many keys there are.
+        count: usize,
+    },
+    /// A key is not later than the one before.
+    #[error(
+        "key {key} is at {time:?}, which is not later than key {} at {before:?}; keys stand in the order of time",
+        key - 1
+    )]
+    NotLater {
+        /// The later key.
+        key: usize,
+        /// Its time.
+        time: f64,
+        /// The time of the key before.
+        before: f64,
+    },
+    /// A number is NaN, infinite or out of its range.
+    #[error("key {key}: the {parameter} is {value:?}; it must lie between {low:?} and {high:?}")]
+    Range {
+        /// The key.
+        key: usize,
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value as given.
+        value: f64,
+        /// The smallest valid value.
+        low: f64,
+        /// The largest valid value.
+        high: f64,
+    },
+    /// The points and directions of a key do not make a camera: for example, the eye and the target are the same.
+    #[error("key {key}: {error}")]
+    Pose {
+        /// The key.
+        key: usize,
+        /// What is wrong.
+        error: CameraError,
+    },
+    /// The key gives a point and the first key a viewpoint, or the other way round.
+    #[error("key {key}: some keys have an eye and others a view; give all keys of a path the same")]
+    MixedPlaces {
+        /// The key.
+        key: usize,
+    },
+    /// The directions that are up in a key and in the one before are opposite, so that the way between them is unknown.
+    #[error(
+        "key {key}: its direction that is up is opposite to that of key {}; add a key between them that says to which \
+         side the camera rolls",
+        key - 1
+    )]
+    OppositeUp {
+        /// The later key.
+        key: usize,
+    },
+}
+
+fn few(count: usize) -> &'static str {
+    if count == 0 { "is none" } else { "is only one" }
+}
+
+impl CameraPathError {
+    /// The key that is wrong, counted from 0; `None` if there are not enough keys.
+    #[must_use]
+    pub fn key(&self) -> Option<usize> {
+        match *self {
+            Self::TooFewKeys { .. } => None,
+            Self::NotLater { key, .. }
+            | Self::Range { key, .. }
+            | Self::Pose { key, .. }
+            | Self::MixedPlaces { key }
+            | Self::OppositeUp { key } => Some(key),
+        }
+    }
+}
+
+/// Keyframes of a camera, checked. [`CameraPath::motion`] makes the motion through them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    keys: Vec<CameraKey>,
+    clock: PathClock,
+    eases: bool,
+}
+
+impl CameraPath {
+    /// The largest time, angle and zoom of a key, and the smallest with a minus.
+    const MOST: f64 = 1e9;
+
+    /// Checks keyframes. With `eases`, the camera starts and ends at rest, so that its velocity is continuous also
+    /// where the path begins and ends.
+    ///
+    /// # Errors
+    /// Returns an error if there are fewer than two keys, their times do not ascend, a number is not finite or out of
+    /// range, a key's eye is at its target or its `up` parallel to its view, or some keys have an eye and others a view.
+    pub fn new(
+        keys: Vec<CameraKey>,
+        clock: PathClock,
+        eases: bool,
+    ) -> Result<Self, CameraPathError> {
+        if keys.len() < 2 {
+            return Err(CameraPathError::TooFewKeys { count: keys.len() });
+        }
+        let mut before: Option<CameraKey> = None;
+        for (key, now) in keys.iter().enumerate() {
+            check(key, now)?;
+            if let Some(before) = before {
+                if now.time <= before.time {
+                    let (time, before) = (now.time, before.time);
+                    return Err(CameraPathError::NotLater { key, time, before });
+                }
+                if is_view(&before) != is_view(now) {
+                    return Err(CameraPathError::MixedPlaces { key });
+                }
+            }
+            before = Some(*now);
+        }
+        Ok(Self { keys, clock, eases })
+    }
+
+    /// The keyframes.
+    #[must_use]
+    pub fn keys(&self) -> &[CameraKey] {
+        &self.keys
+    }
+
+    /// What the times of the keys count.
+    #[must_use]
+    pub fn clock(&self) -> PathClock {
+        self.clock
+    }
+
+    /// Whether the camera starts and ends at rest.
+    #[must_use]
+    pub fn eases(&self) -> bool {
+        self.eases
+    }
+
+    /// Time of the last key.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.keys.last().map_or(0.0, |key| key.time)
+    }
+
+    /// The motion through the keys, where `up` is the direction that is up for keys that give none, and about which
+    /// views are turned. It need not be a unit vector; without a direction, +y is taken.
+    ///
+    /// # Errors
+    /// Returns an error if the directions that are up in two neighbouring keys are opposite.
+    pub fn motion(&self, up: DVec3) -> Result<CameraMotion, CameraPathError> {
+        let up = up.try_normalize().unwrap_or(DVec3::Y);
+        let track = |value: &dyn Fn(&CameraKey) -> Option<f64>| {
+            let given = self.keys.iter().filter_map(|key| Some((key.time, value(key)?)));
+            let given: Vec<_> = given.collect();
+            (!given.is_empty()).then(|| Track::new(given, self.eases))
+        };
+        let places = if self.keys.iter().any(is_view) {
+            let angles = self.keys.iter().map(|key| (key.time, angles(key, up)));
+            let angles: Vec<(f64, [f64; 2])> = angles.collect();
+            let track = |i: usize| {
+                Track::new(angles.iter().map(|(time, angles)| (*time, angles[i])), self.eases)
+            };
+            Places::Views { azimuth: track(0), elevation: track(1), up }
+        } else {
+            let points: Vec<(f64, [DVec3; 3])> =
+                self.keys.iter().map(|key| (key.time, points(key, up))).collect();
+            for (key, pair) in points.windows(2).enumerate() {
+                if pair[0].1[2].dot(pair[1].1[2]) < -0.999_999 {
+                    return Err(CameraPathError::OppositeUp { key: key + 1 });
+                }
+            }
+            let curve = |i: usize| {
+                let of_one: Vec<_> = points.iter().map(|(time, all)| (*time, all[i])).collect();
+                Curve::new(&of_one, self.eases)
+            };
+            Places::Points(Box::new([0, 1, 2].map(curve)))
+        };
+        Ok(CameraMotion {
+            places,
+            log_fov: track(&|key| key.fov_radians.map(f64::ln)),
+            log_zoom: track(&|key| key.zoom.map(f64::ln)),
+        })
+    }
+}
+
+fn is_view(key: &CameraKey) -> bool {
+    matches!(key.place, KeyPlace::View { .. })
+}
+
+/// Checks one key by itself.
+fn check(key: usize, now: &CameraKey) -> Result<(), CameraPathError> {
+    let most = CameraPath::MOST;
+    let within = |parameter, value: f64, [low, high]: [f64; 2]| {
+        if (low..=high).contains(&value) {
+            Ok(())
+        } else {
+            Err(CameraPathError::Range { key, parameter, value, low, high })
+        }
+    };
+    within("time", now.time, [-most, most])?;
+    if let Some(zoom) = now.zoom {
+        within("zoom", zoom, [1.0 / most, most])?;
+    }
+    match now.place {
+        KeyPlace::View { viewpoint, turn } => {
+            within("turn", turn, [-most, most])?;
+            if let Viewpoint::Angles { azimuth, elevation } = viewpoint {
+                within("azimuth", azimuth, [-most, most])?;
+                within("elevation", elevation, [-90.0, 90.0])?;
+            }
+        }
+        KeyPlace::Point { eye, look_at, up } => {
+            let made = Pose::looking_at(eye, look_at, up.unwrap_or(DVec3::Y));
+            match made {
+                // Without an `up` of its own, such a key gets another one.
+                Err(CameraError::UpParallelToView { .. }) if up.is_none() => {}
+                made => {
+                    made.map_err(|error| CameraPathError::Pose { key, error })?;
+                }
+            }
+        }
+    }
+    match now.fov_radians {
+        Some(radians) if !(radians > 0.0 && radians < PI) => {
+            Err(CameraPathError::Pose { key, error: CameraError::FieldOfView { radians } })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Azimuth and elevation of a key, in radians, with the turns.
+fn angles(key: &CameraKey, up: DVec3) -> [f64; 2] {
+    let KeyPlace::View { viewpoint, turn } = key.place else { return [0.0; 2] };
+    let from_y = DQuat::from_rotation_arc(DVec3::Y, up);
+    let [azimuth, elevation] = match viewpoint {
+        Viewpoint::Angles { azimuth, elevation } => [azimuth, elevation].map(f64::to_radians),
+        Viewpoint::Axis { .. } => {
+            let [direction, _] = viewpoint.axes(up, 0.0);
+            let place = from_y.inverse() * -direction;
+            let beside = place.x.hypot(place.z);
+            let azimuth = if beside < 1e-9 { 0.0 } else { place.x.atan2(place.z) };
+            [azimuth, place.y.atan2(beside)]
+        }
+    };
+    [azimuth + turn.to_radians(), elevation]
+}
+
+/// Eye, target and the unit vector that is up of a key.
+fn points(key: &CameraKey, of_path: DVec3) -> [DVec3; 3] {
+    let KeyPlace::Point { eye, look_at, up } = key.place else { return [DVec3::ZERO; 3] };
+    let given = up.and_then(DVec3::try_normalize);
+    let up = given.unwrap_or_else(|| {
+        // Seen from straight above or below, the direction away from azimuth 0, as `Viewpoint::axes` has it.
+        let toward = (look_at - eye).normalize_or_zero();
+        let is_vertical = toward.cross(of_path).length() < 1e-6;
+        let front = DQuat::from_rotation_arc(DVec3::Y, of_path) * DVec3::Z;
+        if is_vertical { front * toward.dot(of_path).signum() } else { of_path }
+    });
+    [eye, look_at, up]
+}
+
+/// The camera of one moment of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CameraOnPath {
+    /// Where the camera is.
+    pub place: PlaceOnPath,
+    /// Vertical field of view in radians, if a key says it.
+    pub fov_radians: Option<f64>,
+    /// How much the picture is enlarged about its middle, if a key says it.
+    pub zoom: Option<f64>,
+}
+
+/// Where the camera is at one moment of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlaceOnPath {
+    /// At a point.
+    Point {
+        /// Position of the camera.
+        eye: DVec3,
+        /// The point at which the camera looks. Between two keys, it may be that of the eye.
+        look_at: DVec3,
+        /// The direction that is up in the picture: a unit vector, perpendicular to the direction of view.
+        up: DVec3,
+    },
+    /// On a sphere around the subject.
+    View {
+        /// The direction in which the camera looks: a unit vector.
+        direction: DVec3,
+        /// The direction that is up in the picture: a unit vector, perpendicular to `direction`.
+        up: DVec3,
+    },
+}
+
+/// The smooth motion of a camera through the keys of a path.
+///
+/// Position and target move on centripetal Catmull–Rom splines. Field of view and zoom are interpolated in logarithms,
+/// and they and the angles of views stay between those of neighbouring keys. Velocities are continuous between the first
+/// and the last key; before and after them the camera stands still.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraMotion {
+    places: Places,
+    log_fov: Option<Track>,
+    log_zoom: Option<Track>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Places {
+    /// Eye, target and up.
+    Points(Box<[Curve; 3]>),
+    Views {
+        azimuth: Track,
+        elevation: Track,
+        up: DVec3,
+    },
+}
+
+impl CameraMotion {
+    /// The camera at a time, which is counted as [`CameraPath::clock`] says.
+    #[must_use]
+    pub fn at(&self, time: f64) -> CameraOnPath {
+        let place = match &self.places {
+            Places::Points(curves) => {
+                let [eye, look_at, up] = curves.each_ref().map(|curve| curve.at(time));
+                PlaceOnPath::Point { eye, look_at, up: upright(look_at - eye, up) }
+            }
+            Places::Views { azimuth, elevation, up } => {
+                let from_y = DQuat::from_rotation_arc(DVec3::Y, *up);
+                let (sine, cosine) = azimuth.at(time).sin_cos();
+                let front = from_y * DVec3::new(sine, 0.0, cosine);
+                let (sine, cosine) = elevation.at(time).sin_cos();
+                PlaceOnPath::View {
+                    direction: -(cosine * front + sine * *up),
+                    up: cosine * *up - sine * front,
+                }
+            }
+        };
+        let value = |track: &Option<Track>| track.as_ref().map(|track| track.at(time).exp());
+        CameraOnPath { place, fov_radians: value(&self.log_fov), zoom: value(&self.log_zoom) }
+    }
+}
+
+/// The part of `up` that is perpendicular to the view. Where there is none, which happens at single moments between
+/// keys, any perpendicular direction.
+fn upright(view: DVec3, up: DVec3) -> DVec3 {
+    let Some(view) = view.try_normalize() else { return up.normalize_or(DVec3::Y) };
+    let beside = up - up.dot(view) * view;
+    if beside.length() > 1e-9 * up.length() {
+        beside.normalize_or(view.any_orthonormal_vector())
+    } else {
+        view.any_orthonormal_vector()
+    }
+}

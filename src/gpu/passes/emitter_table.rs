@@ -1,0 +1,145 @@
+//! The table of emissive spheres on a device: a texture, because a binding of a buffer may be as small as 128 MiB, while
+//! an array of textures holds several gigabytes on every device.
+
+use wgpu::{
+    Device, Extent3d, Limits, Origin3d, Queue, TexelCopyBufferLayout, TexelCopyTextureInfo,
+    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor, TextureViewDimension,
+};
+
+use crate::accel::PlannedBuffer;
+use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
+use crate::scene::material::Material;
+
+/// Width of the texture; the twin of `EMITTER_COLUMNS` in `shaders/scene/emitter.wgsl`. Every device has textures of
+/// this size.
+pub(in crate::gpu) const COLUMNS: usize = 1 << 11;
+
+/// Rows of a layer, unless a single one needs fewer; the twin of `EMITTER_ROWS`.
+pub(in crate::gpu) const ROWS: usize = 1 << 11;
+
+const LAYER: usize = COLUMNS * ROWS;
+
+/// What a plan calls the table.
+pub(in crate::gpu) const NAME: &str = "emitters";
+
+/// What errors call the table.
+pub(in crate::gpu) const WHAT: &str = "the table of emissive spheres";
+
+/// Width, height and layers of the texture for a table of so many texels.
+fn extent(texels: usize) -> Extent3d {
+    let texels = texels.max(1);
+    Extent3d {
+        width: texels.min(COLUMNS) as u32,
+        height: texels.div_ceil(COLUMNS).min(ROWS) as u32,
+        depth_or_array_layers: texels.div_ceil(LAYER) as u32,
+    }
+}
+
+/// The size of the table, without the texture of one texel that stands for an empty one. It is uploaded layer by layer.
+pub(in crate::gpu) fn planned(texels: usize) -> Option<PlannedBuffer> {
+    let Extent3d { width, height, depth_or_array_layers } = extent(texels);
+    let layer = 16 * u64::from(width) * u64::from(height);
+    (texels > 0).then(|| PlannedBuffer {
+        name: NAME,
+        bytes: layer * u64::from(depth_or_array_layers),
+        bytes_per_binding: layer,
+    })
+}
+
+/// The largest table that a device holds, in bytes, and the name of the limit.
+pub(in crate::gpu) fn limit(limits: &Limits) -> (&'static str, u64) {
+    let layers = u64::from(limits.max_texture_array_layers);
+    ("the size of a texture with max_texture_array_layers", 16 * layers * LAYER as u64)
+}
+
+/// Creates the texture and uploads the table.
+pub(in crate::gpu) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> TextureView {
+    let size = extent(table.len());
+    let texture = device.create_texture(&TextureDescriptor {
+        label: Some("pinhole emitters"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format: TextureFormat::Rgba32Uint,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let write = |texels: &[[f32; 4]], [row, layer]: [usize; 2]| {
+        let columns = texels.len().min(COLUMNS) as u32;
+        let rows = (texels.len() / columns.max(1) as usize) as u32;
+        let origin = Origin3d { x: 0, y: row as u32, z: layer as u32 };
+        queue.write_texture(
+            TexelCopyTextureInfo {
+                texture: &texture,
+                mip_level: 0,
+                origin,
+                aspect: TextureAspect::All,
+            },
+            bytemuck::cast_slice(texels),
+            TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(16 * columns),
+                rows_per_image: None,
+            },
+            Extent3d { width: columns, height: rows, depth_or_array_layers: 1 },
+        );
+    };
+    for (layer, texels) in table.chunks(LAYER).enumerate() {
+        // Rows that are full, and the rest of the last one.
+        let full = texels.len() / COLUMNS * COLUMNS;
+        let (rows, rest) = texels.split_at(full);
+        if !rows.is_empty() {
+            write(rows, [0, layer]);
+        }
+        if !rest.is_empty() {
+            write(rest, [full / COLUMNS, layer]);
+        }
+    }
+    texture.create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2Array),
+        ..TextureViewDescriptor::default()
+    })
+}
+
+/// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
+pub(in crate::gpu) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
+    let emitters = &scene.emitters;
+    emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
+        let EmissiveSphere { sphere, color, surface } = *emissive;
+        // A surface that is not opaque emits the fraction of light that its opacity gives.
+        let strength = match surface.material {
+            Material::Emissive { strength } => strength * surface.opacity,
+            _ => 0.0,
+        };
+        let probability = emitters.probability(*id) as f32;
+        let [r, g, b] = color.to_array().map(|c| c * strength);
+        [
+            sphere,
+            [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0],
+            [r, g, b, 0.0],
+        ]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_texel_lies_in_the_texture() {
+        for texels in [0, 1, 2047, 2048, 2049, LAYER - 1, LAYER, LAYER + 1, 15_000_000] {
+            let Extent3d { width, height, depth_or_array_layers } = extent(texels);
+            let last = texels.max(1) - 1;
+            // As the shader has it.
+            assert!(((last / LAYER) as u32) < depth_or_array_layers, "{texels}");
+            assert!(((last / COLUMNS % ROWS) as u32) < height, "{texels}");
+            assert!(((last % COLUMNS) as u32) < width && width <= 2048, "{texels}");
+            let bytes = planned(texels).map_or(0, |planned| planned.bytes);
+            assert!(bytes >= 16 * texels as u64, "{texels}");
+        }
+        let (_, most) = limit(&Limits::default());
+        assert_eq!(most, 16 << 30);
+    }
+}
