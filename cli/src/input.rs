@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
+use super::annotation::AnnotationFlags;
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
@@ -20,7 +21,7 @@ use super::report::Report;
 use contents::Contents;
 pub(super) use frames::FoundFrames;
 use frames::OpenFrames;
-pub(super) use look::Look;
+pub(super) use look::{Framed, Look};
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};
@@ -103,6 +104,9 @@ pub(super) struct Source {
     /// The style of data files.
     style: Style,
     color: ColorFlags,
+    annotation: AnnotationFlags,
+    /// The colors by kind that all frames of a movie have, although no flag asks for them.
+    kinds: Option<ColorBy>,
     /// The open file, if several of its frames are read.
     frames: Option<OpenFrames>,
 }
@@ -144,6 +148,11 @@ impl Source {
         Self { color, ..self }
     }
 
+    /// Returns this source with flags for annotations, for which the camera leaves room.
+    pub(super) fn with_annotation(self, annotation: AnnotationFlags) -> Self {
+        Self { annotation, ..self }
+    }
+
     /// Makes a source from a scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
@@ -156,6 +165,8 @@ impl Source {
             light: LightFlags::default(),
             style: Style::Fast,
             color: ColorFlags::default(),
+            annotation: AnnotationFlags::default(),
+            kinds: None,
             frames: None,
         }
     }
@@ -194,7 +205,8 @@ impl Source {
 
     fn input(&self, contents: Contents) -> Result<Input, Failure> {
         let sky = self.sky(&contents)?;
-        let look = self.look(&contents.file, &contents.scene, sky, None)?;
+        let framed = Framed::new(&contents.scene, contents.color_key());
+        let look = self.look(&contents.file, framed, sky, None)?;
         self.input_with(contents, look)
     }
 

@@ -14,8 +14,10 @@ mod frames;
 mod generate;
 mod good_input;
 mod interrupt;
+mod legend_room;
 mod light;
 mod looks;
+mod movie_colors;
 mod pictures;
 #[cfg(feature = "gpu")]
 mod shaders;
