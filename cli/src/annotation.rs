@@ -9,6 +9,8 @@ use pinhole::LinearRgb;
 use pinhole::annotate::{
     AnnotationError, AnnotationPlan, Annotations, Label, LegendPlan, Panel, Position, ScaleBarPlan,
 };
+use pinhole::camera::film::Film;
+use pinhole::color_by::ColorKey;
 use pinhole::image::encoding::Encoding;
 
 const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
@@ -143,9 +145,22 @@ impl AnnotationFlags {
         scene.with_dots_per_inch(dots_per_inch).unwrap_or(scene)
     }
 
-    /// What is to be drawn on the picture of an input: what its scene file says, over which flags take precedence.
-    pub(super) fn plan_for(&self, input: &Input) -> AnnotationPlan {
-        let (mut file, flags) = (input.annotations.clone(), self.plan.clone());
+    /// The parts of the film that a camera must leave free for the legend. `file` is what a scene file draws.
+    pub(super) fn free_sides(
+        &self,
+        file: &AnnotationPlan,
+        key: Option<&ColorKey>,
+        film: Film,
+    ) -> [f64; 4] {
+        match self.format {
+            Some(PictureFormat::Exr) => [0.0; 4],
+            _ => self.plan_over(file).free_sides(key, film),
+        }
+    }
+
+    /// What is to be drawn: what a scene file says, over which flags take precedence.
+    pub(super) fn plan_over(&self, file: &AnnotationPlan) -> AnnotationPlan {
+        let (mut file, flags) = (file.clone(), self.plan.clone());
         if let Some(legend) = file.legend.as_mut().filter(|_| self.has_new_column) {
             legend.title = None;
         }
@@ -172,7 +187,7 @@ impl AnnotationFlags {
         input: &Input,
         note: impl Fn(&dyn std::fmt::Display),
     ) -> Result<Annotations, Failure> {
-        let plan = self.plan_for(input);
+        let plan = self.plan_over(&input.annotations);
         if plan.is_empty() {
             return Ok(Annotations::default());
         }

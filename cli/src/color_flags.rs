@@ -5,10 +5,10 @@ use clap::Args;
 use super::annotation::AnnotationArgs;
 use super::failure::Failure;
 use pinhole::LinearRgb;
-use pinhole::color_by::{ColorBy, EmissionBy, Limits, MapName, Mapping, RadiusBy};
+use pinhole::color_by::{ColorBy, EmissionBy, JoinedKeys, Limits, MapName, Mapping, RadiusBy};
 use pinhole::scene_file::IntegratorKind;
 
-const HEADING: &str = "Colors, radii and opacities from data";
+pub(super) const HEADING: &str = "Colors, radii and opacities from data";
 
 #[derive(Debug, Args)]
 pub(super) struct ColorArgs {
@@ -55,6 +55,8 @@ pub(super) struct ColorFlags {
     limits: Option<Limits>,
     is_log: bool,
     missing: Option<[u8; 3]>,
+    /// What colors mean in all frames of a movie.
+    joined: JoinedKeys,
 }
 
 impl ColorFlags {
@@ -85,12 +87,18 @@ impl ColorFlags {
             missing: missing
                 .map_err(|error| refused("missing-color", &error))?
                 .map(LinearRgb::to_srgb8),
+            joined: JoinedKeys::default(),
         })
     }
 
-    /// Returns these flags with other limits of the colors.
-    pub(super) fn with_limits(&self, limits: Limits) -> Self {
-        Self { limits: Some(limits), ..self.clone() }
+    /// Returns these flags with the meaning of colors in all frames of a movie.
+    pub(super) fn with_joined(&self, joined: JoinedKeys) -> Self {
+        Self { joined, ..self.clone() }
+    }
+
+    /// Gives the colors of a column the range or the categories of all frames of a movie.
+    pub(super) fn join(&self, color: &mut ColorBy) {
+        self.joined.apply_to(color);
     }
 
     /// Whether any flag that needs data was given.
@@ -142,6 +150,7 @@ impl ColorFlags {
         color.limits = self.limits.unwrap_or(color.limits);
         color.is_log |= self.is_log;
         color.missing = self.missing.unwrap_or(color.missing);
+        self.join(color);
         Ok(mapping)
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
+use super::annotation::AnnotationFlags;
 #[cfg(feature = "gpu")]
 use super::args::BenchArgs;
 use super::args::{InputArgs, ViewArgs};
@@ -21,7 +22,7 @@ use super::structure_flags::StructureFlags;
 use contents::Contents;
 pub(super) use frames::FoundFrames;
 use frames::OpenFrames;
-pub(super) use look::Look;
+pub(super) use look::{Framed, Look};
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters, View};
@@ -105,6 +106,9 @@ pub(super) struct Source {
     style: Style,
     color: ColorFlags,
     structure: StructureFlags,
+    annotation: AnnotationFlags,
+    /// The colors by kind that all frames of a movie have, although no flag asks for them.
+    kinds: Option<ColorBy>,
     /// The open file, if several of its frames are read.
     frames: Option<OpenFrames>,
 }
@@ -151,6 +155,11 @@ impl Source {
         Self { structure, ..self }
     }
 
+    /// Returns this source with flags for annotations, for which the camera leaves room.
+    pub(super) fn with_annotation(self, annotation: AnnotationFlags) -> Self {
+        Self { annotation, ..self }
+    }
+
     /// Makes a source from a scene file without flags.
     pub(super) fn of_scene(path: &Path) -> Self {
         let options = DataOptions::default();
@@ -164,6 +173,8 @@ impl Source {
             style: Style::Fast,
             color: ColorFlags::default(),
             structure: StructureFlags::default(),
+            annotation: AnnotationFlags::default(),
+            kinds: None,
             frames: None,
         }
     }
@@ -209,7 +220,8 @@ impl Source {
             ));
         }
         let sky = self.sky(&contents)?;
-        let look = self.look(&contents.file, &contents.scene, sky, None)?;
+        let framed = Framed::new(&contents.scene, contents.color_key());
+        let look = self.look(&contents.file, framed, sky, None)?;
         self.input_with(contents, look)
     }
 

@@ -65,7 +65,8 @@ impl Job {
             source: Source::new(&args.input)?
                 .with_light(light)
                 .with_color(color)
-                .with_structure(StructureFlags::new(&args.structure)?),
+                .with_structure(StructureFlags::new(&args.structure)?)
+                .with_annotation(annotation.clone()),
             stop_rule,
             encoding: EncodingFlags::new(&args.encoding, outputs.format())?,
             annotation,
@@ -96,7 +97,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
         let input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
         let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
-        return Ok(print_scene::print(&input, encoding, job.annotation.plan_for(&input))?);
+        return Ok(print_scene::print(
+            &input,
+            encoding,
+            job.annotation.plan_over(&input.annotations),
+        )?);
     }
     // The driver is loaded while the file is read, which saves time.
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;

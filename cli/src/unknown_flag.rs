@@ -4,6 +4,10 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory};
 
 use super::args::Arguments;
+use super::color_flags;
+
+/// Commands that take scene files and have no flags for columns of data.
+const SCENES: [&str; 3] = ["verify", "plan", "bench"];
 
 /// How alike a flag must be to be proposed, from 0 to 1.
 const ALIKE: f64 = 0.7;
@@ -23,6 +27,13 @@ pub(super) fn message(error: &clap::Error, arguments: &[String]) -> Option<Strin
             let others = program.get_subcommands().filter(|other| flags(other).any(|f| f == *flag));
             let others: Vec<_> = others.map(|other| format!("`{}`", other.get_name())).collect();
             match nearest(flag, command) {
+                _ if is_of_columns(flag, &program) && SCENES.contains(&command.get_name()) => {
+                    format!(
+                        "it is a flag of `render`; with --print-scene, `pinhole render` writes a scene file that has it, for \
+                     `{}`",
+                        command.get_name()
+                    )
+                }
                 _ if !others.is_empty() => format!("it is a flag of {}", others.join(", ")),
                 Some(nearest) => format!("did you mean {nearest}?"),
                 None => format!("`pinhole {} --help` lists the flags", command.get_name()),
@@ -31,6 +42,14 @@ pub(super) fn message(error: &clap::Error, arguments: &[String]) -> Option<Strin
         None => "`pinhole --help` lists the commands, which have the flags".to_owned(),
     };
     Some(format!("error: unexpected argument '{flag}' found; {hint}"))
+}
+
+/// Whether a flag says what the columns of data mean.
+fn is_of_columns(flag: &str, program: &Command) -> bool {
+    let render = program.find_subcommand("render");
+    let of_columns = |arg: &&clap::Arg| arg.get_help_heading() == Some(color_flags::HEADING);
+    let mut names = render.into_iter().flat_map(Command::get_opts).filter(of_columns);
+    names.any(|arg| arg.get_long().is_some_and(|name| flag.strip_prefix("--") == Some(name)))
 }
 
 /// The long flags of a command, with both dashes.
@@ -66,6 +85,12 @@ mod tests {
             ("render a.xyz --width 5", "`pinhole render --help` lists the flags"),
             ("render a.xyz -z", "`pinhole render --help` lists the flags"),
             ("info a.xyz --color red", "it is a flag of `render`, `verify`"),
+            (
+                "verify a.xyz --radius-by r",
+                "it is a flag of `render`; with --print-scene, `pinhole render` writes a scene file that has it, for \
+                 `verify`",
+            ),
+            ("info a.xyz --color-by x", "it is a flag of `render`"),
             ("--color red", "`pinhole --help` lists the commands, which have the flags"),
         ] {
             let arguments: Vec<String> = line.split(' ').map(str::to_owned).collect();

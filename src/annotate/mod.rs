@@ -24,6 +24,7 @@ mod legend_scale;
 mod place;
 mod plan;
 mod position;
+mod room;
 mod scale_bar;
 mod shape;
 mod ticks;
@@ -130,17 +131,17 @@ impl Annotations {
     /// Draws the annotations over a picture.
     pub fn draw(&self, canvas: &mut Canvas<'_>) {
         let size = canvas.size();
+        place::draw(&self.blocks(size), self.em(size), self, canvas);
+    }
+
+    fn blocks(&self, size: [u32; 2]) -> Vec<(Position, Block)> {
         let em = self.em(size);
-        let blocks: Vec<(Position, Block)> = self
-            .items
-            .iter()
-            .map(|item| match item {
-                Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
-                Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
-                Annotation::Label(label) => (label.position, label.block(em)),
-            })
-            .collect();
-        place::draw(&blocks, em, self, canvas);
+        let block = |item: &Annotation| match item {
+            Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
+            Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
+            Annotation::Label(label) => (label.position, label.block(em)),
+        };
+        self.items.iter().map(block).collect()
     }
 
     /// The size of text in pixels: that of the letter M is about 0.7 of it.

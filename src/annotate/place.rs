@@ -9,10 +9,10 @@ use super::{Annotations, Panel};
 const MARGIN: f32 = 1.2;
 
 /// The distance between annotations of one corner, relative to the size of text.
-const GAP: f32 = 0.9;
+pub(super) const GAP: f32 = 0.9;
 
 /// How far a panel reaches beyond its annotation, relative to the size of text.
-const PADDING: f32 = 0.6;
+pub(super) const PADDING: f32 = 0.6;
 
 /// How opaque a panel is.
 const PANEL_OPACITY: f32 = 0.8;
@@ -27,30 +27,29 @@ pub(super) fn draw(
     look: &Annotations,
     canvas: &mut Canvas<'_>,
 ) {
-    for (index, (position, block)) in blocks.iter().enumerate() {
-        let origin = origin(blocks, index, *position, em, canvas.size());
+    for (index, (_, block)) in blocks.iter().enumerate() {
+        let origin = origin(blocks, index, em, canvas.size());
         draw_block(block, origin, em, look, canvas);
     }
 }
 
 /// The top left corner of a block in whole pixels.
-fn origin(
+pub(super) fn origin(
     blocks: &[(Position, Block)],
     index: usize,
-    position: Position,
     em: f32,
     [width, height]: [u32; 2],
 ) -> [i64; 2] {
     let (margin, gap) = (MARGIN * em, GAP * em);
     let [width, height] = [width as f32, height as f32];
-    let block = &blocks[index].1;
+    let (position, block) = &blocks[index];
     let [fx, fy] = match position {
         Position::Anchor(anchor) => anchor.fractions(),
-        Position::At(fractions) => fractions,
+        Position::At(fractions) => *fractions,
     };
     let x = margin + fx * (width - 2.0 * margin - block.width);
     let heights = |blocks: &[(Position, Block)]| {
-        let here = blocks.iter().filter(|(other, _)| *other == position);
+        let here = blocks.iter().filter(|(other, _)| other == position);
         here.map(|(_, block)| block.height + gap).sum::<f32>()
     };
     let y = match position {

@@ -5,8 +5,10 @@ use glam::DVec3;
 use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 use super::{Annotations, Label, Legend, Panel, Position, missing_characters};
 use crate::camera::View;
+use crate::camera::film::{Film, YAxis};
 use crate::color_by::ColorKey;
 use crate::color_by::number::short;
+use crate::geometry::subject::Subject;
 
 /// The annotations that a user asks for, in a scene file or with flags.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,18 +68,8 @@ impl AnnotationPlan {
         self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()
     }
 
-    /// The annotations of a picture, and notes for the user. `key` is what colours mean, if a column gives them; a scale
-    /// bar is true at the depth of `middle`, the middle of the scene.
-    ///
-    /// # Errors
-    /// Returns an error if there is no key for a legend, or a scale bar has no meaning or does not fit.
-    pub fn annotations(
-        &self,
-        key: Option<&ColorKey>,
-        view: &View<'_>,
-        middle: DVec3,
-    ) -> Result<(Annotations, Vec<String>), AnnotationError> {
-        let mut notes = Vec::new();
+    /// The labels and the legend, which do not depend on the camera.
+    fn without_camera(&self, key: Option<&ColorKey>) -> Result<Annotations, AnnotationError> {
         let mut drawn = Annotations { color: self.color, ..Annotations::default() };
         drawn.text_scale = self.text_scale.unwrap_or(drawn.text_scale);
         drawn.panel = self.panel.unwrap_or(drawn.panel);
@@ -90,6 +82,35 @@ impl AnnotationPlan {
             legend.position = position.unwrap_or(legend.position);
             drawn = drawn.with(legend);
         }
+        Ok(drawn)
+    }
+
+    /// The parts of a film that a camera must leave free so that no sphere lies under the legend, for
+    /// [`Subject::with_free_sides`]. There are none if there is no legend, no key, or no room for it.
+    #[must_use]
+    pub fn free_sides(&self, key: Option<&ColorKey>, film: Film) -> [f64; 4] {
+        let drawn = self.without_camera(key).unwrap_or_default();
+        let size = [film.width(), film.height()];
+        let [left, right, bottom, top] = drawn.room_of_legend(size, Subject::MOST_FREE);
+        match film.y_axis() {
+            YAxis::Up => [left, right, bottom, top],
+            YAxis::Down => [left, right, top, bottom],
+        }
+    }
+
+    /// The annotations of a picture, and notes for the user. `key` is what colours mean, if a column gives them; a scale
+    /// bar is true at the depth of `middle`, the middle of the scene.
+    ///
+    /// # Errors
+    /// Returns an error if there is no key for a legend, or a scale bar has no meaning or does not fit.
+    pub fn annotations(
+        &self,
+        key: Option<&ColorKey>,
+        view: &View<'_>,
+        middle: DVec3,
+    ) -> Result<(Annotations, Vec<String>), AnnotationError> {
+        let mut notes = Vec::new();
+        let mut drawn = self.without_camera(key)?;
         if let Some(ScaleBarPlan { length, unit, position }) = &self.scale_bar {
             let scale = pixels_per_unit(view, middle)?;
             let mut bar = ScaleBar::new(scale, *length, unit.clone(), view.film.width())?;

@@ -14,9 +14,13 @@ pub const DEFAULT_MARGIN: f64 = 0.075;
 /// The largest margin; with one half, nothing would be left of the picture.
 pub(super) const MOST_MARGIN: f64 = 0.45;
 
-/// How much of the picture's half width and half height is left inside a margin.
-fn fill(margin: f64) -> f64 {
-    1.0 - 2.0 * margin
+/// The middle and the half extent of the part of the film that a subject is framed in, in relative locations, which go
+/// from −1 to 1.
+fn window(subject: &Subject<'_>, margin: f64) -> [DVec2; 2] {
+    let [left, right, low, high] = subject.free_sides().map(|side| 2.0 * side.max(margin));
+    let middle = 0.5 * DVec2::new(left - right, low - high);
+    let half = DVec2::ONE - 0.5 * DVec2::new(left + right, low + high);
+    [middle, half]
 }
 
 /// The eye, relative to the middle of the subject's box, whose picture of the subject touches the margin on two
@@ -32,9 +36,9 @@ pub(super) fn perspective_eye(
     tangents: DVec2,
     margin: f64,
 ) -> DVec3 {
-    let tangents = tangents * fill(margin);
-    let across = Wedge::new(subject, basis.u(), basis.w(), tangents.x);
-    let along = Wedge::new(subject, basis.v(), basis.w(), tangents.y);
+    let [middle, half] = window(subject, margin).map(|location| location * tangents);
+    let across = Wedge::new(subject, basis.u(), basis.w(), middle.x, half.x);
+    let along = Wedge::new(subject, basis.v(), basis.w(), middle.y, half.y);
     let back = across.back.max(along.back);
     let x = across.aside_at(subject, back);
     let y = along.aside_at(subject, back);
@@ -46,22 +50,32 @@ pub(super) fn perspective_eye(
 struct Wedge {
     axis: DVec3,
     w: DVec3,
-    /// The tangent of the angle between the planes and the direction of view.
-    tangent: f64,
+    /// The tangent of the angle between the direction of view and the plane halfway between the planes, measured on a
+    /// view plane.
+    middle: f64,
+    /// Half of the distance between the planes on a view plane at distance 1.
+    half: f64,
     /// Where the eye is along `axis` and along `w`.
     aside: f64,
     back: f64,
 }
 
 impl Wedge {
-    fn new(subject: &Subject<'_>, axis: DVec3, w: DVec3, tangent: f64) -> Self {
-        let [right, left] = subject.supports([axis + tangent * w, -axis + tangent * w]);
+    fn new(subject: &Subject<'_>, axis: DVec3, w: DVec3, middle: f64, half: f64) -> Self {
+        let [high, low] = [half + middle, half - middle];
+        let [right, left] = subject.supports([axis + high * w, -axis + low * w]);
         // A camera in front of a box stands straight behind its middle, so that it never stands on a corner.
         let (aside, back) = match subject.is_box() {
-            true => (0.0, right.max(left) / tangent),
-            false => (0.5 * (right - left), 0.5 * (right + left) / tangent),
+            true => {
+                let back = right.max(left) / half;
+                (-middle * back, back)
+            }
+            false => {
+                let back = 0.5 * (right + left) / half;
+                (0.5 * (right - left) - middle * back, back)
+            }
         };
-        Self { axis, w, tangent, aside, back }
+        Self { axis, w, middle, half, aside, back }
     }
 
     /// Where an eye that stands `back` must be along the axis, so that the subject appears in the middle: that of
@@ -69,11 +83,14 @@ impl Wedge {
     fn aside_at(self, subject: &Subject<'_>, back: f64) -> f64 {
         let precise = 1e-9 * back.abs();
         let at = |cotangent: f64| {
-            let wedge = Self::new(subject, self.axis, self.w, 1.0 / cotangent);
+            let wedge = Self::new(subject, self.axis, self.w, self.middle, 1.0 / cotangent);
             (cotangent, wedge.back - back, wedge.aside)
         };
-        let mut low = (1.0 / self.tangent, self.back - back, self.aside);
-        if low.1 >= -precise || subject.is_box() {
+        let mut low = (1.0 / self.half, self.back - back, self.aside);
+        if subject.is_box() {
+            return -self.middle * back;
+        }
+        if low.1 >= -precise {
             return self.aside;
         }
         let mut high = at(2.0 * low.0);
@@ -114,11 +131,15 @@ pub(super) fn parallel_extent(
     let (u, v, w) = (basis.u(), basis.v(), basis.w());
     let [right, left, top, bottom, near, far] = subject.supports([u, -u, v, -v, w, -w]);
     let half = 0.5 * DVec2::new(right + left, top + bottom);
-    let half_height = half.y.max(half.x / aspect) / fill(margin);
-    let middle = 0.5 * ((right - left) * u + (top - bottom) * v);
+    let [middle, free] = window(subject, margin);
+    let half_height = (half.y / free.y).max(half.x / aspect / free.x);
+    let half_extent = DVec2::new(half_height * aspect, half_height);
+    // Where the middle of the view plane is, as seen from that of the subject.
+    let aside = -middle * half_extent;
+    let middle = (0.5 * (right - left) + aside.x) * u + (0.5 * (top - bottom) + aside.y) * v;
     // As much room is left in front of the subject as half of its depth.
     let back = near + 0.5 * (near + far);
-    (middle + back * w, DVec2::new(half_height * aspect, half_height))
+    (middle + back * w, half_extent)
 }
 
 /// How far behind the centre of the box an eye must stand so that the bounding sphere of the box lies within a cone of

@@ -1,11 +1,14 @@
 //! Colours of categories: texts, and few different whole numbers.
 
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
 use super::error::ColorByError;
 use super::key::{Category, ColorKey, KeyKind};
 use super::maps::MapName;
 use super::number::short;
 use super::scale::entry;
-use super::{ColorBy, Coloring, Limits, is_kept};
+use super::{ColorBy, Coloring, Limits, hex, is_kept};
 use crate::image::color::LinearRgb;
 use crate::load::Labels;
 use crate::text::one_line;
@@ -36,12 +39,8 @@ impl ColorBy {
         }
         let is_used = |label: &usize| counts[*label] > 0 && !labels.names[*label].trim().is_empty();
         let mut used: Vec<usize> = (0..labels.names.len()).filter(is_used).collect();
-        let whole = |label: &usize| labels.names[*label].parse::<i64>().ok();
-        if used.iter().all(|label| whole(label).is_some()) {
-            used.sort_by_key(whole);
-        } else {
-            used.sort_by(|a, b| labels.names[*a].cmp(&labels.names[*b]));
-        }
+        let order = order(used.iter().map(|label| labels.names[*label].as_str()));
+        used.sort_by(|a, b| order(&labels.names[*a], &labels.names[*b]));
         let mut category_of = vec![NONE; labels.names.len()];
         for (category, label) in used.iter().enumerate() {
             category_of[*label] = category as u32;
@@ -50,7 +49,7 @@ impl ColorBy {
         let categories =
             used.iter().map(|label| (one_line(&labels.names[*label]), counts[*label])).collect();
         let indices = labels.indices.iter().map(of).collect();
-        self.color_categories(column, categories, indices, left_out)
+        self.color_categories(column, categories, indices, 0, left_out)
     }
 
     /// Colours whole numbers, each as a category.
@@ -64,8 +63,17 @@ impl ColorBy {
         self.refuse_scale(|| format!("`{palette}` is a palette for categories"))?;
         let refused = |why| ColorByError::NotForPalette { palette, why };
         let mut categories: Vec<(f64, usize)> = Vec::new();
+        let given: Option<Vec<f64>> = self
+            .categories
+            .as_ref()
+            .map(|names| names.iter().filter_map(|name| name.parse().ok()).collect());
+        let mut others = 0;
         for (index, value) in values.iter().enumerate() {
             if value.is_nan() || !is_kept(left_out, index) {
+                continue;
+            }
+            if given.as_ref().is_some_and(|given| !given.contains(value)) {
+                others += 1;
                 continue;
             }
             if value.fract() != 0.0 || value.is_infinite() {
@@ -87,7 +95,7 @@ impl ColorBy {
         };
         let indices = values.iter().map(index_of).collect();
         let named = categories.iter().map(|(value, count)| (format!("{value}"), *count)).collect();
-        self.color_categories(column, named, indices, left_out)
+        self.color_categories(column, named, indices, others, left_out)
     }
 
     /// Refuses options that need a scale.
@@ -101,15 +109,20 @@ impl ColorBy {
     }
 
     /// Gives colours to categories, each a name and the number of its spheres. `indices` has the category of each
-    /// sphere, or [`NONE`].
+    /// sphere, or [`NONE`]. `others` of these have a value that is not among the given categories.
     fn color_categories(
         &self,
         column: &str,
         categories: Vec<(String, usize)>,
         mut indices: Vec<u32>,
+        mut others: usize,
         left_out: &[bool],
     ) -> Result<Coloring, ColorByError> {
         let mut notes = Vec::new();
+        let categories = match &self.categories {
+            Some(given) => given_categories(given, &categories, &mut indices, &mut others),
+            None => categories,
+        };
         if categories.is_empty() {
             let column = column.to_owned();
             return Err(ColorByError::NoValue { column, what: "value" });
@@ -139,7 +152,14 @@ impl ColorBy {
                 missing += usize::from(is_kept(left_out, index));
             }
         }
-        self.note_missing(column, missing, false, &mut notes);
+        self.note_missing(column, missing - others, false, &mut notes);
+        if others > 0 {
+            let have = if others == 1 { "sphere has" } else { "spheres have" };
+            notes.push(format!(
+                "{others} {have} a value of `{column}` that is not among the categories and the color {}",
+                hex(self.missing)
+            ));
+        }
         let categories: Vec<Category> = categories
             .into_iter()
             .enumerate()
@@ -156,5 +176,46 @@ impl ColorBy {
             },
             notes,
         })
+    }
+}
+
+/// Puts categories, each a name and the number of its spheres, into the given order. Those that are not given are counted in
+/// `others`.
+fn given_categories(
+    given: &[String],
+    found: &[(String, usize)],
+    indices: &mut [u32],
+    others: &mut usize,
+) -> Vec<(String, usize)> {
+    let places: HashMap<&str, usize> =
+        given.iter().enumerate().map(|(place, name)| (name.as_str(), place)).collect();
+    let mut counts = vec![0; given.len()];
+    let renumbered: Vec<u32> = found
+        .iter()
+        .map(|(name, count)| match places.get(name.as_str()) {
+            Some(place) => {
+                counts[*place] += count;
+                *place as u32
+            }
+            None => {
+                *others += count;
+                NONE
+            }
+        })
+        .collect();
+    for index in indices {
+        *index = renumbered.get(*index as usize).copied().unwrap_or(NONE);
+    }
+    given.iter().cloned().zip(counts).collect()
+}
+
+/// The order of categories with these names: that of whole numbers, if all are, and otherwise alphabetic.
+pub(super) fn order<'a>(mut names: impl Iterator<Item = &'a str>) -> fn(&str, &str) -> Ordering {
+    fn whole(name: &str) -> Option<i64> {
+        name.parse().ok()
+    }
+    match names.all(|name| whole(name).is_some()) {
+        true => |a, b| whole(a).cmp(&whole(b)),
+        false => |a, b| a.cmp(b),
     }
 }

@@ -18,6 +18,7 @@
 mod categories;
 pub mod column;
 mod error;
+mod joined;
 mod key;
 mod limits;
 mod mapping;
@@ -35,6 +36,7 @@ use crate::scene::sphere_array::SphereArray;
 
 pub use column::ColumnError;
 pub use error::ColorByError;
+pub use joined::JoinedKeys;
 pub use key::{Category, ColorKey, ColorScale, KeyKind};
 pub use limits::{Limit, Limits};
 pub use mapping::{Mapped, Mapping, RadiusBy};
@@ -58,6 +60,9 @@ pub struct ColorBy {
     pub is_log: bool,
     /// The colour of spheres without a value, in 8-bit sRGB.
     pub missing: [u8; 3],
+    /// The categories in the order of their colours, whether or not they occur; other values have the colour of missing
+    /// ones. `None` stands for those that occur.
+    pub categories: Option<Vec<String>>,
 }
 
 /// The colour of spheres without a value, unless another is chosen: a middle grey, in 8-bit sRGB.
@@ -74,6 +79,7 @@ impl ColorBy {
             limits: Limits::default(),
             is_log: false,
             missing: MISSING,
+            categories: None,
         }
     }
 

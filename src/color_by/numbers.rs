@@ -21,6 +21,9 @@ impl ColorBy {
         values: &[f64],
         left_out: &[bool],
     ) -> bool {
+        if self.categories.is_some() {
+            return true;
+        }
         if let Some(map) = &self.map {
             return map.is_palette();
         }

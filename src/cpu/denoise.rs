@@ -36,8 +36,8 @@ fn filtered(
 ) -> [f64; 4] {
     let middle = (j * width + i) as usize;
     let light = lights[middle];
-    let [x, y, z, _] = guided.shapes[middle];
-    if [x, y, z] == [0.0; 3] && light[3] <= NO_NOISE {
+    let is_miss = guided.shapes[middle][..3].iter().all(|c| *c == 0.0);
+    if is_miss && light[3] <= NO_NOISE {
         return light;
     }
     let mut sum = [0.0; 4];

@@ -15,11 +15,12 @@ pub struct Subject<'a> {
     /// The number of spheres at the end that were added to those of the data.
     added: usize,
     bounds: Bounds,
+    free_sides: [f64; 4],
 }
 
 impl From<Bounds> for Subject<'_> {
     fn from(bounds: Bounds) -> Self {
-        Self { origin: DVec3::ZERO, spheres: &[], added: 0, bounds }
+        Self { origin: DVec3::ZERO, spheres: &[], added: 0, bounds, free_sides: [0.0; 4] }
     }
 }
 
@@ -33,7 +34,7 @@ impl<'a> Subject<'a> {
     /// Spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which is framed if
     /// there are no spheres.
     pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
-        Self { origin, spheres, added: 0, bounds }
+        Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4] }
     }
 
     /// The same spheres, of which the last `added` are framed but do not count for what the data is like.
@@ -47,6 +48,25 @@ impl<'a> Subject<'a> {
             0 => self.spheres,
             count => &self.spheres[..count],
         }
+    }
+
+    /// The same subject, which a camera frames beside free parts of the picture, such as that of a legend: on the sides
+    /// of low x, high x, low y and high y of the film, as fractions of its width and height, each at most
+    /// [`Subject::MOST_FREE`]. Where the margin of the camera is larger, it is kept. Cameras whose pictures are round do
+    /// not support free parts.
+    #[must_use]
+    pub fn with_free_sides(self, free_sides: [f64; 4]) -> Self {
+        let free_sides =
+            free_sides.map(|side| if side > 0.0 { side.min(Self::MOST_FREE) } else { 0.0 });
+        Self { free_sides, ..self }
+    }
+
+    /// The largest part of the picture that one side may have free.
+    pub const MOST_FREE: f64 = 0.45;
+
+    /// The parts of the picture that are free on the sides of low x, high x, low y and high y.
+    pub(crate) fn free_sides(&self) -> [f64; 4] {
+        self.free_sides
     }
 
     /// The axis-aligned box in world space.

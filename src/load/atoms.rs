@@ -64,7 +64,13 @@ pub(super) struct Atoms {
 impl Atoms {
     /// Makes room for about so many atoms.
     pub(super) fn with_capacity(atoms: usize) -> Self {
+        let labels = || LabelsBuilder::with_capacity(atoms);
         Self {
+            species: Species { labels: labels(), ..Species::default() },
+            name: labels(),
+            residue: labels(),
+            chain: labels(),
+            record: labels(),
             spheres: Vec::with_capacity(atoms),
             colors: Vec::with_capacity(atoms),
             residue_number: Vec::with_capacity(atoms),

@@ -56,6 +56,11 @@ pub(super) struct LabelsBuilder {
 }
 
 impl LabelsBuilder {
+    /// Makes room for the texts of so many atoms.
+    pub(super) fn with_capacity(atoms: usize) -> Self {
+        Self { indices: Vec::with_capacity(atoms), ..Self::default() }
+    }
+
     /// Appends the text of an atom and returns its index in `names`.
     pub(super) fn push(&mut self, text: &[u8]) -> u32 {
         let index = self.index(text);
@@ -113,15 +118,23 @@ impl LabelsBuilder {
     }
 }
 
-/// Packs up to seven bytes and their number into a key.
+/// Packs up to seven bytes and their number into a key. Loads that overlap take less time than a loop over the bytes.
 fn packed(text: &[u8]) -> Option<u64> {
-    if text.len() > 7 {
-        return None;
-    }
-    let mut bytes = [0; 8];
-    bytes.iter_mut().zip(text).for_each(|(to, from)| *to = *from);
-    bytes[7] = text.len() as u8;
-    Some(u64::from_le_bytes(bytes))
+    let length = text.len();
+    let bytes = match (text.first_chunk::<4>(), text.last_chunk::<4>()) {
+        _ if length > 7 => return None,
+        (Some(first), Some(last)) => {
+            let [first, last] = [first, last].map(|four| u64::from(u32::from_le_bytes(*four)));
+            first | last << (8 * (length - 4))
+        }
+        _ => match *text {
+            [a, b, c] => u64::from_le_bytes([a, b, c, 0, 0, 0, 0, 0]),
+            [a, b] => u64::from_le_bytes([a, b, 0, 0, 0, 0, 0, 0]),
+            [a] => u64::from(a),
+            _ => 0,
+        },
+    };
+    Some(bytes | (length as u64) << 56)
 }
 
 /// Keeps the values for which `keep` is true.
@@ -133,6 +146,18 @@ pub(super) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn keys_have_the_bytes_and_their_number() {
+        for length in 0..=7 {
+            let text = &b"abcdefg"[..length];
+            let mut bytes = [0; 8];
+            bytes[..length].copy_from_slice(text);
+            bytes[7] = length as u8;
+            assert_eq!(packed(text), Some(u64::from_le_bytes(bytes)));
+        }
+        assert_eq!(packed(b"abcdefgh"), None);
+    }
 
     #[test]
     fn each_text_has_one_index() {

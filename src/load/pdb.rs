@@ -87,7 +87,8 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
 fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Loaded, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
-    let atoms = Atoms::with_capacity(text.len() / 81);
+    // Few lines of atoms are shorter: they end after the B-factor, which is in columns 61 to 66.
+    let atoms = Atoms::with_capacity(text.len() / 67);
     let mut reader = Reader { atoms, ..Reader::default() };
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
     for (line, text) in Lines::new(head).chain(text) {
@@ -253,7 +254,7 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), PdbError> {
     let text = record.text(23, 26);
     let number = hybrid36::decode(text).ok_or_else(|| PdbError::ResidueNumber {
         line: record.line,
-        found: text.escape_debug().to_string(),
+        found: record::escaped(text),
     })?;
     let place = [
         record.number("x coordinate", 31, 38)?,

@@ -170,5 +170,6 @@ fn color_by(table: ColorTable, lines: &Lines<'_>) -> Result<ColorBy, SceneFileEr
         limits: limits.transpose()?.unwrap_or_default(),
         is_log: table.log,
         missing: table.missing.map_or(MISSING, |color| color.0.to_srgb8()),
+        categories: None,
     })
 }

@@ -59,7 +59,8 @@ fn mapping_keys(mapping: &Mapping, lines: &mut Vec<String>) {
 }
 
 fn color_by(by: &ColorBy) -> String {
-    let ColorBy { column, map, is_reversed, limits, is_log, missing } = by;
+    // Categories are given only between the frames of a movie.
+    let ColorBy { column, map, is_reversed, limits, is_log, missing, categories: _ } = by;
     let mut keys = vec![format!("column = {}", string(column))];
     keys.extend(map.map(|map| {
         let ending = if map.is_reversed() { "_r" } else { "" };

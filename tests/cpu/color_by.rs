@@ -1,8 +1,8 @@
 //! Colours, radii, opacities and strengths of light from columns.
 
 use pinhole::color_by::{
-    ColorBy, ColorByError, ColorKey, ColumnError, EmissionBy, KeyKind, MISSING, Mapping, RadiusBy,
-    column,
+    ColorBy, ColorByError, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING,
+    Mapping, RadiusBy, column,
 };
 use pinhole::load::{Column, ColumnValues, Labels};
 use pinhole::scene::Colors;
@@ -47,6 +47,64 @@ fn category_names(key: &ColorKey) -> Vec<(&str, usize)> {
         KeyKind::Categories(list) => list.iter().map(|c| (c.name.as_str(), c.count)).collect(),
         _ => panic!("{key:?}"),
     }
+}
+
+/// The colours of spheres with these texts.
+fn colors_of(by: &ColorBy, texts: &[&str]) -> Vec<[u8; 3]> {
+    let coloring = by.apply(&spheres(texts.len()), &[labels("t", texts)], &[]).unwrap();
+    (0..texts.len()).map(|index| coloring.color(index).unwrap().to_srgb8()).collect()
+}
+
+#[test]
+fn frames_together_give_a_category_one_color() {
+    let frames: [&[&str]; 3] = [&["c", "a"], &["b", "c"], &["c"]];
+    let mut by = ColorBy::column("t");
+    let mut joined = JoinedKeys::default();
+    for texts in frames {
+        let found = by.apply(&spheres(texts.len()), &[labels("t", texts)], &[]).unwrap();
+        joined.add(&found.key);
+    }
+    let alone = frames.map(|texts| colors_of(&by, texts));
+    assert!(alone[0][0] != alone[2][0], "{alone:?}");
+    joined.apply_to(&mut by);
+    let [first, second, third] = frames.map(|texts| colors_of(&by, texts));
+    assert_eq!([first[0], first[0]], [second[1], third[0]]);
+    assert!(first[1] != second[0]);
+    let found = by.apply(&spheres(1), &[labels("t", &["d"])], &[]).unwrap();
+    assert_eq!(category_names(&found.key), [("a", 0), ("b", 0), ("c", 0)]);
+    assert_eq!(found.color(0).unwrap().to_srgb8(), MISSING);
+    assert_eq!(
+        found.notes,
+        ["1 sphere has a value of `t` that is not among the categories and the color #808080"]
+    );
+}
+
+#[test]
+fn frames_together_have_one_range_if_any_is_on_a_scale() {
+    let frames: [&[f64]; 3] = [&[0.0, 7.0], &[0.5, 3.0], &[2.0, f64::NAN]];
+    let mut by = ColorBy::column("t");
+    let mut joined = JoinedKeys::default();
+    let key = |by: &ColorBy, values: &[f64]| {
+        by.apply(&spheres(values.len()), &[numbers("t", values)], &[]).unwrap().key
+    };
+    assert!(matches!(key(&by, frames[0]).kind, KeyKind::Categories(_)));
+    frames.iter().for_each(|values| joined.add(&key(&by, values)));
+    assert_eq!(joined.missing(), Some(MISSING));
+    joined.apply_to(&mut by);
+    for values in frames {
+        match key(&by, values).kind {
+            KeyKind::Scale(scale) => assert_eq!(scale.scale().range(), [0.0, 7.0]),
+            other => panic!("{other:?}"),
+        }
+    }
+    // Categories alone stay categories, also where a frame has other numbers.
+    let mut by = ColorBy::column("t");
+    let mut joined = JoinedKeys::default();
+    joined.add(&key(&by, &[10.0, 9.0]));
+    joined.apply_to(&mut by);
+    let found = by.apply(&spheres(2), &[numbers("t", &[9.0, 0.5])], &[]).unwrap();
+    assert_eq!(category_names(&found.key), [("9", 1), ("10", 0)]);
+    assert_eq!(found.color(1).unwrap().to_srgb8(), MISSING);
 }
 
 #[test]

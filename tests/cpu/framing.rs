@@ -127,3 +127,31 @@ fn flat_data_is_recognized() {
     assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
     assert_eq!(scene(vec![[0.0, 0.0, 0.0, 1.0]]).subject().flat_axis(), None);
 }
+
+/// The silhouettes reach from side to side of what is left beside free parts, in one direction, and lie in its middle.
+#[test]
+fn free_sides_stay_free() {
+    let mut random = fastrand::Rng::with_seed(12);
+    for round in 0..200 {
+        let scene = cloud(&mut random, 1 + round % 40);
+        let direction = DVec3::from([0; 3].map(|_| random.f64() - 0.5));
+        let pose = Pose::looking_along(DVec3::ZERO, direction, DVec3::Y).unwrap();
+        let (aspect, fov) = (0.3 + 3.0 * random.f64(), 0.1 + 1.5 * random.f64());
+        let sides = [(); 4].map(|()| (0.9 * random.f64() - 0.45).max(0.0));
+        let subject = scene.subject().with_free_sides(sides);
+        let cameras: [Box<dyn Camera>; 2] = [
+            Box::new(PinholeCamera::framing(subject, pose, fov, aspect, 0.05).unwrap()),
+            Box::new(OrthographicCamera::framing(subject, pose, aspect, 0.05).unwrap()),
+        ];
+        let [left, right, low, high] = sides.map(|side| 2.0 * side.max(0.05));
+        let [start, end] = [DVec2::new(left, low) - 1.0, 1.0 - DVec2::new(right, high)];
+        for camera in cameras {
+            let [lowest, highest] = silhouettes(camera.as_ref(), &scene);
+            let free = [lowest - start, end - highest];
+            let least = free[0].min(free[1]);
+            assert!(least.min_element().abs() < 1e-4, "{sides:?}: {lowest} {highest}");
+            let uneven = (free[0] - free[1]).abs().max_element();
+            assert!(uneven < 1e-3, "{sides:?}: {lowest} {highest}");
+        }
+    }
+}

@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use pinhole::camera::{
     CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath,
 };
+use pinhole::color_by::ColorKey;
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
@@ -17,7 +18,7 @@ use toml::Value;
 use super::turn::up_of;
 use super::union::around;
 use crate::failure::Failure;
-use crate::input::{Look, Source, read};
+use crate::input::{Framed, Look, Source, read};
 
 /// Most pictures of one scene along a path.
 const MOST_PICTURES: usize = 100_000;
@@ -71,6 +72,8 @@ pub(super) struct Moving {
     distance: f64,
     /// What light and style are chosen for.
     framed: Scene,
+    /// What the legend shows.
+    key: Option<ColorKey>,
     file: Arc<SceneFile>,
     sky: Option<Environment>,
 }
@@ -81,13 +84,14 @@ impl Moving {
         source: &Source,
         wanted: &WantedPath,
         frames_per_second: u32,
-        framed: Scene,
+        (framed, key): (Scene, Option<ColorKey>),
         file: Arc<SceneFile>,
         sky: Option<Environment>,
     ) -> Result<Self, Failure> {
         // From a distance at which every view fits.
         let whole = around(&framed).with_context(|| source.name())?;
-        let base = source.look(&file, &whole, sky.clone(), None)?.parameters;
+        let base =
+            source.look(&file, Framed::new(&whole, key.as_ref()), sky.clone(), None)?.parameters;
         let up = source.up().or_else(|| up_of(&base)).unwrap_or(DVec3::Y);
         let motion = wanted.path.motion(up);
         let motion = motion.with_context(|| wanted.file.display().to_string())?;
@@ -95,7 +99,22 @@ impl Moving {
         let distance = eye_of(&base).map_or(1.0, |eye| eye.distance(center));
         let clock = wanted.path.clock();
         let frames_per_second = f64::from(frames_per_second);
-        Ok(Self { motion, clock, frames_per_second, base, center, distance, framed, file, sky })
+        Ok(Self {
+            motion,
+            clock,
+            frames_per_second,
+            base,
+            center,
+            distance,
+            framed,
+            key,
+            file,
+            sky,
+        })
+    }
+
+    fn framed(&self) -> Framed<'_> {
+        Framed::new(&self.framed, self.key.as_ref())
     }
 
     /// Makes the camera and the light of one picture: the frame with this number, which is the picture `index` of the
@@ -115,7 +134,7 @@ impl Moving {
             moved(&self.base, &on_path, self.center, self.distance)
                 .context("the camera cannot follow its path")
         };
-        let look = source.look(&self.file, &self.framed, self.sky.clone(), Some(&moved));
+        let look = source.look(&self.file, self.framed(), self.sky.clone(), Some(&moved));
         let look = look.map_err(|failure| match failure {
             Failure::Job(error) => Failure::Job(error.context(format!("frame {number}"))),
             other => other,

@@ -21,12 +21,12 @@ use super::{Pictures, Wanted};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::input::contents::Contents;
-use crate::input::{Input, Look, Source};
+use crate::input::{Framed, Input, Look, Source};
 use crate::render::{Job, render_joined};
 use crate::speak::tell;
 use crate::views::Views;
 use crate::{progress, threads};
-use pinhole::color_by::{ColorKey, KeyKind, Limit, Limits};
+use pinhole::color_by::{ColorKey, JoinedKeys};
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
@@ -63,6 +63,8 @@ struct Turntable {
     axis: Axis,
     /// What the camera frames.
     framed: Scene,
+    /// What the legend shows.
+    key: Option<ColorKey>,
     file: Arc<SceneFile>,
     sky: Option<Environment>,
 }
@@ -208,25 +210,31 @@ fn frames(
     path: Option<(&WantedPath, u32)>,
 ) -> Result<Prepared, Failure> {
     let framed = numbers.framed.as_ref().unwrap_or(&numbers.all);
-    let (mut union, mut colors) = (Union::default(), None);
+    let (mut union, mut colors, mut kinds) = (Union::default(), JoinedKeys::default(), None);
     for (index, &number) in framed.iter().enumerate() {
         progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
         let contents = frame(source, number)?;
-        colors = joined(colors, contents.color_key());
+        contents.color_key().into_iter().for_each(|key| colors.add(key));
+        kinds = kinds.or_else(|| contents.kinds().cloned());
         union.add(&contents.scene);
     }
-    if let Some([low, high]) = colors {
-        source.set_color_limits(Limits { low: Limit::Value(low), high: Limit::Value(high) });
-    }
+    let missing = colors.missing();
+    source.set_colors(colors, kinds);
     let framed = union.scene().with_context(|| source.name())?;
-    let contents = frame(source, first)?;
+    let mut contents = frame(source, first)?;
+    // The legend is that of all frames.
+    if let Some(key) = contents.color_key_mut() {
+        key.missing = key.missing.or(missing);
+    }
     let sky = source.sky(&contents)?;
     let Some((path, fps)) = path else {
-        let look = source.look(&contents.file, &framed, sky, None)?;
+        let framed = Framed::new(&framed, contents.color_key());
+        let look = source.look(&contents.file, framed, sky, None)?;
         let input = source.input_with(contents, look)?;
         return Ok(Prepared { input, rest: Rest::Frames(None) });
     };
-    let moving = Moving::new(source, path, fps, framed, Arc::clone(&contents.file), sky)?;
+    let key = contents.color_key().cloned();
+    let moving = Moving::new(source, path, fps, (framed, key), Arc::clone(&contents.file), sky)?;
     let look = moving.view(source, first, numbers.index_of(first))?;
     let input = source.input_with(contents, look)?;
     Ok(Prepared { input, rest: Rest::Frames(Some(Box::new(moving))) })
@@ -245,7 +253,8 @@ fn still(
     let mut framed = Union::default();
     framed.add(&contents.scene);
     let framed = framed.scene().with_context(|| source.name())?;
-    let moving = Moving::new(source, path, fps, framed, Arc::clone(&contents.file), sky)?;
+    let key = contents.color_key().cloned();
+    let moving = Moving::new(source, path, fps, (framed, key), Arc::clone(&contents.file), sky)?;
     let look = moving.view(source, first, index)?;
     let input = source.input_with(contents, look)?;
     Ok(Prepared { input, rest: Rest::Moving(Box::new(moving)) })
@@ -260,17 +269,6 @@ fn frame(source: &mut Source, number: usize) -> Result<Contents, Failure> {
     })
 }
 
-/// The ends of two scales together.
-fn joined(ends: Option<[f64; 2]>, key: Option<&ColorKey>) -> Option<[f64; 2]> {
-    match key.map(|key| &key.kind) {
-        Some(KeyKind::Scale(scale)) => {
-            let [low, high] = scale.scale().range();
-            Some(ends.map_or([low, high], |[l, h]| [l.min(low), h.max(high)]))
-        }
-        _ => ends,
-    }
-}
-
 /// Reads the scene, and frames the body that it sweeps while it turns.
 fn turntable(source: &Source, count: usize, first: usize) -> Result<Prepared, Failure> {
     let contents = source.contents()?;
@@ -279,14 +277,16 @@ fn turntable(source: &Source, count: usize, first: usize) -> Result<Prepared, Fa
     let direction = match source.up() {
         Some(up) => up.normalize_or(DVec3::Y),
         None => {
-            let look = source.look(&file, &contents.scene, sky.clone(), None)?;
+            let framed = Framed::new(&contents.scene, contents.color_key());
+            let look = source.look(&file, framed, sky.clone(), None)?;
             up_of(&look.parameters).unwrap_or(DVec3::Y)
         }
     };
     let axis = Axis { direction, center: contents.scene.bounds_to_frame().center() };
     let framed = swept(&contents.scene, axis.direction, axis.center);
     let framed = framed.with_context(|| source.name())?;
-    let turntable = Turntable { count, axis, framed, file, sky };
+    let key = contents.color_key().cloned();
+    let turntable = Turntable { count, axis, framed, key, file, sky };
     let look = turntable.view(source, first)?;
     let input = source.input_with(contents, look)?;
     Ok(Prepared { input, rest: Rest::Turntable(Box::new(turntable)) })
@@ -297,7 +297,8 @@ impl Turntable {
     fn view(&self, source: &Source, number: usize) -> Result<Look, Failure> {
         let part = number as f64 / self.count as f64;
         let turn = |camera: &_| turned(camera, self.axis, part);
-        source.look(&self.file, &self.framed, self.sky.clone(), Some(&turn))
+        let framed = Framed::new(&self.framed, self.key.as_ref());
+        source.look(&self.file, framed, self.sky.clone(), Some(&turn))
     }
 }
 

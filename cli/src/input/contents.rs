@@ -84,6 +84,16 @@ impl Contents {
     pub(crate) fn color_key(&self) -> Option<&ColorKey> {
         self.found.color_key.as_ref()
     }
+
+    /// What colors mean, which may be changed.
+    pub(crate) fn color_key_mut(&mut self) -> Option<&mut ColorKey> {
+        self.found.color_key.as_mut()
+    }
+
+    /// The colors by kind that no flag asked for.
+    pub(crate) fn kinds(&self) -> Option<&ColorBy> {
+        self.found.kinds.as_ref()
+    }
 }
 
 impl Source {
@@ -103,11 +113,13 @@ impl Source {
         loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
         let mut notes = std::mem::take(&mut loaded.notes);
         notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
-        let kinds = kind_color::by_kind(&loaded, &self.options);
+        let kinds = self.kinds.clone().or_else(|| kind_color::by_kind(&loaded, &self.options));
         let kinds = kinds.filter(|_| mapping.color.is_none());
         if let Some(by) = &kinds {
             notes.push(format!("{}: {}", path.display(), kind_color::note(by)));
-            mapping.color = Some(by.clone());
+            let mut by = by.clone();
+            self.color.join(&mut by);
+            mapping.color = Some(by);
         }
         let color = self.options.color.unwrap_or_else(default_color);
         let keeps_radii = self.options.radius.is_some();

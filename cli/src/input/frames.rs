@@ -6,12 +6,11 @@ use std::sync::{Mutex, PoisonError};
 use anyhow::Result;
 
 use super::Source;
-use crate::color_flags::ColorFlags;
 use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::Format;
 use pinhole::camera::CameraPath;
-use pinhole::color_by::Limits;
+use pinhole::color_by::{ColorBy, JoinedKeys};
 use pinhole::glam::DVec3;
 use pinhole::load::{self, Loaded, Trajectory};
 
@@ -72,9 +71,10 @@ impl Source {
         self.options.frame = Some(frame);
     }
 
-    /// Lets colors of a column have these limits.
-    pub(crate) fn set_color_limits(&mut self, limits: Limits) {
-        self.color = ColorFlags::with_limits(&self.color, limits);
+    /// Lets all frames have the same colors. `kinds` are colors by kind that no flag asked for.
+    pub(crate) fn set_colors(&mut self, joined: JoinedKeys, kinds: Option<ColorBy>) {
+        self.color = self.color.with_joined(joined);
+        self.kinds = kinds;
     }
 
     /// Whether a flag chooses one frame of the data.

@@ -11,6 +11,7 @@ use crate::input_format::Format;
 use crate::progress;
 use crate::report::Report;
 use pinhole::camera::{Camera, CameraParameters, Viewpoint};
+use pinhole::color_by::ColorKey;
 use pinhole::light::environment::Environment;
 use pinhole::load::environment;
 use pinhole::render::RenderSettings;
@@ -35,21 +36,37 @@ impl Look {
     }
 }
 
+/// What a camera frames, and what is drawn beside it.
+#[derive(Clone, Copy)]
+pub(crate) struct Framed<'a> {
+    scene: &'a Scene,
+    /// What the legend shows.
+    key: Option<&'a ColorKey>,
+}
+
+impl<'a> Framed<'a> {
+    pub(crate) fn new(scene: &'a Scene, key: Option<&'a ColorKey>) -> Self {
+        Self { scene, key }
+    }
+}
+
 /// Changes a camera that has its position.
 pub(crate) type Turn<'a> = &'a dyn Fn(&CameraParameters) -> Result<CameraParameters>;
 
 impl Source {
-    /// Makes the camera and the settings for the spheres of `framed`, which need not be those that are rendered.
+    /// Makes the camera and the settings for spheres, which need not be those that are rendered.
     pub(crate) fn look(
         &self,
         file: &SceneFile,
-        framed: &Scene,
+        Framed { scene, key }: Framed<'_>,
         sky: Option<Environment>,
         turn: Option<Turn<'_>>,
     ) -> Result<Look, Failure> {
         let file_name = || self.path.display().to_string();
         let has_flags = self.has_camera_of_flags();
-        let (aspect, subject) = (file.film.aspect(), framed.subject());
+        let free_sides = self.annotation.free_sides(&file.annotations, key, file.film);
+        let subject = scene.subject().with_free_sides(free_sides);
+        let aspect = file.film.aspect();
         // A scene file says where its camera stands.
         let facing = matches!(self.format, Format::Data(_))
             .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis));
@@ -76,7 +93,7 @@ impl Source {
             }
         };
         let kind = self.light.integrator(file.integrator());
-        let settings = file.settings(kind, framed, camera.as_ref(), sky);
+        let settings = file.settings(kind, scene, camera.as_ref(), sky);
         let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
         let view = if has_flags { self.camera.view_in_flags(facing) } else { None };
         Ok(Look { camera, eyes, settings, parameters, view })

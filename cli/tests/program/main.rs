@@ -15,8 +15,10 @@ mod frames;
 mod generate;
 mod good_input;
 mod interrupt;
+mod legend_room;
 mod light;
 mod looks;
+mod movie_colors;
 mod pictures;
 #[cfg(feature = "gpu")]
 mod shaders;

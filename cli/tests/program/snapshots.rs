@@ -19,6 +19,7 @@ use crate::support::Folder;
 
 mod cases;
 mod contents;
+mod points;
 
 use cases::{Case, Input};
 
@@ -106,6 +107,7 @@ areas!(
     contents::scene_files
     contents::lit_scene_files
     contents::atoms
+    points::points
     #[cfg_attr(not(feature = "gpu"), ignore = "needs the feature `gpu`")]
     cases::devices
     #[cfg_attr(feature = "gpu", ignore = "concerns the program without the feature `gpu`")]

@@ -1,6 +1,8 @@
 //! Reads data files: a header with counts and the box, and sections, of which the atoms and what their types are make
 //! spheres.
 
+use std::collections::HashMap;
+
 use super::cell::Cell;
 use super::elements::{self, Types};
 use super::styles::{columns_of, fields_of};
@@ -27,6 +29,7 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
     file.next();
     let (mut count, mut ends, mut tilt) = (None, [None; 3], [0.0; 3]);
     let (mut atoms, mut velocities, mut types) = (None, None, Types::default());
+    let mut lines_of_sections = HashMap::new();
     while let Some(text) = file.next() {
         let line = file.line;
         let content = without_comment(text);
@@ -55,6 +58,13 @@ pub(in crate::load) fn read(bytes: &[u8], options: &Options) -> Result<Loaded, L
                 tilt = numbers_of(content).ok_or_else(invalid)?;
             }
             continue;
+        }
+        // These sections have a line for each atom, so a second one contradicts the first.
+        if let Some(section) =
+            ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
+            && let Some(first_line) = lines_of_sections.insert(section, line)
+        {
+            return Err(LammpsError::SecondSection { line, section, first_line }.into());
         }
         file.skip_blank();
         let number_of_atoms = || count.ok_or(LammpsError::NoCount { line });

@@ -98,6 +98,14 @@ fn styles_of_data_files() {
             DATA.replace("1.008", "light"),
             "line 13: the mass is `light`, which is not a finite number",
         ),
+        (
+            "\n1 atoms\n\nAtoms # atomic\n\n1 1 1 2 3\n\nAtoms # atomic\n\n1 1 4 5 6\n".to_owned(),
+            "line 8: a second section Atoms begins here; the first begins on line 4; remove one of them",
+        ),
+        (
+            "\n1 atoms\n\nVelocities\n\n1 0 0 1\n\nVelocities\n\n1 0 0 2\n".to_owned(),
+            "line 8: a second section Velocities begins here; the first begins on line 4; remove one of them",
+        ),
         ("\n0 atom types\n".to_owned(), "there is no section Atoms; a data file of LAMMPS has one"),
     ] {
         assert_eq!(data(&text).unwrap_err(), wanted);

@@ -130,6 +130,19 @@ pub enum LammpsError {
         /// Number of the line that declares it.
         line_of_count: usize,
     },
+    /// A data file has two sections with the same name.
+    #[error(
+        "line {line}: a second section {section} begins here; the first begins on line {first_line}; \
+         remove one of them"
+    )]
+    SecondSection {
+        /// Number of the line where the second begins.
+        line: usize,
+        /// Name of the section.
+        section: &'static str,
+        /// Number of the line where the first begins.
+        first_line: usize,
+    },
     /// A mass is not a finite number.
     #[error("line {line}: the mass is `{found}`, which is not a finite number")]
     Mass {

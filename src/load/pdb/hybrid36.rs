@@ -7,15 +7,15 @@
 const BLOCK: i32 = 36 * 36 * 36;
 
 /// Decodes a field that has no blanks around it; `None` if it is not a valid number.
-pub(super) fn decode(text: &str) -> Option<i32> {
-    match *text.as_bytes() {
+pub(super) fn decode(text: &[u8]) -> Option<i32> {
+    match *text {
         [first @ b'A'..=b'Z', b, c, d] => {
             base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000)
         }
         [first @ b'a'..=b'z', b, c, d] => {
             base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000)
         }
-        _ => text.parse().ok(),
+        _ => std::str::from_utf8(text).ok()?.parse().ok(),
     }
 }
 
@@ -48,14 +48,14 @@ mod tests {
             ("a000", 1_223_056),
             ("zzzz", 2_436_111),
         ] {
-            assert_eq!(decode(text), Some(number), "{text}");
+            assert_eq!(decode(text.as_bytes()), Some(number), "{text}");
         }
     }
 
     #[test]
     fn neither() {
         for text in ["", "A00", "A0a0", "a0A0", "A 00", "1A00", "A00-", "*", "****", "1.5", "--1"] {
-            assert_eq!(decode(text), None, "{text}");
+            assert_eq!(decode(text.as_bytes()), None, "{text}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Splits a PDB file into lines, and reads fields by their columns.
 
 use super::error::PdbError;
+use crate::load::rows::number;
 
 /// Kinds of lines that the reader distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,21 +70,20 @@ impl<'a> Iterator for Lines<'a> {
 pub(super) struct Record<'a> {
     pub(super) line: usize,
     pub(super) name: &'static str,
-    text: &'a str,
+    /// Only ASCII.
+    text: &'a [u8],
 }
 
 impl<'a> Record<'a> {
     pub(super) fn new(line: usize, bytes: &'a [u8], name: &'static str) -> Result<Self, PdbError> {
         // The format has 80 columns; anything after them is ignored.
-        let bytes = bytes.get(..80).unwrap_or(bytes);
-        match std::str::from_utf8(bytes) {
-            Ok(text) if text.is_ascii() => Ok(Self { line, name, text }),
-            _ => {
-                let offset = bytes.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
-                let byte = bytes.get(offset).copied().unwrap_or_default();
-                Err(PdbError::NotAscii { line, column: offset + 1, byte })
-            }
+        let text = bytes.get(..80).unwrap_or(bytes);
+        if text.is_ascii() {
+            return Ok(Self { line, name, text });
         }
+        let offset = text.iter().position(|byte| !byte.is_ascii()).unwrap_or_default();
+        let byte = text.get(offset).copied().unwrap_or_default();
+        Err(PdbError::NotAscii { line, column: offset + 1, byte })
     }
 
     /// Refuses a line that ends before one of the fields. Each field has a name, a first and a last column.
@@ -106,14 +106,14 @@ impl<'a> Record<'a> {
     }
 
     /// Returns the text of a field without the blanks around it; it is empty where the line has ended.
-    pub(super) fn text(&self, first: usize, last: usize) -> &'a str {
+    pub(super) fn text(&self, first: usize, last: usize) -> &'a [u8] {
         let last = last.min(self.text.len());
         self.text.get(first - 1..last).unwrap_or_default().trim_ascii()
     }
 
     /// Returns the bytes of a field with the blanks around it; there are blanks where the line has ended.
     pub(super) fn bytes<const WIDTH: usize>(&self, first: usize) -> [u8; WIDTH] {
-        let rest = self.text.as_bytes().get(first - 1..).unwrap_or_default();
+        let rest = self.text.get(first - 1..).unwrap_or_default();
         rest.first_chunk().copied().unwrap_or_else(|| {
             let mut field = [b' '; WIDTH];
             field.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
@@ -128,12 +128,10 @@ impl<'a> Record<'a> {
         last: usize,
     ) -> Result<f64, PdbError> {
         let text = self.text(first, last);
-        crate::load::rows::number(text.as_bytes()).filter(|number| number.is_finite()).ok_or_else(
-            || {
-                let found = text.escape_debug().to_string();
-                PdbError::Number { line: self.line, first, last, what, found }
-            },
-        )
+        number(text).filter(|number| number.is_finite()).ok_or_else(|| {
+            let found = escaped(text);
+            PdbError::Number { line: self.line, first, last, what, found }
+        })
     }
 
     /// Returns the number in a field, or `absent` if the field is blank.
@@ -144,6 +142,14 @@ impl<'a> Record<'a> {
         first: usize,
         last: usize,
     ) -> Result<f64, PdbError> {
-        if self.text(first, last).is_empty() { Ok(absent) } else { self.number(what, first, last) }
+        // Few fields are blank, so they are looked at again only where there is no number.
+        self.number(what, first, last).or_else(|error| {
+            if self.text(first, last).is_empty() { Ok(absent) } else { Err(error) }
+        })
     }
+}
+
+/// Returns ASCII text for a message.
+pub(super) fn escaped(text: &[u8]) -> String {
+    String::from_utf8_lossy(text).escape_debug().to_string()
 }

@@ -28,7 +28,7 @@ pub enum PlyError {
     },
     /// A text file has fewer lines than its header says.
     #[error(
-        "the header declares {wanted} of {element}, but the file ends after {found}; it is cut off"
+        "the header declares `element {element} {wanted}`, but the file ends after {found} of them; it is cut off"
     )]
     TooFewLines {
         /// Name of the element.
@@ -40,8 +40,8 @@ pub enum PlyError {
     },
     /// A binary file has fewer bytes than its header says.
     #[error(
-        "byte {byte}: the header declares {wanted} of {element}, but the file ends within number {index}, counted from \
-         0; it is cut off"
+        "byte {byte}: the header declares `element {element} {wanted}`, which begin here, but the file ends within number \
+         {index}, counted from 0; it is cut off"
     )]
     TooFewBytes {
         /// Where the elements start.
@@ -55,7 +55,7 @@ pub enum PlyError {
     },
     /// There are more data than the header says.
     #[error(
-        "{place}: there are more data after the {wanted} of {element} that the header declares"
+        "{place}: there are more data after those of `element {element} {wanted}`, the last that the header declares"
     )]
     TooMany {
         /// Line or byte where they start.

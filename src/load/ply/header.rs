@@ -111,7 +111,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, PlyError> {
                 };
                 let of_name = |name: &str| {
                     scalar_of_name(name).ok_or_else(|| {
-                        refused(format!("`{}` is not a type of PLY", shortened(&one_line(name))))
+                        refused(format!(
+                            "`{}` is not a type of PLY; these are char, uchar, short, ushort, int, uint, float, double, \
+                             and int8 to uint32, float32 and float64",
+                            shortened(&one_line(name))
+                        ))
                     })
                 };
                 let (list, scalar) = (list.map(of_name).transpose()?, of_name(scalar)?);

@@ -75,14 +75,14 @@ fn without_lists_vertices_are_read_column_by_column() {
     assert_eq!(
         refused(&bytes[..bytes.len() - 1]),
         format!(
-            "byte {}: the header declares 3 of vertex, but the file ends within number 2, counted from 0; it is cut off",
+            "byte {}: the header declares `element vertex 3`, which begin here, but the file ends within number 2, counted from 0; it is cut off",
             header.len() + 10
         )
     );
     assert_eq!(
         refused(&[&bytes[..], &[0]].concat()),
         format!(
-            "byte {}: there are more data after the 3 of vertex that the header declares",
+            "byte {}: there are more data after those of `element vertex 3`, the last that the header declares",
             bytes.len()
         )
     );
@@ -98,7 +98,10 @@ fn what_is_wrong_is_said_with_its_place() {
         ("ply\nformat text 1.0\n", "line 2: the format `text` is not one of ascii,"),
         ("ply\nelement vertex many\n", "line 2: `many` is not a valid number of elements"),
         ("ply\nproperty float x\n", "line 2: a property must come after the element"),
-        ("ply\nelement vertex 1\nproperty real x\n", "line 3: `real` is not a type of PLY"),
+        (
+            "ply\nelement vertex 1\nproperty real x\n",
+            "line 3: `real` is not a type of PLY; these are char",
+        ),
         ("ply\nelement vertex 1\nproperty list float int x\n", "line 3: the length of a list"),
         ("ply\nelement vertex 1\nproperty float\n", "line 3: write `property TYPE NAME`"),
         ("ply\nvertices 3\n", "line 2: `vertices 3` is not a line of a PLY header"),
@@ -109,7 +112,7 @@ fn what_is_wrong_is_said_with_its_place() {
         ),
         (
             &format!("{head}end_header\n"),
-            "the header declares 1 of vertex, but the file ends after 0",
+            "the header declares `element vertex 1`, but the file ends after 0",
         ),
         (&format!("{head}end_header\n0 0\n"), "line 8: the property z is missing"),
         (
@@ -119,7 +122,7 @@ fn what_is_wrong_is_said_with_its_place() {
         (&format!("{head}end_header\n0 0 0 1\n"), "line 8: there are more values than the 3"),
         (
             &format!("{head}end_header\n0 0 0\n1 1 1\n"),
-            "line 9: there are more data after the 1 of vertex",
+            "line 9: there are more data after those of `element vertex 1`",
         ),
         (&format!("{head}end_header\n0 nan 0\n"), "row 0: y is NaN; a position must be finite"),
         (

@@ -56,7 +56,10 @@ pub enum VtkError {
         message: String,
     },
     /// A piece has no positions.
-    #[error("piece {piece}: it declares {points} points, but has no array in an element Points")]
+    #[error(
+        "piece {piece}: it declares NumberOfPoints={points}, but has no array in an element Points, which holds their \
+         positions"
+    )]
     NoPoints {
         /// Index of the piece, from 0.
         piece: usize,

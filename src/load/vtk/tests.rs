@@ -202,7 +202,7 @@ fn arrays_that_are_cut_off_or_damaged_are_refused() {
         (
             "0.5  -1",
             "half  -1",
-            "piece 1: the array Points: number 1 is `half`, which is not a number",
+            "piece 1: the array Points: number 1, counted from 0, is `half`, which is not a number",
         ),
         (
             "Name='Points' NumberOfComponents='3'",

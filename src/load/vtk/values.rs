@@ -92,7 +92,10 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
     let components = array.components;
     // Each number takes two bytes, so a count that is too large shows before there are lists.
     if count > text.len() {
-        return Err(format!("it must have {count} numbers, but its text has {} bytes", text.len()));
+        return Err(format!(
+            "it must have {count} numbers, but its text of {} bytes is too short for them",
+            text.len()
+        ));
     }
     let mut columns = vec![Vec::with_capacity(count / components); components];
     let mut words = text.split_ascii_whitespace();
@@ -100,7 +103,10 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
         let word = words.next();
         let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
         let number = array.scalar.parse(word).ok_or_else(|| {
-            format!("number {index} is `{}`, which is not a number", shortened(&one_line(word)))
+            format!(
+                "number {index}, counted from 0, is `{}`, which is not a number",
+                shortened(&one_line(word))
+            )
         })?;
         columns[index % components].push(number);
     }
@@ -121,7 +127,7 @@ struct Stream<'a> {
 impl Stream<'_> {
     /// Takes bytes from the start.
     fn take(&mut self, count: usize) -> Result<Cow<'_, [u8]>, String> {
-        let cut_off = || "its data are cut off".to_owned();
+        let cut_off = || format!("its data are cut off where {count} more bytes must follow");
         if !self.is_base64 {
             let (taken, rest) = self.rest.split_at_checked(count).ok_or_else(cut_off)?;
             self.rest = rest;
@@ -183,7 +189,8 @@ impl Stream<'_> {
         // Each length takes bytes of the file.
         if blocks > self.rest.len() {
             return Err(format!(
-                "it declares {blocks} compressed blocks, but its data are cut off"
+                "it declares {blocks} compressed blocks, but its data are cut off after {} bytes",
+                self.rest.len()
             ));
         }
         let mut lengths = Vec::with_capacity(blocks);

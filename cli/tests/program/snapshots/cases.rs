@@ -1,5 +1,6 @@
 //! Wrong command lines, and the files that they name.
 
+use super::points::las;
 use crate::npy_files::{npy, zip};
 use crate::support::{Folder, SCENE, WATER};
 
@@ -55,6 +56,13 @@ pub(super) fn folder() -> Folder {
         ("cut.dcd", b"\x54\0\0\0CORD".to_vec()),
         ("cut.xtc", vec![0, 0, 7, 0xcb, 0, 0]),
         ("cut.trr", vec![0; 99]),
+        ("no-header.las", b"LASF".to_vec()),
+        ("text.las", b"0 0 0\n".to_vec()),
+        ("format.las", las(1, |bytes| bytes[104] = 11)),
+        ("length.las", las(1, |bytes| bytes[105] = 20)),
+        ("compressed.las", las(1, |bytes| bytes[104] |= 0x80)),
+        ("cut.las", las(2, |bytes| bytes.truncate(250))),
+        ("nan-scale.las", las(1, |bytes| bytes[131..139].fill(0xff))),
         ("binary.toml", vec![0xff, 0xfe, 0x00]),
         ("binary.xyz", b"1\n\nO \xff 0 0\n".to_vec()),
         ("cut.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9 +X 9\n".to_vec()),

@@ -3,7 +3,7 @@
 use super::cases::{Case, Input};
 
 /// Renders a file once for each of its contents.
-fn contents(name: &'static str, flags: &str, contents: &[&'static str]) -> Vec<Case> {
+pub(super) fn contents(name: &'static str, flags: &str, contents: &[&'static str]) -> Vec<Case> {
     let arguments = format!("render {name} -o out.png --backend cpu{flags}");
     let inputs = contents.iter().map(|text| Input { name, text });
     inputs.map(|input| Case { input: Some(input), arguments: arguments.clone() }).collect()
