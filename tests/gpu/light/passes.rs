@@ -160,7 +160,7 @@ fn one_pass(headless: &'static Headless) {
             let [one, several] = [headless, &several].map(|device| {
                 device.render(&view.scene, &view.seen(), settings, LayerSet::ALL).unwrap()
             });
-            let differ = one.color().iter().zip(several.color()).filter(|(a, b)| a != b);
+            let differ = one.color().iter().zip(several.color()).filter(|(a, b)| !a.iter().eq(*b));
             let first: Vec<_> = differ.clone().take(3).collect();
             let count = differ.count();
             assert!(one == several, "{name}, settings {index}: {count} colours differ: {first:?}");
