@@ -6,8 +6,8 @@ use glam::DVec3;
 /// beyond two neighbours, and has a continuous derivative. Before the first and after the last time it is constant.
 ///
 /// The slopes are those of F. N. Fritsch and J. Butland, A method for constructing local monotone piecewise cubic
-/// interpolants, SIAM J. Sci. Stat. Comput. 5(2), 1984, for uneven times as in C. Moler, Numerical Computing with
-/// MATLAB, section 3.4.
+/// interpolants, SIAM Journal on Scientific and Statistical Computing 5(2), 1984, for uneven times as in C. Moler,
+/// Numerical Computing with MATLAB, section 3.4.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Track {
     times: Vec<f64>,
