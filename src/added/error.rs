@@ -5,10 +5,14 @@
 #[non_exhaustive]
 pub enum AddError {
     /// The data has no periodic cell.
-    #[error("the data has no periodic cell, so there is no box to draw; remove `box`")]
+    #[error(
+        "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"
+    )]
     NoCell,
     /// The cell has no extent, or is too far away.
-    #[error("the periodic cell has the edges {edges:?} and cannot be drawn as a box; remove `box`")]
+    #[error(
+        "the periodic cell has the edges {edges:?} and cannot be drawn as a box; leave out `--box`, or the key `box`"
+    )]
     Cell {
         /// The edges.
         edges: [[f64; 3]; 3],

@@ -121,7 +121,7 @@ impl FisheyeParameters {
     /// The same camera with a position, a direction and the direction that is up.
     ///
     /// # Errors
-    /// The same errors as [`FisheyeParameters::camera`].
+    /// Returns the same errors as [`FisheyeParameters::camera`].
     pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
         use super::pose::{Placement, PoseParameters};
 

@@ -120,7 +120,7 @@ impl OrthographicParameters {
     /// placed so that it sees the whole of the subject.
     ///
     /// # Errors
-    /// The same errors as [`OrthographicParameters::camera`].
+    /// Returns the same errors as [`OrthographicParameters::camera`].
     pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
         use super::pose::{Placement, PoseParameters};
 

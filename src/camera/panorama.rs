@@ -123,7 +123,7 @@ impl PanoramaParameters {
     /// The same camera with a position, a direction and the direction that is up.
     ///
     /// # Errors
-    /// The same errors as [`PanoramaParameters::camera`].
+    /// Returns the same errors as [`PanoramaParameters::camera`].
     pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
         use super::pose::{Placement, PoseParameters};
 
@@ -161,7 +161,7 @@ impl PanoramaParameters {
     /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
-    /// The same errors as [`PanoramaParameters::camera`].
+    /// Returns the same errors as [`PanoramaParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

@@ -64,7 +64,7 @@ impl CameraParameters {
     /// The cameras of the left and of the right eye; `None` unless the parameters ask for two eyes.
     ///
     /// # Errors
-    /// The same errors as [`CameraParameters::camera`].
+    /// Returns the same errors as [`CameraParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

@@ -76,8 +76,8 @@ impl PinholeCamera {
     /// two sides that it comes closest to, as a fraction of the film's width or height.
     ///
     /// # Errors
-    /// The same errors as [`PinholeCamera::with_vertical_fov`], and an error if the margin is not from 0 to 0.45, or
-    /// the eye would have to stand too far away.
+    /// Returns the same errors as [`PinholeCamera::with_vertical_fov`], and an error if the margin is not from 0 to
+    /// 0.45, or the eye would have to stand too far away.
     pub fn framing<'a>(
         subject: impl Into<Subject<'a>>,
         pose: Pose,

@@ -46,7 +46,7 @@ impl PinholeParameters {
     /// it sees the whole of the subject.
     ///
     /// # Errors
-    /// The same errors as [`PinholeParameters::camera`].
+    /// Returns the same errors as [`PinholeParameters::camera`].
     pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
         let (eye, look_at, direction, up) = (self.eye, self.look_at, self.direction, self.up);
         let placement = PoseParameters { eye, look_at, direction, up }.placement()?;
@@ -104,7 +104,7 @@ impl PinholeParameters {
     /// The cameras of the left and of the right eye; `None` without `stereo`.
     ///
     /// # Errors
-    /// The same errors as [`PinholeParameters::camera`].
+    /// Returns the same errors as [`PinholeParameters::camera`].
     pub fn stereo_pair(
         &self,
         aspect: f64,

@@ -122,7 +122,7 @@ impl Pose {
     /// A camera at `eye` that looks along `direction`.
     ///
     /// # Errors
-    /// The same errors as [`Pose::looking_at`], and an error if `direction` is zero.
+    /// Returns the same errors as [`Pose::looking_at`], and an error if `direction` is zero.
     pub fn looking_along(
         eye: impl Into<DVec3>,
         direction: impl Into<DVec3>,

@@ -53,7 +53,8 @@ impl ThinLensCamera {
     /// The same as [`ThinLensCamera::new`], with the plane of focus through a point.
     ///
     /// # Errors
-    /// The same errors as [`ThinLensCamera::new`], and an error if the point does not lie in front of the camera.
+    /// Returns the same errors as [`ThinLensCamera::new`], and an error if the point does not lie in front of the
+    /// camera.
     pub fn focused_on(
         pinhole: PinholeCamera,
         aperture_radius: f64,
@@ -186,7 +187,7 @@ impl ThinLensParameters {
     /// Without an `eye` it is placed so that it sees the whole of the subject.
     ///
     /// # Errors
-    /// The same errors as [`ThinLensParameters::camera`].
+    /// Returns the same errors as [`ThinLensParameters::camera`].
     pub fn placed(&self, aspect: f64, subject: &Subject<'_>) -> Result<Self, CameraError> {
         let PinholeParameters { eye, direction, up, margin, .. } =
             self.pinhole().placed(aspect, subject)?;

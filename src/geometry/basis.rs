@@ -61,7 +61,7 @@ impl OrthonormalBasis {
     /// The basis of a camera at `eye` that looks at `look_at`: `a = eye − look_at`, `b = up`.
     ///
     /// # Errors
-    /// The same errors as [`OrthonormalBasis::from_vectors`]; the messages name the eye, the target and `up`.
+    /// Returns the same errors as [`OrthonormalBasis::from_vectors`]; the messages name the eye, the target and `up`.
     pub fn looking_at(
         eye: impl Into<DVec3>,
         look_at: impl Into<DVec3>,

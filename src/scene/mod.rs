@@ -137,7 +137,7 @@ impl Scene {
     /// the world's origin are moved in place.
     ///
     /// # Errors
-    /// The same errors as [`Scene::new`] and [`Appearance::check`].
+    /// Returns the same errors as [`Scene::new`] and [`Appearance::check`].
     pub fn from_parts(array: SphereArray, appearance: Appearance) -> Result<Self, SceneError> {
         let count = array.len();
         let (origin, spheres, bounds) = match array {
@@ -163,7 +163,7 @@ impl Scene {
     /// world's origin are moved in place.
     ///
     /// # Errors
-    /// The same errors as [`Scene::new`].
+    /// Returns the same errors as [`Scene::new`].
     pub fn from_f32(spheres: Vec<[f32; 4]>, color: LinearRgb) -> Result<Self, SceneError> {
         Self::from_parts(SphereArray::F32(spheres), color.into())
     }
@@ -171,7 +171,7 @@ impl Scene {
     /// A scene from spheres (x, y, z, radius) in f64, all of one colour.
     ///
     /// # Errors
-    /// The same errors as [`Scene::new`].
+    /// Returns the same errors as [`Scene::new`].
     pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
         let bounds = bounds_of_checked(spheres, |s| *s)?;
         let origin = bounds.map_or(DVec3::ZERO, frame_origin);
@@ -233,7 +233,7 @@ impl Scene {
     /// Restores a scene from its parts, to the bit, except that the bounds are computed from the f32 numbers.
     ///
     /// # Errors
-    /// The same errors as [`Scene::from_parts`], and an error if the origin is out of range.
+    /// Returns the same errors as [`Scene::from_parts`], and an error if the origin is out of range.
     #[cfg(feature = "run-file")]
     pub(crate) fn from_frame(
         origin: DVec3,
@@ -329,7 +329,7 @@ impl SphereArray {
     /// A scene of these spheres, all of one colour.
     ///
     /// # Errors
-    /// The same errors as [`Scene::new`].
+    /// Returns the same errors as [`Scene::new`].
     pub fn scene(self, color: LinearRgb) -> Result<Scene, SceneError> {
         Scene::from_parts(self, color.into())
     }

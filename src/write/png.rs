@@ -29,7 +29,7 @@ pub fn encode(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError>
 /// Encodes a picture as [`encode`] does, and draws annotations over it. Exposure and tone curve do not change them.
 ///
 /// # Errors
-/// The same errors as [`encode`].
+/// Returns the same errors as [`encode`].
 #[cfg(feature = "annotate")]
 pub fn encode_annotated(
     picture: &Image,

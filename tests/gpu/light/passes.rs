@@ -29,6 +29,10 @@ pub(crate) fn trials() -> Vec<Trial> {
             "light::passes::what_is_finished_within_a_batch_says_how_many_samples_it_has",
             unfinished,
         ),
+        trial(
+            "light::passes::what_is_finished_within_a_pass_over_whole_samples_has_whole_samples",
+            unfinished_in_one_pass,
+        ),
         trial("light::passes::what_is_stopped_within_a_sample_gives_no_picture", stopped),
     ]
 }
@@ -136,6 +140,20 @@ fn direct(headless: &'static Headless) {
     }
 }
 
+/// A studio of a picture of several tiles. Before the device is known to be fast, even one sample is several submissions.
+fn large_studio() -> LitView {
+    let mut view = named("studio_ambient_occlusion");
+    let spheres: Vec<[f32; 4]> = (0..1000_u32)
+        .map(|i| {
+            let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|c| 0.45 * c as f32 - 2.2);
+            [x, y, z, 0.25]
+        })
+        .collect();
+    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
+    view.film = Film::new(800, 600).unwrap();
+    view
+}
+
 /// In one pass, every ray is computed as in several passes, and light is added in the same order.
 fn one_pass(headless: &'static Headless) {
     let options = HeadlessOptions { one_pass: false, ..HeadlessOptions::default() };
@@ -166,16 +184,7 @@ fn one_pass(headless: &'static Headless) {
             assert!(one == several, "{name}, settings {index}: {count} colours differ: {first:?}");
         }
     }
-    // A picture of several tiles. Before the device is known to be fast, even one sample is several submissions.
-    let mut view = named("studio_ambient_occlusion");
-    let spheres: Vec<[f32; 4]> = (0..1000_u32)
-        .map(|i| {
-            let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|c| 0.45 * c as f32 - 2.2);
-            [x, y, z, 0.25]
-        })
-        .collect();
-    view.scene = Scene::from_f32(spheres, LinearRgb::from_srgb8([200; 3])).unwrap();
-    view.film = Film::new(800, 600).unwrap();
+    let mut view = large_studio();
     view.settings.sampling.samples = 1;
     let [one, several] = [headless, &several].map(|device| {
         device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
@@ -295,19 +304,40 @@ fn noise(headless: &'static Headless) {
 fn unfinished(headless: &'static Headless) {
     let mut view = named("path_emissive_both");
     view.film = Film::new(900, 500).unwrap();
+    finish_within_a_batch(headless, &mut view, 4, 1);
+}
+
+/// The same with passes over whole samples. A slice of such a pass is a part of the pixels of a tile, and the render does
+/// not finish while some of these have more samples than others.
+fn unfinished_in_one_pass(headless: &'static Headless) {
+    let mut view = large_studio();
+    // Three tiles, and so many rays that a slow device takes several submissions for a sample of one of them. The first
+    // call in the second tile comes before its slices, and the second call after them.
+    view.film = Film::new(800, 1300).unwrap();
+    let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
+    studio.occlusion = Some(Occlusion { radius: None, samples: 24 });
+    finish_within_a_batch(headless, &mut view, 1, 2);
+}
+
+/// Finishes a render within a batch, at the call with this number after at least `first` samples, and compares its pixels
+/// with pictures that were asked for with as many samples.
+fn finish_within_a_batch(headless: &'static Headless, view: &mut LitView, first: u32, call: usize) {
     view.settings.sampling.samples = 64;
     let layers = LayerSet::COLOR.with(Layer::Samples);
     let LitView { scene, settings, .. } = &view;
     let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
     let buffers = headless.upload(scene, &accel.into()).unwrap();
-    // The render finishes at the first call within a batch, which has as many samples as all batches before it.
-    let mut finished_at = None;
+    // Each batch has as many samples as all batches before it.
+    let (mut finished_at, mut calls) = (None, 0);
     let watch = &mut |progress: &Progress| {
         let Progress { samples, total, part, .. } = *progress;
         let of_batch = part * f64::from(total) / f64::from(samples.max(1)) - 1.0;
-        if samples >= 4 && (0.3..0.7).contains(&of_batch) {
-            finished_at.get_or_insert(samples);
-            return Decision::Finish;
+        if samples >= first && (0.3..0.7).contains(&of_batch) {
+            calls += 1;
+            if calls == call {
+                finished_at = Some(samples);
+                return Decision::Finish;
+            }
         }
         Decision::GoOn
     };
