@@ -44,7 +44,7 @@ pub(super) struct CameraArgs {
     /// Enlarge the picture about its middle (pinhole, thin-lens, orthographic)
     #[arg(long, help_heading = HEADING, value_name = "FACTOR", allow_hyphen_values = true)]
     zoom: Option<f64>,
-    /// Direction that is up in the picture [default: 0,1,0, or another one in a view along y]
+    /// Direction that is up in the picture [default: 0,0,1 for LAMMPS, GSD and LAS files and 0,1,0 for others, or another one in a view along it]
     #[arg(long, help_heading = HEADING, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
     /// Vertical field of view in degrees (pinhole, thin-lens) [default: 30]
@@ -122,7 +122,8 @@ impl CameraArgs {
     /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
         let kind = flags.kind.as_str();
-        let parameters = flags.parameters(None).map_err(|message| self.unknown(kind, &message))?;
+        let parameters =
+            flags.parameters(None, DVec3::Y).map_err(|message| self.unknown(kind, &message))?;
         // An error in the flags themselves shows with any scene, so these bounds are arbitrary.
         let subject = &Bounds::of_sphere(DVec3::ZERO, 1.0).into();
         let checked = match parameters.camera(1.0, subject) {
@@ -244,13 +245,15 @@ impl CameraFlags {
         named.or(self.direction.filter(|_| !self.eye).map(direction))
     }
 
-    /// Returns the parameters of the camera, which stands at the `automatic` viewpoint if no flag says where.
+    /// Returns the parameters of the camera, which stands at the `automatic` viewpoint if no flag says where, and whose
+    /// viewpoint has `default_up` up if no flag says what is.
     pub(super) fn parameters(
         &self,
         automatic: Option<Viewpoint>,
+        default_up: DVec3,
     ) -> Result<CameraParameters, String> {
         let mut table = self.table.clone();
-        let up = self.up.unwrap_or(DVec3::Y);
+        let up = self.up.unwrap_or(default_up);
         if let Some(view) = self.viewpoint(automatic) {
             let [direction, up] = view.axes(up, self.turn);
             table.insert("direction".to_owned(), list(direction.to_array()));

@@ -31,6 +31,9 @@ pub struct Format {
     pub may_lack_radii: bool,
     /// Whether a file gives colours, either directly or through the elements of its atoms.
     pub has_colors: bool,
+    /// Whether z is the height in most files of this format, as in simulations and surveys. Of molecules and models of
+    /// surfaces, y is up on the screen.
+    pub z_is_up: bool,
     /// Whether the first bytes of a file look like this format.
     pub(super) starts: fn(&[u8]) -> bool,
     pub(super) reader: fn(&[u8], &Options) -> Result<Loaded, LoadError>,

@@ -103,6 +103,6 @@ impl Source {
 
     /// The direction that is up for the flags; `None` if the camera is that of a scene file.
     pub(crate) fn up(&self) -> Option<DVec3> {
-        self.has_camera_of_flags().then(|| self.camera.up().unwrap_or(DVec3::Y))
+        self.has_camera_of_flags().then(|| self.camera.up().unwrap_or_else(|| self.default_up()))
     }
 }

@@ -12,6 +12,7 @@ use crate::progress;
 use crate::report::Report;
 use pinhole::camera::{Camera, CameraParameters, Viewpoint};
 use pinhole::color_by::ColorKey;
+use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::load::environment;
 use pinhole::render::RenderSettings;
@@ -71,7 +72,7 @@ impl Source {
         let facing = matches!(self.format, Format::Data(_))
             .then(|| subject.flat_axis().map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis));
         let parameters = if has_flags {
-            self.camera.parameters(facing).map_err(Failure::usage)?
+            self.camera.parameters(facing, self.default_up()).map_err(Failure::usage)?
         } else {
             file.camera_parameters()
         };
@@ -97,6 +98,14 @@ impl Source {
         let settings = self.light.apply_to(settings.with_context(file_name)?, file.integrator())?;
         let view = if has_flags { self.camera.view_in_flags(facing) } else { None };
         Ok(Look { camera, eyes, settings, parameters, view })
+    }
+
+    /// The direction that is up if no flag and no scene file says what is.
+    pub(super) fn default_up(&self) -> DVec3 {
+        match self.format {
+            Format::Data(format) if format.z_is_up => DVec3::Z,
+            _ => DVec3::Y,
+        }
     }
 
     /// Whether the flags say what the camera is, and not the scene file.

@@ -190,3 +190,20 @@ fn a_note_leaves_out_what_a_scene_file_gives() {
     let [colored] = &said(&format!("color_by = 'species'\n{base}"))[..] else { panic!() };
     assert!(colored.contains("Xa, Xb; they are drawn with radius 2"), "{colored}");
 }
+
+#[test]
+fn simulations_have_z_up_and_molecules_y() {
+    let dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 4\n0 4\n0 4\n\
+                ITEM: ATOMS id x y z radius\n1 1 1 1 0.5\n2 2 3 1.5 0.5\n";
+    let folder = Folder::with(&[("a.dump", dump), ("water.xyz", WATER)]);
+    for (arguments, up) in [
+        ("a.dump", "up = [0.0, 0.0, 1.0]"),
+        ("a.dump --view 10,50 --turn 3", "up = [0.0, 0.0, 1.0]"),
+        ("a.dump --up 0,1,0", "up = [0.0, 1.0, 0.0]"),
+        ("water.xyz", "up = [0.0, 1.0, 0.0]"),
+    ] {
+        let run = folder.run(&format!("render {arguments} --print-scene --quiet")).succeeded();
+        let printed = String::from_utf8(run.stdout).unwrap();
+        assert!(printed.contains(up), "{arguments}: {printed}");
+    }
+}
