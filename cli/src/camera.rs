@@ -122,8 +122,9 @@ impl CameraArgs {
     /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
         let kind = flags.kind.as_str();
-        let parameters =
-            flags.parameters(None, DVec3::Y).map_err(|message| self.unknown(kind, &message))?;
+        let parameters = flags
+            .parameters(Some(Viewpoint::OBLIQUE), DVec3::Y)
+            .map_err(|message| self.unknown(kind, &message))?;
         // An error in the flags themselves shows with any scene, so these bounds are arbitrary.
         let subject = &Bounds::of_sphere(DVec3::ZERO, 1.0).into();
         let checked = match parameters.camera(1.0, subject) {

@@ -195,12 +195,14 @@ fn a_note_leaves_out_what_a_scene_file_gives() {
 fn simulations_have_z_up_and_molecules_y() {
     let dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 4\n0 4\n0 4\n\
                 ITEM: ATOMS id x y z radius\n1 1 1 1 0.5\n2 2 3 1.5 0.5\n";
-    let folder = Folder::with(&[("a.dump", dump), ("water.xyz", WATER)]);
+    let atoms = "4\n\nO 0 0 0\nO 2 0 0\nO 0 3 0\nO 0 0 4\n";
+    let folder = Folder::with(&[("a.dump", dump), ("a.xyz", atoms)]);
     for (arguments, up) in [
         ("a.dump", "up = [0.0, 0.0, 1.0]"),
         ("a.dump --view 10,50 --turn 3", "up = [0.0, 0.0, 1.0]"),
         ("a.dump --up 0,1,0", "up = [0.0, 1.0, 0.0]"),
-        ("water.xyz", "up = [0.0, 1.0, 0.0]"),
+        ("a.xyz --up 0,0,1", "up = [0.0, 0.0, 1.0]"),
+        ("a.xyz", "up = [0.0, 1.0, 0.0]"),
     ] {
         let run = folder.run(&format!("render {arguments} --print-scene --quiet")).succeeded();
         let printed = String::from_utf8(run.stdout).unwrap();
