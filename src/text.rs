@@ -31,6 +31,13 @@ pub(crate) fn shortened(text: &str) -> String {
     shown
 }
 
+/// The first names, at most `most` of them, with an ellipsis if there are more.
+#[cfg(any(feature = "color-by", feature = "table"))]
+pub(crate) fn listed(mut names: impl Iterator<Item = String>, most: usize) -> String {
+    let shown: Vec<String> = names.by_ref().take(most).collect();
+    shown.join(", ") + if names.next().is_some() { ", …" } else { "" }
+}
+
 /// The text without the byte order mark that some editors put before UTF-8.
 #[cfg(any(
     feature = "csv",

@@ -122,6 +122,7 @@ impl CameraArgs {
     /// Checks the flags with any scene.
     fn check(&self, flags: &CameraFlags) -> Result<(), Failure> {
         let kind = flags.kind.as_str();
+        // Data is seen from here, with any direction up; of scene files, the real check comes later.
         let parameters = flags
             .parameters(Some(Viewpoint::OBLIQUE), DVec3::Y)
             .map_err(|message| self.unknown(kind, &message))?;

@@ -1,7 +1,7 @@
 // Light that a scattered ray hits, weighted by multiple importance sampling. Twin: src/cpu/light/path.rs.
 // provides: light_of_miss, weight_of_hit_light
 // needs: LAMP_DIRECTIONAL, LIGHTING_SKY_SEEN, LIGHTING_TRANSPARENT, LIGHT_CHANCE, LIGHT_DIRECT, PATH_FULL,
-//   PATH_SCATTERED, PI, has, lamp_kind, lighting, lighting_has, sky_density, sky_radiance, table
+//   PATH_SCATTERED, PI, background, has, lamp_kind, lighting, lighting_has, sky_density, sky_radiance, table
 
 // The weight of light that a ray hits, from the density with which the ray was scattered there and the density with
 // which light sampling would have chosen it: the balance heuristic (Veach and Guibas, "Optimally Combining Sampling
@@ -16,7 +16,7 @@ fn weight_of_hit_light(flags: u32, scattered: f32, light_density: f32) -> f32 {
 fn light_of_miss(direction: vec3f, flags: u32, density: f32) -> vec3f {
     let is_seen = !has(flags, PATH_SCATTERED);
     if (is_seen && !lighting_has(LIGHTING_SKY_SEEN)) {
-        return select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
+        return background();
     }
     let sources = f32(max(lighting.source_count, 1u));
     var sum = sky_radiance(direction) * weight_of_hit_light(flags, density, sky_density(direction) / sources);

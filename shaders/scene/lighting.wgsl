@@ -1,6 +1,6 @@
 // The parameters and tables of lights, sky, ground and materials.
-// provides: filter_table, ground_distance, lighting, lighting_has, table, tables
-// needs: LIGHTING_GROUND, LightingParameters, NO_HIT, Ray
+// provides: background, filter_table, ground_distance, lighting, lighting_has, table, tables
+// needs: LIGHTING_GROUND, LIGHTING_TRANSPARENT, LightingParameters, NO_HIT, Ray
 
 // Parameters of sky, ground and sampling, and the indices at which the tables start.
 @group(2) @binding(0) var<uniform> lighting: LightingParameters;
@@ -14,6 +14,11 @@ fn table(index: u32) -> vec4f {
 
 fn lighting_has(flag: u32) -> bool {
     return (lighting.flags & flag) != 0u;
+}
+
+// What a picture shows where there is nothing.
+fn background() -> vec3f {
+    return select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
 }
 
 fn filter_table(index: u32) -> f32 {

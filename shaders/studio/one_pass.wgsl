@@ -3,14 +3,10 @@
 // Twin: src/cpu/light/studio.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: one_pass
-// needs: CameraRay, Departure, Hit, LIGHTING_TRANSPARENT, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, WORKGROUP_SIDE,
-//   camera_ray, dispatch, enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting,
-//   lighting_has, luminance, nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair,
-//   sphere_vertex, start_fences, surface_sample, unit2
-
-fn background() -> vec3f {
-    return select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
-}
+// needs: CameraRay, Departure, Hit, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, WORKGROUP_SIDE, background, camera_ray,
+//   dispatch, enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting, luminance,
+//   nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex,
+//   start_fences, surface_sample, unit2
 
 // There is no early return: with one, Mesa 22.3 fails to compile the kernel.
 fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {

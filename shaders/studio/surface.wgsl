@@ -3,10 +3,10 @@
 // dispatched: for each surface that the camera sees and each brick.
 // provides: surface
 // needs: ALBEDO, DIRECTION, Departure, EMISSIVE, FIRST, HIT_GROUND, HIT_NOTHING, LAMBERT, LIGHTING_CATCHER,
-//   LIGHTING_TRANSPARENT, LIST_OF_LIGHT, LOBE, NORMAL, NO_PATH, OTHER_BRICK, PATH_ALIVE, PATH_BACK, PATH_INSIDE,
-//   PATH_ON_GROUND, RADIANCE, Ray, THROUGHPUT, append, classify_hit, dispatch, distance_from_camera, exit_distance_of,
-//   faded, has, lighting, lighting_has, load, load_hit, load_start, material_of, next_list, path_of, paths, slot,
-//   start_fences, store, store_departure, store_start, vertex_of
+//   LIST_OF_LIGHT, LOBE, NORMAL, NO_PATH, OTHER_BRICK, PATH_ALIVE, PATH_BACK, PATH_INSIDE, PATH_ON_GROUND, RADIANCE,
+//   Ray, THROUGHPUT, append, background, classify_hit, dispatch, distance_from_camera, exit_distance_of, faded, has,
+//   lighting, lighting_has, load, load_hit, load_start, material_of, next_list, path_of, paths, slot, start_fences,
+//   store, store_departure, store_start, vertex_of
 
 @compute @workgroup_size(64)
 fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -29,7 +29,7 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     let radiance = load(index, RADIANCE);
     let left_over = load(index, THROUGHPUT).x;
-    let shown = select(lighting.background, vec3f(0.0), lighting_has(LIGHTING_TRANSPARENT));
+    let shown = background();
     if (kind == HIT_NOTHING) {
         store(index, RADIANCE, radiance + vec4f(left_over * shown, 0.0));
         store_start(index, vec3f(0.0), 0u);

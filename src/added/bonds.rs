@@ -7,7 +7,7 @@ use super::{AddError, Added, Base, Look, string};
 #[cfg(feature = "table")]
 use crate::load::{Covalent, covalent};
 use crate::scene::sphere_array::SphereArray;
-use crate::text::shortened;
+use crate::text::{listed, shortened};
 
 /// Which atoms are bonded. Bonds are drawn as sticks, each half in the colour of its atom.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ const SPACING: f64 = 0.4;
 const MOST_ADDED: [usize; 2] = [256, 1 << 16];
 
 #[cfg(not(feature = "table"))]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Covalent {
     radius: f64,
     is_hydrogen: bool,
@@ -82,10 +82,7 @@ pub(super) fn radius_factor(species: Option<&str>) -> f64 {
 }
 
 fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
-    let [x, y, z, radius] = match spheres {
-        SphereArray::F32(all) => all[index].map(f64::from),
-        SphereArray::F64(all) => all[index],
-    };
+    let [x, y, z, radius] = spheres.at(index);
     (DVec3::new(x, y, z), radius)
 }
 
@@ -160,17 +157,12 @@ fn covalent_bonds(
     if largest <= 0.0 && !points.is_empty() {
         return Err(AddError::NoElements);
     }
-    let names = labels.names.iter().zip(&known);
-    let unknown: Vec<String> =
-        names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name)).collect();
-    if !unknown.is_empty() {
-        /// More names would make the line too long to read.
-        const NAMED: usize = 5;
-        let more = if unknown.len() > NAMED { ", …" } else { "" };
+    if known.contains(&None) {
+        let names = labels.names.iter().zip(&known);
+        let unknown = names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name));
         notes.push(format!(
-            "these species have no covalent radius and therefore no bonds: {}{more}; --bond-length L joins all that are \
-             closer",
-            unknown.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ")
+            "these species have no covalent radius and therefore no bonds: {}; --bond-length L joins all that are closer",
+            listed(unknown, 5)
         ));
     }
     let of = |index: u32| {

@@ -1,5 +1,7 @@
 //! Smooth curves through values at given times.
 
+use std::ops::{Add, Mul};
+
 use glam::DVec3;
 
 /// A function of time that takes given values at given times. It is monotone wherever the values are, so it never goes
@@ -45,19 +47,7 @@ impl Track {
 
     /// The value at a time.
     pub(super) fn at(&self, time: f64) -> f64 {
-        let last = self.times.len() - 1;
-        let next = self.times.partition_point(|at| *at <= time);
-        match next {
-            0 => self.values[0],
-            _ if next > last => self.values[last],
-            _ => {
-                let index = next - 1;
-                let step = self.times[next] - self.times[index];
-                let [a, b, c, d] = hermite((time - self.times[index]) / step);
-                let (values, slopes) = (&self.values, &self.slopes);
-                a * values[index] + b * values[next] + step * (c * slopes[index] + d * slopes[next])
-            }
-        }
+        between(time, &self.times, &self.values, &self.slopes)
     }
 }
 
@@ -79,6 +69,27 @@ fn hermite(s: f64) -> [f64; 4] {
     let rest = 1.0 - s;
     let end = s * s * (3.0 - 2.0 * s);
     [1.0 - end, end, s * rest * rest, -s * s * rest]
+}
+
+/// The cubic curve through `values` at `places`, of which there is at least one, with these slopes. Before the first and
+/// after the last place it is constant.
+fn between<T>(place: f64, places: &[f64], values: &[T], slopes: &[T]) -> T
+where
+    T: Copy + Add<Output = T>,
+    f64: Mul<T, Output = T>,
+{
+    let last = places.len() - 1;
+    let next = places.partition_point(|at| *at <= place);
+    match next {
+        0 => values[0],
+        _ if next > last => values[last],
+        _ => {
+            let index = next - 1;
+            let step = places[next] - places[index];
+            let [a, b, c, d] = hermite((place - places[index]) / step);
+            a * values[index] + b * values[next] + step * (c * slopes[index] + d * slopes[next])
+        }
+    }
 }
 
 /// A curve in space that passes through given points at given times.
@@ -143,21 +154,7 @@ impl Curve {
     /// The point at a time.
     pub(super) fn at(&self, time: f64) -> DVec3 {
         let knot = self.parameter.at(time);
-        let last = self.knots.len() - 1;
-        let next = self.knots.partition_point(|at| *at <= knot);
-        match next {
-            0 => self.points[0],
-            _ if next > last => self.points[last],
-            _ => {
-                let index = next - 1;
-                let step = self.knots[next] - self.knots[index];
-                let [a, b, c, d] = hermite((knot - self.knots[index]) / step);
-                let (points, tangents) = (&self.points, &self.tangents);
-                a * points[index]
-                    + b * points[next]
-                    + step * (c * tangents[index] + d * tangents[next])
-            }
-        }
+        between(knot, &self.knots, &self.points, &self.tangents)
     }
 }
 

@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(resolved("0,1", &[], false), Some([0.0, 1.0]));
     }
 
-    /// As NumPy's `percentile` computes them.
+    /// The numbers are those of NumPy's `percentile`.
     #[test]
     fn percentiles_are_interpolated() {
         let values: Vec<f64> = (0..=10).rev().map(f64::from).collect();

@@ -15,6 +15,7 @@ use super::unknown_species::UnknownSpecies;
 use super::{Column, ColumnValues, Loaded};
 use crate::image::color::LinearRgb;
 use crate::scene::sphere_array::SphereArray;
+use crate::text::listed;
 
 /// An atom of a file.
 pub(super) struct Atom<'a> {
@@ -134,12 +135,7 @@ impl Atoms {
             let mut names: Vec<_> = atoms.iter().map(|atom| self.residue.indices[*atom]).collect();
             names.sort_unstable();
             names.dedup();
-            let all: Vec<_> = names
-                .iter()
-                .take(5)
-                .map(|index| self.residue.names[*index as usize].clone())
-                .collect();
-            all.join(", ") + if names.len() > 5 { ", …" } else { "" }
+            listed(names.iter().map(|index| self.residue.names[*index as usize].clone()), 5)
         };
         let note = |atoms: &[usize], is: &str, why: &str| {
             (!atoms.is_empty()).then(|| {

@@ -19,7 +19,7 @@ use super::unknown_species::UnknownSpecies;
 use crate::image::color::LinearRgb;
 use crate::parallel;
 use crate::scene::sphere_array::SphereArray;
-use crate::text::shortened;
+use crate::text::{listed, shortened};
 
 /// A table of points. All columns have the same number of values.
 #[derive(Debug, Default)]
@@ -181,10 +181,8 @@ impl Table {
     }
 
     fn no_positions(&self) -> TableError {
-        let names: Vec<_> =
-            self.columns.iter().take(16).map(|column| shortened(&column.name)).collect();
-        let more = if self.columns.len() > 16 { ", …" } else { "" };
-        TableError::NoPositions { columns: names.join(", ") + more }
+        let names = self.columns.iter().map(|column| shortened(&column.name));
+        TableError::NoPositions { columns: listed(names, 16) }
     }
 
     fn position(&self, names: &[&str]) -> Option<usize> {
@@ -363,10 +361,7 @@ fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {
 }
 
 fn center(spheres: &SphereArray, row: usize) -> DVec3 {
-    let [x, y, z, _] = match spheres {
-        SphereArray::F32(all) => all[row].map(f64::from),
-        SphereArray::F64(all) => all[row],
-    };
+    let [x, y, z, _] = spheres.at(row);
     DVec3::new(x, y, z)
 }
 

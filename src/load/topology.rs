@@ -91,10 +91,7 @@ impl Topology {
     pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Loaded, LoadError> {
         let Positions { centers, cell, columns } = positions;
         self.check(frame, centers.len())?;
-        let radius = |index: usize| match &self.loaded.spheres {
-            SphereArray::F32(all) => all[index][3].into(),
-            SphereArray::F64(all) => all[index][3],
-        };
+        let radius = |index: usize| self.loaded.spheres.at(index)[3];
         let spheres = centers.iter().enumerate().map(|(i, [x, y, z])| [*x, *y, *z, radius(i)]);
         let mut loaded = Loaded::new(SphereArray::F64(spheres.collect()));
         loaded.colors.clone_from(&self.loaded.colors);

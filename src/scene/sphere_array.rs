@@ -69,6 +69,15 @@ impl SphereArray {
         self.len() == 0
     }
 
+    /// A sphere: its centre and radius.
+    #[cfg(any(feature = "color-by", feature = "table"))]
+    pub(crate) fn at(&self, index: usize) -> [f64; 4] {
+        match self {
+            Self::F32(spheres) => spheres[index].map(f64::from),
+            Self::F64(spheres) => spheres[index],
+        }
+    }
+
     /// Multiplies every radius by `factor`; the precision of the array stays the same.
     pub fn scale_radii(&mut self, factor: f64) {
         match self {

@@ -8,7 +8,7 @@ use crate::color_by::ColumnError;
 use crate::color_by::column::{Found, column};
 use crate::load::{Column, ColumnValues, Labels};
 use crate::scene::sphere_array::SphereArray;
-use crate::text::{one_line, shortened};
+use crate::text::{listed, one_line, shortened};
 
 /// What expressions are evaluated for.
 struct Data<'a> {
@@ -225,14 +225,7 @@ fn number(word: &str) -> Option<f64> {
 
 /// The note about a text that no sphere has.
 fn absent(column: &str, wanted: &str, labels: &Labels) -> String {
-    /// How many texts are shown.
-    const SHOWN: usize = 8;
-    let shown = labels.names.iter().filter(|label| !label.trim().is_empty());
-    let shown = shown.take(SHOWN).map(|label| shortened(label)).collect::<Vec<_>>().join(", ");
-    let more = if labels.names.len() > SHOWN { ", …" } else { "" };
-    format!(
-        "no sphere has the {} `{}`; there are {shown}{more}",
-        one_line(column),
-        shortened(wanted)
-    )
+    let names = labels.names.iter().filter(|label| !label.trim().is_empty());
+    let shown = listed(names.map(|label| shortened(label)), 8);
+    format!("no sphere has the {} `{}`; there are {shown}", one_line(column), shortened(wanted))
 }

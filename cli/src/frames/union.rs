@@ -91,42 +91,44 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
         spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
     };
     let profile: Vec<_> = (0..PROFILE).into_par_iter().filter_map(farthest).collect();
-    let of_data = &spheres[..spheres.len() - scene.added()];
-    let mut all: Vec<[f64; 4]> = sample(of_data).collect();
-    let of_data = all.len();
-    for step in 0..STEPS {
+    let on_surface = (0..STEPS).flat_map(|step| {
         let turn = DQuat::from_axis_angle(axis, TAU * step as f64 / STEPS as f64);
-        all.extend(profile.iter().map(|&[x, y, z, radius]| {
+        profile.iter().map(move |&[x, y, z, radius]| {
             let at = center + turn * (DVec3::new(x, y, z) - center);
             [at.x, at.y, at.z, radius]
-        }));
-    }
-    let added = all.len() - of_data;
+        })
+    });
+    body(&spheres[..spheres.len() - scene.added()], on_surface)
+}
+
+/// A scene of spheres on a surface, and some of the data's own for the mean radius.
+fn body(
+    of_data: &[[f64; 4]],
+    on_surface: impl Iterator<Item = [f64; 4]>,
+) -> Result<Scene, SceneError> {
+    let mut all: Vec<[f64; 4]> = sample(of_data).collect();
+    let before = all.len();
+    all.extend(on_surface);
+    let added = all.len() - before;
     Ok(Scene::from_f64(&all, LinearRgb::WHITE)?.with_added(added))
 }
 
 /// The ball around a scene, as a scene: spheres on the ball's surface, and some of the scene's own for the mean radius.
 pub(super) fn around(scene: &Scene) -> Result<Scene, SceneError> {
     let center = scene.bounds_to_frame().center();
-    let origin = scene.origin();
-    let spheres = || scene.spheres().iter().map(|sphere| in_world(origin, sphere));
+    let spheres: Vec<[f64; 4]> =
+        scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
     let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
-    let Some(farthest) = spheres().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
+    let Some(farthest) = spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
         return Scene::from_f64(&[], LinearRgb::WHITE);
     };
     let radius = farthest[3];
-    let beside = reach(&farthest) - radius;
+    let beside = reach(farthest) - radius;
     let on_surface = (0..4 * DIRECTIONS).map(|index| {
         let at = center + beside * of_spiral(index, 4 * DIRECTIONS);
         [at.x, at.y, at.z, radius]
     });
-    let of_data = scene.len() - scene.added();
-    let step = of_data.div_ceil(SAMPLE).max(1);
-    let mut all: Vec<[f64; 4]> = spheres().take(of_data).step_by(step).collect();
-    let of_data = all.len();
-    all.extend(on_surface);
-    let added = all.len() - of_data;
-    Ok(Scene::from_f64(&all, LinearRgb::WHITE)?.with_added(added))
+    body(&spheres[..spheres.len() - scene.added()], on_surface)
 }
 
 /// One of the directions of a spiral, which are about equally far from each other.
