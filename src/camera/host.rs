@@ -11,7 +11,7 @@ use crate::geometry::ray::Ray;
 const LEAST_VOLUME: f64 = 1.0 / 4096.0;
 
 /// The range of the numbers by which clip depth is computed, so that they are normal in f32.
-const DEPTH_NUMBERS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+const DEPTH_NUMBERS: std::ops::RangeInclusive<f64> = 1e-18..=1e18;
 
 /// A pinhole or orthographic camera, made of the matrices of a host program.
 ///
@@ -94,7 +94,7 @@ impl HostCamera {
         }
         let slope = slope / scale;
         if !DEPTH_NUMBERS.contains(&slope.abs())
-            || !(0.0..=1e30).contains(&film.abs().max_element())
+            || !(0.0..=1e18).contains(&film.abs().max_element())
         {
             return Err(HostCameraError::NoDepth { row: depth });
         }
