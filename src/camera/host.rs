@@ -216,7 +216,11 @@ impl Camera for HostCamera {
     fn ray_in_world(&self, location: DVec2) -> Ray {
         let CameraVectors { origin, right, up, forward, .. } = self.vectors;
         match self.kind {
-            CameraKind::Pinhole => Ray { origin, direction: self.toward(location).normalize() },
+            CameraKind::Pinhole => {
+                // Never zero, because the three vectors do not lie in one plane.
+                let toward = self.toward(location);
+                Ray { origin, direction: toward / toward.length() }
+            }
             _ => Ray { origin: origin + location.x * right + location.y * up, direction: forward },
         }
     }

@@ -34,7 +34,7 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
                 DVec3::splat(0.1),
                 glam::DQuat::from_rotation_y(1.0),
                 DVec3::new(1.0, -2.0, 0.5),
-            )
+            );
         }
         // Mirrored, as for a reflecting plane.
         1 => view *= DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)),
@@ -45,7 +45,7 @@ fn random_host(random: &mut fastrand::Rng, convention: Convention) -> (DMat4, DM
                 DVec4::new(0.0, 1.0, -0.3, 0.0),
                 DVec4::new(0.1, 0.0, 0.8, 0.0),
                 DVec4::W,
-            )
+            );
         }
         // A screen that is turned by a quarter.
         3 => projection = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2) * projection,

@@ -23,7 +23,8 @@ fn scene() -> Scene {
 
 fn random_pose(random: &mut fastrand::Rng) -> Pose {
     let mut any = || 2.0 * random.f64() - 1.0;
-    let toward = DVec3::new(any(), any(), any()).normalize();
+    let toward = DVec3::new(any(), any(), any());
+    let toward = toward / toward.length();
     let up = DVec3::new(any(), any(), any());
     Pose::looking_at(DVec3::splat(0.5) - 2.5 * toward, DVec3::splat(0.5), up).unwrap()
 }
