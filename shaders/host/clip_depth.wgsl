@@ -24,12 +24,14 @@ fn clip_depth(view: HostView, pixel: vec2u, distance: f32) -> f32 {
     // As in camera/film.wgsl.
     let doubled = vec2i(pixel) * 2 + 1 - vec2i(view.size);
     let location = vec2f(doubled) / vec2f(view.size) * vec2f(1.0, -1.0);
-    let start = location.x * view.film_depth.x + location.y * view.film_depth.y + view.film_depth.z;
+    // Zero unless the near plane is oblique.
+    let aside = location.x * view.film_depth.x + location.y * view.film_depth.y;
     let toward = location.x * view.right + location.y * view.up + view.forward;
     let scaled = view.slope * length(toward);
     let least = max(abs(scaled) * 1e-30, 1e-37);
     let change = select(scaled / max(distance, least), view.slope * distance, view.is_parallel != 0u);
-    return start + change;
+    // The two numbers of opposite sign first, so that later roundings are those of a depth from 0 to 1.
+    return (view.film_depth.z + change) + aside;
 }
 
 // Whether a depth is behind another one.

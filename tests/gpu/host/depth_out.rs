@@ -147,11 +147,12 @@ fn plainly(stage: &Stage) -> Drawn {
 
 fn right(_: &'static Headless) {
     for convention in Convention::ALL {
-        let stage = Stage::new(convention);
-        let wrong = judge(&stage, plainly(&stage));
-        println!("{convention:?}: {wrong:?}");
-        assert!(wrong.is_right(), "{convention:?}: {wrong:?}");
-        assert!(wrong.judged > 6000 && wrong.unjudged < 200, "{convention:?}: {wrong:?}");
+        for stage in [Stage::new(convention), Stage::oblique(convention)] {
+            let wrong = judge(&stage, plainly(&stage));
+            println!("{convention:?}: {wrong:?}");
+            assert!(wrong.is_right(), "{convention:?}: {wrong:?}");
+            assert!(wrong.judged > 6000 && wrong.unjudged < 200, "{convention:?}: {wrong:?}");
+        }
     }
 }
 

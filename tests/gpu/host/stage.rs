@@ -77,9 +77,21 @@ fn random_spheres() -> Vec<Sphere> {
 
 impl Stage {
     pub(super) fn new(convention: Convention) -> Self {
+        Self::with(convention, projection(convention, RANGE), view(&pose(), -1.0))
+    }
+
+    /// A host whose near plane is oblique, so that depth depends on the place on the film, and whose view stretches and
+    /// mirrors.
+    pub(super) fn oblique(convention: Convention) -> Self {
+        let mut projection = projection(convention, RANGE);
+        projection.x_axis.z += 0.02;
+        projection.y_axis.z -= 0.03;
+        let change = DMat4::from_scale(DVec3::new(1.1, -0.9, 1.0));
+        Self::with(convention, projection, view(&pose(), -1.0) * change)
+    }
+
+    fn with(convention: Convention, projection: DMat4, to_view: DMat4) -> Self {
         let host = Host::new();
-        let to_view = view(&pose(), -1.0);
-        let projection = projection(convention, RANGE);
         let camera = HostCamera::new(to_view, projection, convention.order()).unwrap();
         let spheres = random_spheres();
         let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
