@@ -15,6 +15,7 @@ mod compute;
 mod device;
 mod embedding;
 mod faults;
+mod host;
 mod lens;
 mod light;
 mod parts;
@@ -42,6 +43,7 @@ fn main() {
             parts::trials(),
             paths::trials(),
             embedding::trials(),
+            host::trials(),
             device::trials(),
             structures::trials(),
             plan::trials(),

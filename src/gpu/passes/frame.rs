@@ -331,6 +331,11 @@ impl Frame {
         Ok(view)
     }
 
+    /// Width and height of the targets.
+    pub(in crate::gpu) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// Bind group 0 of every kernel, one for each band.
     pub(in crate::gpu) fn band_groups(&self) -> &[BindGroup] {
         &self.band_groups
