@@ -46,7 +46,7 @@ impl log::Log for Counter {
                 calls.writes += 1;
             } else if line == "Queue::submit" {
                 calls.submitted += 1;
-            } else if waits.into_iter().any(|wait| starts(wait)) {
+            } else if waits.into_iter().any(starts) {
                 calls.waited += 1;
             } else if starts("Buffer::map_async") || starts("Buffer::get_mapped_range") {
                 calls.mapped += 1;

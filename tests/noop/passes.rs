@@ -96,7 +96,7 @@ fn studios_and_paths() {
     let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
     let buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
     for settings in [RenderSettings::studio(), RenderSettings::path()] {
-        let sampling = Sampling { samples: 2, ..settings.sampling.clone() };
+        let sampling = Sampling { samples: 2, ..settings.sampling };
         let settings = RenderSettings { sampling, ..settings };
         for camera in cameras() {
             let view = View::new(camera.as_ref(), film());
