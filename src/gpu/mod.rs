@@ -7,7 +7,13 @@
 
 pub use wgpu;
 
+/// The version of wgpu whose types this module takes and returns, which is re-exported as [`wgpu`]. A program that
+/// depends on another major version has other types of the same names, which the compiler refuses;
+/// `docs/embedding.md` says what to do then.
+pub const WGPU_VERSION: &str = "30.0";
+
 pub mod adapter;
+mod checks;
 pub(crate) mod edit;
 mod error;
 mod faults;
@@ -20,6 +26,8 @@ mod quirks;
 mod scene;
 mod self_test;
 mod shader;
+#[cfg(not(target_arch = "wasm32"))]
+mod waiting;
 
 pub use error::GpuError;
 pub use headless::Headless;
@@ -37,6 +45,8 @@ pub use passes::renderer::Renderer;
 pub use passes::renderer_options::{Query, RendererOptions};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
-pub use scene::structures::{Retry, Structures, with_retries};
+#[cfg(not(target_arch = "wasm32"))]
+pub use scene::structures::with_retries;
+pub use scene::structures::{Retry, Structures, with_retries_async};
 pub use self_test::{PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
 pub use shader::formats::ColorTarget;

@@ -11,6 +11,7 @@ mod support;
 
 mod agreement;
 mod appearance;
+mod async_forms;
 mod compute;
 mod device;
 mod embedding;
@@ -37,6 +38,7 @@ fn main() {
         let groups = [
             agreement::trials(),
             appearance::trials(),
+            async_forms::trials(),
             lens::trials(),
             light::trials(),
             pictures::trials(),

@@ -3,13 +3,16 @@
 use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, RenderPass, RenderPipeline};
 
 use crate::camera::HostCamera;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
 use crate::gpu::host::composite_options::{CompositeOptions, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::frame::Targets;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::{Kernel, part};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 
 /// The pipeline that draws pictures into a host's render pass. One is enough for a device and a kind of render pass.
 #[derive(Debug)]
@@ -55,7 +58,16 @@ impl Composite {
     ///
     /// # Errors
     /// If the device cannot render to these formats, or not with this number of samples.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, options))
+    }
+
+    /// Builds the pipeline like [`Composite::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`Composite::new`].
+    pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
         let kernels = [cover_kernel(), composite_kernel(options.source, options.encoding)];
         let texture = |binding| wgpu::BindGroupLayoutEntry {
             binding,
@@ -119,7 +131,8 @@ impl Composite {
                 cache: None,
             });
             (layout, pipeline)
-        })?;
+        })
+        .await?;
         Ok(Self { layout, pipeline, source: options.source })
     }
 
@@ -153,7 +166,20 @@ impl CompositePicture {
     ///
     /// # Errors
     /// If there are no data layers, or a texture has another format or usage.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
+        composite: &Composite,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(composite, device, targets))
+    }
+
+    /// A picture like that of [`CompositePicture::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`CompositePicture::new`].
+    pub async fn new_async(
         composite: &Composite,
         device: &Device,
         targets: &Targets<'_>,
@@ -196,7 +222,8 @@ impl CompositePicture {
                 entries: &entries,
             });
             (view, group)
-        })?;
+        })
+        .await?;
         let texture = targets.color.texture();
         let size = [texture.width(), texture.height()];
         Ok(Self { group, view, size, has_camera: false })

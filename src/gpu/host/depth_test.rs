@@ -3,7 +3,8 @@
 use wgpu::{BindGroup, BindGroupLayout, Buffer, ComputePass, ComputePipeline, Device, Queue};
 
 use crate::camera::HostCamera;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::{Checks, scoped};
+use crate::gpu::error::GpuError;
 use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::renderer::Renderer;
@@ -12,6 +13,8 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, part};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 
 /// The pass that removes hits behind the depth of a host. One is enough for a renderer.
 #[derive(Debug)]
@@ -47,7 +50,16 @@ impl DepthTest {
     ///
     /// # Errors
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
+        block_on(Self::new_async(renderer, device))
+    }
+
+    /// Builds the pipeline like [`DepthTest::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`DepthTest::new`].
+    pub async fn new_async(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -59,13 +71,16 @@ impl DepthTest {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
-        let layout = scoped(device, || {
+        let checks = Checks::default();
+        let layout = checks.create(device, || {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("pinhole host depth"),
                 entries: &[entry(0, uniform::<HostView>()), entry(1, depth)],
             })
-        })?;
-        let pipeline = pipeline(device, &hide_kernel(), &[&renderer.layouts.frame, &layout])?;
+        });
+        let groups = [&renderer.layouts.frame, &layout];
+        let pipeline = pipeline(device, &hide_kernel(), &groups, &checks);
+        checks.passed().await?;
         Ok(Self { layout, pipeline })
     }
 
@@ -91,7 +106,20 @@ impl HostDepth {
     ///
     /// # Errors
     /// If the texture cannot be bound, for one of these reasons.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
+        test: &DepthTest,
+        device: &Device,
+        texture: &wgpu::TextureView,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(test, device, texture))
+    }
+
+    /// The depth like that of [`HostDepth::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`HostDepth::new`].
+    pub async fn new_async(
         test: &DepthTest,
         device: &Device,
         texture: &wgpu::TextureView,
@@ -110,7 +138,8 @@ impl HostDepth {
                 ],
             });
             (view, group)
-        })?;
+        })
+        .await?;
         let texture = texture.texture();
         let texture_size = [texture.width(), texture.height()];
         Ok(Self { group, view, texture_size, size: None })

@@ -8,8 +8,11 @@ use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 
 use crate::camera::View;
 use crate::geometry::ray::Ray;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::Targets;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::image::NO_ID;
 use crate::verify::NO_HIT;
 
@@ -111,7 +114,16 @@ impl Picker {
     ///
     /// # Errors
     /// If the device has no memory left.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(device: &Device, capacity: usize) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, capacity))
+    }
+
+    /// A ring like that of [`Picker::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`Picker::new`].
+    pub async fn new_async(device: &Device, capacity: usize) -> Result<Self, GpuError> {
         let slots = scoped(device, || {
             let slot = |_| Slot {
                 buffer: device.create_buffer(&wgpu::BufferDescriptor {
@@ -124,7 +136,8 @@ impl Picker {
                 asked: None,
             };
             (0..capacity.max(1)).map(slot).collect()
-        })?;
+        })
+        .await?;
         Ok(Self { slots, next: 0, oldest: 0 })
     }
 
