@@ -141,6 +141,7 @@ impl HostCamera {
         }
     }
 
+    #[cfg(feature = "gpu")]
     pub(crate) fn depth(&self) -> ClipDepth {
         self.depth
     }

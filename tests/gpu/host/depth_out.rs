@@ -267,18 +267,21 @@ fn planes(_: &'static Headless) {
             composite.draw(&mut pass, &picture).unwrap();
         }
         let found = stage.host.submit_and_read(encoder, &depth);
+        let colors = stage.host.submit_and_read(stage.host.encoder(), &color);
         let found: Vec<f32> = bytemuck::pod_collect_to_vec(&found);
         let mut seen = [0; 3];
         for pixel in pixels().filter(|pixel| !pixel_is_near_a_silhouette(&stage, *pixel)) {
             let Some(truth) = stage.truth(pixel) else { continue };
             let at = (pixel[1] + FIRST[1]) * TARGET[0] + pixel[0] + FIRST[0];
             let found = found[at as usize];
+            let color = &colors[4 * at as usize..][..4];
             let into = -pose().basis().w().dot(truth.point - pose().origin());
             let case = if into < range[0] - 1e-4 {
                 assert_eq!(found, 1.0 - stage.far(), "{pixel:?} at {into}");
                 0
             } else if into > range[1] + 1e-4 {
                 assert_eq!(found, stage.far(), "{pixel:?} at {into}");
+                assert_eq!(color, [0, 0, 0, 255], "{pixel:?} at {into}");
                 1
             } else {
                 assert!((0.0..=1.0).contains(&found), "{pixel:?} at {into}");
