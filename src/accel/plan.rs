@@ -273,6 +273,8 @@ fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Stru
 }
 
 fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBudget {
+    // In u64, because these products exceed the 32 bits of a browser's addresses.
+    let count = count as u64;
     // Small scenes may have more cells and list elements for each sphere, because the total is small.
     let (listed, cells, bytes) = match structure {
         Structure::Grid(ListLayout::Copied) => {
@@ -286,8 +288,9 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
         _ => return GridBudget { listed: 0, cells: 0 },
     };
     // Larger cells are cheaper than a second brick.
-    let one_binding = (binding_bytes / bytes) as usize;
-    GridBudget { listed: listed.min(one_binding.max(count * 10 / 3)), cells }
+    let listed = listed.min((binding_bytes / bytes).max(count * 10 / 3));
+    let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
+    GridBudget { listed, cells }
 }
 
 /// The largest number of bytes of a tree's nodes, including the root.
@@ -306,10 +309,10 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     let fits = |count: usize| {
         let budget = grid_budget(structure, count, binding_bytes);
         let listed = match structure {
-            Structure::Grid(ListLayout::Copied) => 16 * budget.listed,
-            _ => 4 * budget.listed,
+            Structure::Grid(ListLayout::Copied) => 16 * budget.listed as u64,
+            _ => 4 * budget.listed as u64,
         };
-        let grid = listed.max(4 * budget.cells).max(16 * count) as u64;
+        let grid = listed.max(4 * budget.cells as u64).max(16 * count as u64);
         grid.max(node_bytes(structure, count as u64)) <= binding_bytes
     };
     if structure == Structure::List {

@@ -12,6 +12,8 @@ pub mod film;
 pub mod filter;
 mod fisheye;
 mod framing;
+mod host;
+mod host_matrix;
 mod orthographic;
 mod panorama;
 #[cfg(feature = "scene-file")]
@@ -34,6 +36,8 @@ pub use framing::DEFAULT_MARGIN;
 pub use fisheye::FisheyeCamera;
 #[cfg(feature = "scene-file")]
 pub use fisheye::FisheyeParameters;
+pub use host::HostCamera;
+pub use host_matrix::{DepthOrder, HostCameraError, HostMatrix};
 pub use orthographic::OrthographicCamera;
 #[cfg(feature = "scene-file")]
 pub use orthographic::OrthographicParameters;
@@ -116,7 +120,6 @@ pub struct CameraVectors {
     pub numbers: [f64; 3],
 }
 
-#[cfg(feature = "run-file")]
 impl CameraVectors {
     /// Vectors in the order of the fields, as [`Camera::vectors`] returns them, after the checks that hold for cameras
     /// of every kind.

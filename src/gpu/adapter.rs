@@ -3,10 +3,14 @@
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor, PowerPreference};
 
 use crate::gpu::error::GpuError;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 
 /// The backend that is used by default. More than one would cost start-up time, and would list every GPU more than
 /// once.
-const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
+const PLATFORM_BACKEND: Backends = if cfg!(target_arch = "wasm32") {
+    Backends::BROWSER_WEBGPU
+} else if cfg!(target_vendor = "apple") {
     Backends::METAL
 } else if cfg!(windows) {
     Backends::DX12
@@ -20,8 +24,14 @@ const PLATFORM_BACKEND: Backends = if cfg!(target_vendor = "apple") {
 /// Only the backend of the platform is used: Metal, DX12, or Vulkan on all other systems. The environment variable
 /// `WGPU_BACKEND` names other backends, such as `vulkan` on Windows. Validation layers are loaded only if
 /// `WGPU_VALIDATION=1`.
+#[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
+    block_on(adapters_async())
+}
+
+/// Returns all adapters like [`adapters`], without blocking the thread. A browser offers one adapter or none.
+pub async fn adapters_async() -> Vec<Adapter> {
     let descriptor = InstanceDescriptor {
         // The default would load validation layers in debug builds: they cost start-up time, and would have to be
         // installed on every machine.
@@ -33,7 +43,7 @@ pub fn adapters() -> Vec<Adapter> {
         descriptor.backends = PLATFORM_BACKEND;
     }
     let instance = Instance::new(descriptor);
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(Backends::all()));
+    let mut adapters = instance.enumerate_adapters(Backends::all()).await;
     let low_power = PowerPreference::from_env() == Some(PowerPreference::LowPower);
     // The sort is stable, so adapters of equal rank keep the order of the driver.
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type, low_power));
@@ -56,8 +66,17 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
-    let mut adapters = adapters();
+    block_on(candidates_async(name))
+}
+
+/// Returns the adapters to try like [`candidates`], without blocking the thread.
+///
+/// # Errors
+/// The same as for [`index_of_choice`].
+pub async fn candidates_async(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
+    let mut adapters = adapters_async().await;
     let index = index_of_choice(&adapters, name)?;
     if name.is_some() || name_in_environment().is_some() {
         return Ok(vec![adapters.swap_remove(index)]);
@@ -69,8 +88,17 @@ pub fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
 ///
 /// # Errors
 /// The same as for [`index_of_choice`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
-    candidates(name)?.into_iter().next().ok_or(GpuError::NoAdapter)
+    block_on(choose_async(name))
+}
+
+/// Returns the first of the [`candidates_async`].
+///
+/// # Errors
+/// The same as for [`index_of_choice`].
+pub async fn choose_async(name: Option<&str>) -> Result<Adapter, GpuError> {
+    candidates_async(name).await?.into_iter().next().ok_or(GpuError::NoAdapter)
 }
 
 /// Returns the index of the adapter to use: the first whose name contains `name`, or the value of the environment

@@ -1,4 +1,4 @@
-//! Errors of the GPU renderer, and functions that turn errors of wgpu into values.
+//! Errors of the GPU renderer.
 
 use std::time::Duration;
 
@@ -15,8 +15,17 @@ use crate::scene::SceneError;
 #[non_exhaustive]
 pub enum GpuError {
     /// No driver offers an adapter.
-    #[error(
-        "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        error(
+            "no Vulkan, Metal or DX12 adapter was found; install a driver (Debian: mesa-vulkan-drivers)"
+        )
+    )]
+    #[cfg_attr(
+        target_arch = "wasm32",
+        error(
+            "this browser offers no WebGPU adapter; allow WebGPU in it, or choose another browser"
+        )
     )]
     NoAdapter,
     /// The environment variable `WGPU_BACKEND` names backends that have no adapter.
@@ -129,6 +138,15 @@ pub enum GpuError {
          settings"
     )]
     NoOccluders,
+    /// The renderer's pipelines are still being built: `Renderer::begin` was called, and `Renderer::build_next` has more
+    /// to do.
+    #[error(
+        "{remaining} pipelines of the renderer are not built yet; call Renderer::build_next until none remains"
+    )]
+    NotReady {
+        /// Number of pipelines that are not ready.
+        remaining: usize,
+    },
     /// `Renderer::record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
@@ -203,22 +221,6 @@ impl GpuError {
             wgpu::Error::OutOfMemory { .. } => Self::OutOfMemory,
             other => Self::Device { message: other.to_string() },
         }
-    }
-}
-
-/// Runs `create` in error scopes, so that errors of the device are returned as values and never reach the error handler
-/// of the application that owns the device.
-pub(super) fn scoped<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, GpuError> {
-    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let created = create();
-    // Scopes nest, so they are popped in reverse order. A resource without memory also causes validation errors
-    // wherever it is used, so the scope that is popped last, the one for memory, is reported first.
-    let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
-    match errors.iter().rev().flatten().next() {
-        Some(error) => Err(GpuError::from_wgpu(error)),
-        None => Ok(created),
     }
 }
 

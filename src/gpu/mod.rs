@@ -7,11 +7,18 @@
 
 pub use wgpu;
 
+/// The version of wgpu whose types this module takes and returns, which is re-exported as [`wgpu`]. A program that
+/// depends on another major version has other types of the same names, which the compiler refuses;
+/// `docs/embedding.md` says what to do then.
+pub const WGPU_VERSION: &str = "30.0";
+
 pub mod adapter;
+mod checks;
 pub(crate) mod edit;
 mod error;
 mod faults;
 mod headless;
+mod host;
 mod kernels;
 mod options;
 pub(crate) mod passes;
@@ -19,12 +26,18 @@ mod quirks;
 mod scene;
 mod self_test;
 mod shader;
+#[cfg(not(target_arch = "wasm32"))]
+mod waiting;
 
 pub use error::GpuError;
 pub use headless::Headless;
 pub use headless::plan::{DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans};
 pub use headless::progress::{Decision, Picture, Progress, Watch};
 pub use headless::timer::TraceTime;
+pub use host::composite::{Composite, CompositePicture};
+pub use host::composite_options::{CompositeDepth, CompositeOptions, TargetEncoding};
+pub use host::depth_test::{DepthTest, HostDepth};
+pub use host::pick::{PickError, Picked, PickedHit, Picker};
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::{DataTargets, Frame, Targets};
@@ -32,6 +45,8 @@ pub use passes::renderer::Renderer;
 pub use passes::renderer_options::{Query, RendererOptions};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
-pub use scene::structures::{Retry, Structures, with_retries};
+#[cfg(not(target_arch = "wasm32"))]
+pub use scene::structures::with_retries;
+pub use scene::structures::{Retry, Structures, with_retries_async};
 pub use self_test::{PropertyOutcome, SelfTestExtent, SelfTestReport, TestedProperty};
 pub use shader::formats::ColorTarget;

@@ -120,7 +120,11 @@ fn modules_of_the_gpu_do_not_import_each_other_in_circles() {
 
 #[test]
 fn only_headless_submits_polls_and_waits() {
-    assert_absent("src", &[".submit(", ".poll(", "map_async"], &["gpu/headless/mod.rs"]);
+    let calls = [".submit(", ".poll(", "map_async", "on_submitted_work_done"];
+    assert_absent("src", &calls, &["gpu/headless/mod.rs", "gpu/headless/waiting.rs"]);
+    // Blocking forms are separate from what they wait for.
+    let but = ["src/gpu/waiting.rs"];
+    assert_absent("src", &["pollster::"], &but);
 }
 
 #[test]

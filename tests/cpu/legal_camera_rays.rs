@@ -3,14 +3,16 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DMat4, DVec2, DVec3};
 use pinhole::camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+    Camera, DepthOrder, FisheyeCamera, HostCamera, OrthographicCamera, PanoramaCamera,
+    PinholeCamera, Pose, ThinLensCamera,
 };
 use pinhole::glam;
 use pinhole::verify::{Interval, LegalCameraRay, UploadedView};
 
 use crate::legal_device::{Habit, LegalDevice};
+use crate::support::hosts::{Convention, view};
 
 const CASES: usize = 400_000;
 
@@ -32,7 +34,7 @@ fn any_camera(random: &mut fastrand::Rng) -> Box<dyn Camera> {
     let pose = Pose::looking_along(eye, unit(random), unit(random)).unwrap();
     let pinhole = PinholeCamera::new(pose, distance, half_extent).unwrap();
     let panorama = PanoramaCamera::new(pose);
-    match random.u8(0..8) {
+    match random.u8(0..9) {
         0 => Box::new(pinhole),
         1 => Box::new(pinhole.stereo_pair(separation, convergence).unwrap()[random.usize(0..2)]),
         2 => Box::new(OrthographicCamera::new(pose, half_extent).unwrap()),
@@ -40,10 +42,23 @@ fn any_camera(random: &mut fastrand::Rng) -> Box<dyn Camera> {
         4 => Box::new(panorama),
         5 => Box::new(panorama.stereo_pair(separation, convergence).unwrap()[random.usize(0..2)]),
         6 => Box::new(FisheyeCamera::new(pose, TAU, half_extent[0]).unwrap()),
+        7 => Box::new(any_host(random, pose, half_extent)),
         _ => {
             Box::new(FisheyeCamera::new(pose, TAU * (1.0 - random.f64()), half_extent[0]).unwrap())
         }
     }
+}
+
+/// Right, up and forward are at any angles.
+fn any_host(random: &mut fastrand::Rng, pose: Pose, half: [f64; 2]) -> HostCamera {
+    let convention = [Convention::Perspective, Convention::Orthographic][random.usize(0..2)];
+    let [x, y] = half.map(|half| (random.f64() - 0.5) * half);
+    let edges = [x - half[0], x + half[0], y - half[1], y + half[1]];
+    let projection = convention.projection(edges, [0.1, 10.0], -1.0);
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis + 0.4 * unit(random));
+    let sheared = DMat4::from_mat3(DMat3::from_cols(axes[0], axes[1], axes[2]));
+    let to_view = view(&pose, -1.0) * sheared;
+    HostCamera::new(to_view, projection, DepthOrder::NearIsZero).unwrap()
 }
 
 fn length_of(random: &mut fastrand::Rng) -> f64 {

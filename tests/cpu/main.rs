@@ -35,6 +35,7 @@ mod framing;
 mod fuzz;
 mod generate;
 mod grid_check;
+mod host_camera;
 mod hostile_rays;
 mod invariants;
 mod legal_camera;

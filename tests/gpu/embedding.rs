@@ -126,7 +126,7 @@ pub(crate) fn size_of_film(film: &Film) -> [u32; 2] {
 }
 
 /// The expected bytes, computed from the ids of the CPU reference, so that no rounding is involved.
-fn expected_bytes(view: &View) -> Vec<u8> {
+pub(crate) fn expected_bytes(view: &View) -> Vec<u8> {
     let reference = view.reference();
     let background = view.settings.background;
     let color = |id: &u32| {

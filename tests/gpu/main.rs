@@ -11,10 +11,12 @@ mod support;
 
 mod agreement;
 mod appearance;
+mod async_forms;
 mod compute;
 mod device;
 mod embedding;
 mod faults;
+mod host;
 mod lens;
 mod light;
 mod parts;
@@ -36,12 +38,14 @@ fn main() {
         let groups = [
             agreement::trials(),
             appearance::trials(),
+            async_forms::trials(),
             lens::trials(),
             light::trials(),
             pictures::trials(),
             parts::trials(),
             paths::trials(),
             embedding::trials(),
+            host::trials(),
             device::trials(),
             structures::trials(),
             plan::trials(),

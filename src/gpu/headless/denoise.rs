@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Buffer, BufferUsages, ComputePassDescriptor};
 
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::Checks;
+use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::scene::scene_buffers::binding_limit;
@@ -36,11 +37,11 @@ pub(in crate::gpu) fn denoise_kernel() -> Kernel {
 }
 
 impl Headless {
-    /// Returns a picture with less noise: light is averaged over pixels of similar shape and colour, in five passes.
+    /// Returns a picture with less noise like [`Headless::denoise`], without blocking the thread.
     ///
     /// # Errors
-    /// If the picture lacks one of the layers in [`crate::image::denoise::GUIDES`], or if the device fails.
-    pub fn denoise(&self, image: &Image) -> Result<Image, GpuError> {
+    /// The same as for [`Headless::denoise`].
+    pub async fn denoise_async(&self, image: &Image) -> Result<Image, GpuError> {
         let guided = Guided::of(image)?;
         let (width, height) = (image.width() as usize, image.height() as usize);
         let max_pixels = MAX_STRIP_PIXELS.min(binding_limit(&self.device().limits()) / 16);
@@ -51,7 +52,7 @@ impl Headless {
         for start in (0..height).step_by(rows) {
             let end = (start + rows).min(height);
             let (first, last) = (start.saturating_sub(reach), (end + reach).min(height));
-            let strip = self.denoised_strip(&guided, width, first..last)?;
+            let strip = self.denoised_strip(&guided, width, first..last).await?;
             lights.extend_from_slice(&strip[(start - first) * width..(end - first) * width]);
         }
         let mut denoised = image.clone();
@@ -60,7 +61,7 @@ impl Headless {
     }
 
     /// The light of some rows, filtered with the pixels of these rows only.
-    fn denoised_strip(
+    async fn denoised_strip(
         &self,
         guided: &Guided,
         width: usize,
@@ -71,7 +72,8 @@ impl Headless {
         let bytes = 16 * pixels.len() as u64;
         // These are the width and a part of the height of a film, so they fit into u32.
         let size = [width as u32, rows.len() as u32];
-        let (filter, passes, result, back) = scoped(device, || {
+        let checks = Checks::default();
+        let (filter, passes, result, back) = checks.create(device, || {
             let vectors = storage::<[f32; 4]>(true);
             let kinds = [
                 (0, uniform::<Denoise>()),
@@ -81,7 +83,7 @@ impl Headless {
                 (4, storage::<[f32; 4]>(false)),
             ];
             let layout = layout_of(device, "pinhole denoise", &kinds);
-            let filter = pipeline(device, &denoise_kernel(), &[&layout]);
+            let filter = pipeline(device, &denoise_kernel(), &[&layout], &checks);
             let buffer = |size, usage| {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("pinhole denoise"),
@@ -119,8 +121,8 @@ impl Headless {
             let result = if PASSES & 1 == 0 { front.clone() } else { back.clone() };
             let read = ReadableBuffer::new(device, "pinhole denoise read-back", bytes);
             (filter, passes, result, read)
-        })?;
-        let filter = filter?;
+        });
+        checks.passed().await?;
         let mut encoder = self.encoder();
         for group in &passes {
             let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
@@ -129,7 +131,7 @@ impl Headless {
             pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
         }
         back.record_copy(&mut encoder, &result);
-        self.run(encoder, &[back.buffer()])?;
+        self.run(encoder, &[back.buffer()]).await?;
         back.read(|lights: &[[f32; 4]]| lights.to_vec())
     }
 }

@@ -1,11 +1,10 @@
 //! Collecting the dispatches of lit pictures in submissions that are neither too short nor too long.
 
-use std::time::Instant;
-
 use wgpu::{CommandEncoder, SubmissionIndex};
 
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::lit::{LitFrame, LitPasses, MAX_DISPATCHES, Moment, Recorder, Step};
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -66,14 +65,17 @@ impl<'a> Flow<'a> {
     }
 
     /// Records the dispatches of some samples of a tile, up to `end`, and submits them whenever there are enough.
-    pub(in crate::gpu) fn round(
+    pub(in crate::gpu) async fn round(
         &mut self,
         tile: usize,
         steps: &[Step<'a>],
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         self.begin(tile);
-        steps.iter().try_for_each(|step| self.step(step, after))
+        for step in steps {
+            self.step(step, after).await?;
+        }
+        Ok(())
     }
 
     /// Starts new paths in a tile.
@@ -84,14 +86,14 @@ impl<'a> Flow<'a> {
     }
 
     /// Records a dispatch, divided into slices if it takes long.
-    pub(in crate::gpu) fn step(
+    pub(in crate::gpu) async fn step(
         &mut self,
         step: &Step<'a>,
         after: &mut After<'_>,
     ) -> Result<(), GpuError> {
         // A slice of a list needs one more dispatch.
         if self.recorder.dispatches() + 2 > MAX_DISPATCHES {
-            self.send(after)?;
+            self.send(after).await?;
         }
         let whole = self.recorder.groups(step);
         let weight = u64::from(step.layers()) * u64::from(step.rays());
@@ -102,9 +104,12 @@ impl<'a> Flow<'a> {
                 self.gathered += whole.count() * weight;
             }
             self.note_samples(step);
-            return if self.gathered >= submission_size { self.send(after) } else { Ok(()) };
+            return match self.gathered >= submission_size {
+                true => self.send(after).await,
+                false => Ok(()),
+            };
         }
-        self.send(after)?;
+        self.send(after).await?;
         let mut left = vec![whole];
         while let Some(slice) =
             Groups::take(&mut left, (self.scene.submission_size().groups() / weight).max(1))
@@ -115,10 +120,10 @@ impl<'a> Flow<'a> {
                 self.note_samples(step);
             } else if step.moment == Some(Moment::Accumulated) {
                 // All pixels of a tile must have the same number of samples when the caller may end the work.
-                self.send(&mut || Ok(()))?;
+                self.send(&mut || Ok(())).await?;
                 continue;
             }
-            self.send(after)?;
+            self.send(after).await?;
         }
         Ok(())
     }
@@ -137,7 +142,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Submits the recorded commands, and waits until the previous submission has finished.
-    fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+    async fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         let Some(encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -150,34 +155,37 @@ impl<'a> Flow<'a> {
         }
         let groups = std::mem::take(&mut self.gathered);
         let before = self.submitted.replace(Submitted { index, at, groups });
-        self.wait_for(before)?;
+        self.wait_for(before).await?;
         after()
     }
 
     /// Submits the recorded commands, and waits until all work has finished and the buffers are mapped.
-    pub(in crate::gpu) fn finish(&mut self, mapped: &[&wgpu::Buffer]) -> Result<(), GpuError> {
-        self.send(&mut || Ok(()))?;
+    pub(in crate::gpu) async fn finish(
+        &mut self,
+        mapped: &[&wgpu::Buffer],
+    ) -> Result<(), GpuError> {
+        self.send(&mut || Ok(())).await?;
         let last = self.submitted.take();
         if let Some(Submitted { index, .. }) = &last {
-            self.headless.wait(mapped, index.clone())?;
+            self.headless.wait(mapped, index.clone()).await?;
         }
-        self.wait_for(last)
+        self.wait_for(last).await
     }
 
     /// Discards the recorded commands, and waits until all submitted work has finished.
-    pub(in crate::gpu) fn abandon(&mut self) -> Result<(), GpuError> {
+    pub(in crate::gpu) async fn abandon(&mut self) -> Result<(), GpuError> {
         self.encoder = None;
         self.accumulated.clear();
         self.recorder.take_parameters();
         let last = self.submitted.take();
-        self.wait_for(last)
+        self.wait_for(last).await
     }
 
-    fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
+    async fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
         let Some(Submitted { index, at, groups }) = submitted else {
             return Ok(());
         };
-        self.headless.wait(&[], index)?;
+        self.headless.wait(&[], index).await?;
         // The device began this work when it was submitted, or when the previous submission had finished.
         let elapsed = at.max(self.last_done).elapsed();
         self.last_done = Instant::now();
@@ -188,7 +196,10 @@ impl<'a> Flow<'a> {
 
     /// Computes the sums, over all pixels, of the variances of their means and of their luminances. All pixels must
     /// have the same number of samples.
-    pub(in crate::gpu) fn variations(&mut self, passes: &LitPasses) -> Result<[f64; 2], GpuError> {
+    pub(in crate::gpu) async fn variations(
+        &mut self,
+        passes: &LitPasses,
+    ) -> Result<[f64; 2], GpuError> {
         let mut sums = [0.0; 2];
         for (tile, samples) in self.samples.clone().into_iter().enumerate() {
             self.recorder.tile = tile;
@@ -196,7 +207,7 @@ impl<'a> Flow<'a> {
             let encoder = self.encoder.get_or_insert_with(|| headless.encoder());
             let written = self.recorder.record_noise(encoder, passes.noise(), samples);
             frame.record_copy_variations(encoder);
-            self.finish(&[frame.variations_back.buffer()])?;
+            self.finish(&[frame.variations_back.buffer()]).await?;
             frame.variations_back.read(|found: &[[f32; 2]]| {
                 for [variance, light] in &found[..written] {
                     sums[0] += f64::from(*variance);

@@ -26,7 +26,7 @@ fn batch(done: u32, total: u32) -> u32 {
 
 impl Headless {
     /// Renders a lit picture of a scene that is already on this device.
-    pub(in crate::gpu) fn render_lit(
+    pub(in crate::gpu) async fn render_lit(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -37,21 +37,21 @@ impl Headless {
         settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let wanted = settings.layers_for(layers);
-        let mut image = self.data_layers(scene, view, settings, wanted, watch)?;
+        let mut image = self.data_layers(scene, view, settings, wanted, watch).await?;
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
         let key = scenes.key(view, &lighting, &self.device().limits());
         let steps = LitKey { one_pass: None, ..key };
         let key = if self.is_one_pass() { key } else { steps };
-        let gathered = self.gather(key, scenes, view, settings, &lighting, &mut image, watch);
+        let gathered = self.gather(key, scenes, view, settings, &lighting, &mut image, watch).await;
         let (samples, totals) = match gathered {
             // Several rays in one invocation need more steps than one ray.
             Err(GpuError::Steps) if key != steps => {
-                self.gather(steps, scenes, view, settings, &lighting, &mut image, watch)?
+                self.gather(steps, scenes, view, settings, &lighting, &mut image, watch).await?
             }
             done => done?,
         };
         if settings.is_denoised {
-            image = self.denoise(&image)?;
+            image = self.denoise_async(&image).await?;
         }
         if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
             outline::draw(&mut image, &lines);
@@ -64,7 +64,7 @@ impl Headless {
     /// Takes all samples with the passes of a key, and writes their means to the image. Returns the number of samples
     /// that every pixel has.
     #[expect(clippy::too_many_arguments, reason = "they are those of one picture")]
-    fn gather(
+    async fn gather(
         &self,
         key: LitKey,
         scenes: LitScene<'_>,
@@ -74,23 +74,24 @@ impl Headless {
         image: &mut Image,
         watch: &mut Watch<'_>,
     ) -> Result<(u32, Totals), GpuError> {
-        self.with_lit_passes(key, |passes| {
+        self.with_lit_passes(key, async |passes: &LitPasses| {
             let work =
                 Work { headless: self, passes, scenes, view, settings, lighting, at_once: AT_ONCE };
-            match work.gather(image, watch) {
+            match work.gather(image, watch).await {
                 // Several directions of ambient light in one invocation need more steps than one direction.
                 Err(GpuError::Steps)
                     if key.one_pass.is_none() && lighting.parameters.occlusion_samples > 1 =>
                 {
-                    Work { at_once: 1, ..work }.gather(image, watch)
+                    Work { at_once: 1, ..work }.gather(image, watch).await
                 }
                 done => done,
             }
         })
+        .await
     }
 
     /// Renders the layers that are not averaged over samples, but belong to the ray through the centre of each pixel.
-    fn data_layers(
+    async fn data_layers(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -109,7 +110,7 @@ impl Headless {
             Decision::Stop => Decision::Stop,
             _ => Decision::GoOn,
         };
-        self.render_primary(scene, view, &PrimarySettings::default(), layers, watch)
+        self.render_primary(scene, view, &PrimarySettings::default(), layers, watch).await
     }
 }
 
@@ -128,7 +129,11 @@ struct Work<'a> {
 impl Work<'_> {
     /// Takes samples until all are complete or the caller finishes the render, and writes their means to the image.
     /// Returns the number of samples that every pixel has.
-    fn gather(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(u32, Totals), GpuError> {
+    async fn gather(
+        &self,
+        image: &mut Image,
+        watch: &mut Watch<'_>,
+    ) -> Result<(u32, Totals), GpuError> {
         let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
         let total = settings.sampling.samples;
@@ -136,7 +141,7 @@ impl Work<'_> {
         let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let tiles = tiles(&view.film, sizes.tile);
         let records = tiles.map(|tile| (tile, scenes.frames(view, region, tile, limit)));
-        let frame = LitFrame::new(device, queue, passes, sizes, lighting, records)?;
+        let frame = LitFrame::new(device, queue, passes, sizes, lighting, records).await?;
         let mut flow = Flow::new(headless, &frame, passes, scenes.all);
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
         let mut wants_noise = false;
@@ -144,21 +149,22 @@ impl Work<'_> {
             let first = progress.samples;
             let end = first + batch(first, total);
             let mut decision = Decision::GoOn;
-            match self.batch(&frame, &mut flow, first..end, &mut |part| {
+            let go_on = &mut |part| {
                 progress.part = part;
                 decision = watch(&progress);
                 matches!(decision, Decision::GoOn | Decision::MeasureNoise)
-            }) {
+            };
+            match self.batch(&frame, &mut flow, first..end, go_on).await {
                 Err(GpuError::Stopped) if decision == Decision::Finish && first > 0 => {
-                    flow.abandon()?;
-                    check_spent(&frame, &mut flow)?;
+                    flow.abandon().await?;
+                    check_spent(&frame, &mut flow).await?;
                     break;
                 }
                 done => done?,
             }
             progress.samples = end;
             if wants_noise || decision == Decision::MeasureNoise {
-                let [variance, light] = flow.variations(passes)?;
+                let [variance, light] = flow.variations(passes).await?;
                 let pixels = view.film.pixel_count();
                 progress.noise = Totals { opacity: 0.0, variance, light, pixels }.noise(end);
             }
@@ -174,7 +180,7 @@ impl Work<'_> {
         for (number, tile) in frame.tiles.iter().enumerate() {
             let samples = flow.samples[number];
             frame.record_copy_film(flow.encoder(), number);
-            flow.finish(&[frame.film_back.buffer()])?;
+            flow.finish(&[frame.film_back.buffer()]).await?;
             frame.film_back.read(|found| {
                 totals.add(&sums::write(image, tile.tile, found, samples));
             })?;
@@ -186,7 +192,7 @@ impl Work<'_> {
 
     /// Takes some samples of every pixel. `go_on` is called with the completed fraction of all work, and decides
     /// whether to continue.
-    fn batch<'a>(
+    async fn batch<'a>(
         &'a self,
         frame: &'a LitFrame,
         flow: &mut Flow<'a>,
@@ -212,20 +218,21 @@ impl Work<'_> {
                 let in_tile = f64::from(start - samples.start) / count;
                 let done = count * (tile as f64 + in_tile) / tiles as f64;
                 let part = (f64::from(samples.start) + done) / total;
-                flow.round(tile, &round.steps(start..end)?, &mut || match go_on(part) {
+                let mut after = || match go_on(part) {
                     true => Ok(()),
                     false => Err(GpuError::Stopped),
-                })?;
+                };
+                flow.round(tile, &round.steps(start..end)?, &mut after).await?;
                 start = end;
             }
         }
-        check_spent(frame, flow)
+        check_spent(frame, flow).await
     }
 }
 
 /// Waits for all submitted work, and returns an error if the searches of some rays were abandoned.
-fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
+async fn check_spent(frame: &LitFrame, flow: &mut Flow<'_>) -> Result<(), GpuError> {
     frame.record_copy_spent(flow.encoder());
-    flow.finish(&[frame.spent_back.buffer()])?;
+    flow.finish(&[frame.spent_back.buffer()]).await?;
     frame.read_spent()
 }

@@ -3,7 +3,8 @@
 use wgpu::ComputePassDescriptor;
 
 use crate::camera::View;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::tile_textures::TileTextures;
@@ -17,21 +18,24 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::render::PrimarySettings;
 
 impl Headless {
-    /// Traces a ray through the centre of every pixel and discards the hits, to measure the time that this takes.
+    /// Measures like [`Headless::measure`], without blocking the thread.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`].
-    pub fn measure(
+    /// The same as for [`Headless::render_async`].
+    pub async fn measure_async(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
         query: Query,
     ) -> Result<TraceTime, GpuError> {
         let key = RendererKey { query, ..RendererKey::new(scene, view.camera) };
-        self.with_renderer(key, |renderer| self.measure_with(renderer, scene, view))
+        self.with_renderer(key, async |renderer: &Renderer| {
+            self.measure_with(renderer, scene, view).await
+        })
+        .await
     }
 
-    fn measure_with(
+    async fn measure_with(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
@@ -39,18 +43,18 @@ impl Headless {
     ) -> Result<TraceTime, GpuError> {
         let tile_size = tile_size(&self.device().limits(), &view.film, renderer.keeps_rays);
         let textures =
-            scoped(self.device(), || TileTextures::new(self.device(), tile_size, false))?;
-        let mut frame = Frame::new(renderer, self.device(), &textures.targets())?;
-        let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue()))?;
+            scoped(self.device(), || TileTextures::new(self.device(), tile_size, false)).await?;
+        let mut frame = Frame::new_async(renderer, self.device(), &textures.targets()).await?;
+        let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue())).await?;
         let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
         // wgpu clears a buffer when it is first used; this must not be measured.
         let mut encoder = self.encoder();
         frame.record_clear(&mut encoder);
-        self.run(encoder, &[])?;
+        self.run(encoder, &[]).await?;
         let mut time = TraceTime::default();
         for tile in tiles(&view.film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, &PrimarySettings::default());
-            for part in frame.parts() {
+            for part in frame.parts().collect::<Vec<_>>() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.band, groups.first);
@@ -65,7 +69,7 @@ impl Headless {
                     if let Some(timer) = &timer {
                         timer.record_copy(&mut encoder);
                     }
-                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer)?;
+                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer).await?;
                     time.pixels += groups.pixels();
                     time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
                 }
@@ -73,7 +77,7 @@ impl Headless {
         }
         let mut encoder = self.encoder();
         textures.status().record_copy(&mut encoder, frame.status());
-        self.run(encoder, &[textures.status().buffer()])?;
+        self.run(encoder, &[textures.status().buffer()]).await?;
         match textures.status().read(|words: &[u32]| words[0])? {
             0 => Ok(time),
             _ => Err(GpuError::Steps),

@@ -2,6 +2,8 @@
 //!
 //! No other file of the library submits work to a device, polls it, or waits for it.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod blocking;
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
 pub(in crate::gpu) mod lit_flow;
@@ -19,10 +21,11 @@ pub(in crate::gpu) mod renderers;
 pub(in crate::gpu) mod submission_size;
 pub(in crate::gpu) mod tile_textures;
 pub(in crate::gpu) mod timer;
+pub(in crate::gpu) mod waiting;
 
 use std::convert::Infallible;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 
 use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 
@@ -34,6 +37,7 @@ use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::progress::{Picture, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
+use crate::gpu::headless::waiting::{Instant, Turns};
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
@@ -43,7 +47,7 @@ use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::shape_ids::ShapeIds;
-use crate::gpu::scene::structures::{Structures, with_retries};
+use crate::gpu::scene::structures::{Structures, with_retries_async};
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use crate::image::{Image, LayerSet};
 use crate::render::RenderSettings;
@@ -59,21 +63,21 @@ pub struct Headless {
     is_indirect: bool,
     is_one_pass: bool,
     faults: Arc<Faults>,
-    /// The renderers that were built so far. The mutex is locked during a whole render, because faults that wgpu
-    /// reports cannot be attributed to a render.
-    renderers: Mutex<Renderers>,
+    /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
+    /// be attributed to a render.
+    renderers: Turns<Renderers>,
 }
 
 impl Headless {
-    /// Opens a device on the first of [`adapter::candidates`] that can open one.
+    /// Opens a device on the first of [`adapter::candidates_async`] that can open one, without blocking the thread.
     ///
     /// # Errors
     /// If there is no such adapter, or if none can open a device; the error is then that of the first.
-    pub fn open(options: &HeadlessOptions) -> Result<Self, GpuError> {
+    pub async fn open_async(options: &HeadlessOptions) -> Result<Self, GpuError> {
         // The error of the best adapter, which is returned if all fail.
         let mut refusal = GpuError::NoAdapter;
-        for adapter in &adapter::candidates(options.adapter.as_deref())? {
-            match Self::from_adapter(adapter, options) {
+        for adapter in &adapter::candidates_async(options.adapter.as_deref()).await? {
+            match Self::from_adapter_async(adapter, options).await {
                 Ok(headless) => return Ok(headless),
                 Err(error) if refusal == GpuError::NoAdapter => refusal = error,
                 Err(_) => {}
@@ -82,20 +86,24 @@ impl Headless {
         Err(refusal)
     }
 
-    /// Opens a device on the given adapter. The adapter's name in the options is ignored.
+    /// Opens a device on the given adapter like [`Headless::open_async`]. The adapter's name in the options is ignored.
     ///
     /// # Errors
     /// If the adapter cannot open a device.
-    pub fn from_adapter(adapter: &Adapter, options: &HeadlessOptions) -> Result<Self, GpuError> {
+    pub async fn from_adapter_async(
+        adapter: &Adapter,
+        options: &HeadlessOptions,
+    ) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        let descriptor = wgpu::DeviceDescriptor {
             label: Some("pinhole"),
             required_features: adapter.features() & wanted_features(info.device_type),
             required_limits: required_limits(&adapter.limits(), options.limits),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
-        }))
-        .map_err(|error| GpuError::NoDevice {
+        };
+        let opened = adapter.request_device(&descriptor).await;
+        let (device, queue) = opened.map_err(|error| GpuError::NoDevice {
             adapter: info.name.clone(),
             message: error.to_string(),
         })?;
@@ -112,7 +120,7 @@ impl Headless {
         let downlevel = adapter.get_downlevel_capabilities().flags;
         let is_indirect =
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
-        let renderers = Mutex::new(Renderers::new(options.edits.clone()));
+        let renderers = Turns::new(Renderers::new(options.edits.clone()));
         let is_one_pass = options.one_pass;
         Ok(Self { info, device, queue, timeout, is_indirect, is_one_pass, faults, renderers })
     }
@@ -145,26 +153,34 @@ impl Headless {
         &self.queue
     }
 
-    /// Tests whether the arithmetic of the device has the properties that the error bounds of the checker assume.
+    /// Tests the arithmetic of the device like [`Headless::self_test`], without blocking the thread while the device
+    /// works.
     ///
     /// # Errors
-    /// If the device fails. A property that the device lacks is not an error; the report contains it.
-    pub fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
-        self.alone(|_| {
-            let run = SelfTestRun::new(&self.device, extent)?;
+    /// The same as for [`Headless::self_test`].
+    pub async fn self_test_async(
+        &self,
+        extent: SelfTestExtent,
+    ) -> Result<SelfTestReport, GpuError> {
+        self.alone(async |_: &mut Renderers| {
+            let run = SelfTestRun::new(&self.device, extent).await?;
             let mut encoder = self.encoder();
             run.record(&mut encoder);
-            self.run(encoder, &run.buffers())?;
+            self.run(encoder, &run.buffers()).await?;
             run.judge()
         })
+        .await
     }
 
-    /// Copies a scene to the device, brick by brick, with the structures that were built for it. They come from
-    /// [`RenderPlan::build`](crate::gpu::RenderPlan::build), or from a single [`Accel`].
+    /// Copies a scene to the device like [`Headless::upload`], without blocking the thread while the device works.
     ///
     /// # Errors
-    /// If the scene does not fit into the device's memory or limits, or if the device fails.
-    pub fn upload(&self, scene: &Scene, structures: &Structures) -> Result<SceneBuffers, GpuError> {
+    /// The same as for [`Headless::upload`].
+    pub async fn upload_async(
+        &self,
+        scene: &Scene,
+        structures: &Structures,
+    ) -> Result<SceneBuffers, GpuError> {
         let Structures { accel, occluders } = structures;
         // This renderer only provides the bind group layouts. Equal layouts of one device are compatible.
         let options = RendererOptions {
@@ -172,34 +188,32 @@ impl Headless {
             structures: [accel].into_iter().chain(occluders).map(Accel::structure).collect(),
             ..RendererOptions::default()
         };
-        self.alone(|_| {
-            let renderer = Renderer::new(&self.device, &options)?;
+        self.alone(async |_: &mut Renderers| {
+            let renderer = Renderer::new_async(&self.device, &options).await?;
             let (device, queue) = (&self.device, &self.queue);
-            let upload = |summary, accel, ids: &ShapeIds| {
-                SceneBuffers::upload(&renderer, device, queue, summary, accel, ids, || {
-                    let submission = queue.submit([]);
-                    self.wait(&[], submission)
-                })
+            let flush = async || {
+                let submission = queue.submit([]);
+                self.wait(&[], submission).await
             };
-            let ids = ShapeIds::of_all(scene, accel);
-            let all = upload(SceneSummary::of(scene), accel, &ids)?;
-            let of_occluders = |accel| {
-                upload(SceneSummary::of_occluders(scene), accel, &ShapeIds::of_opaque(scene))
+            let (summary, ids) = (SceneSummary::of(scene), ShapeIds::of_all(scene, accel));
+            let all = SceneBuffers::upload(&renderer, device, queue, summary, accel, &ids, flush);
+            let all = all.await?;
+            let Some(accel) = occluders else {
+                return Ok(all);
             };
-            Ok(all.with_occluders(occluders.as_ref().map(of_occluders).transpose()?))
+            let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
+            let some = SceneBuffers::upload(&renderer, device, queue, summary, accel, &ids, flush);
+            Ok(all.with_occluders(some.await?))
         })
+        .await
     }
 
-    /// Renders a picture.
-    ///
-    /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
-    /// bricks; the picture depends on neither. If rays need too many steps in the structure that suits the data,
-    /// another structure is built. A device renders one picture at a time; other threads wait.
+    /// Renders a picture like [`Headless::render`], without blocking the thread while the device works. Other work of
+    /// the device waits for its turn.
     ///
     /// # Errors
-    /// If [`RenderSettings::check`] returns an error, if the scene or the picture does not fit into the memory of the
-    /// device or of the host, or if the device fails.
-    pub fn render(
+    /// The same as for [`Headless::render`].
+    pub async fn render_async(
         &self,
         scene: &Scene,
         view: &View<'_>,
@@ -208,45 +222,47 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
-        let picture = self.with_uploaded(scene, plan, |buffers| {
-            self.render_uploaded(buffers, view, settings, layers, &mut go_on)
-        })?;
-        Ok(picture.image)
+        let work = async |buffers: &SceneBuffers| {
+            self.render_uploaded_async(buffers, view, settings, layers, &mut go_on).await
+        };
+        Ok(self.with_uploaded(scene, plan, work).await?.image)
     }
 
     /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
     /// structures, this is repeated with others.
-    pub(in crate::gpu) fn with_uploaded<T>(
+    pub(in crate::gpu) async fn with_uploaded<T>(
         &self,
         scene: &Scene,
         plan: impl Fn(AccelChoice) -> RenderPlan,
-        work: impl Fn(&SceneBuffers) -> Result<T, GpuError>,
+        work: impl AsyncFn(&SceneBuffers) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let done: Result<_, Infallible> = with_retries(
+        let done: Result<_, Infallible> = with_retries_async(
             AccelChoice::Auto,
             plan,
             |_| {},
-            |plan| {
+            async |plan: &RenderPlan| {
                 let structures = plan.build(scene);
-                let buffers = self.upload(scene, &structures);
+                let buffers = self.upload_async(scene, &structures).await;
                 drop(structures);
-                Ok(buffers.and_then(|buffers| work(&buffers)))
+                Ok(match buffers {
+                    Ok(buffers) => work(&buffers).await,
+                    Err(error) => Err(error),
+                })
             },
-        );
+        )
+        .await;
         match done {
             Ok(done) => done,
             Err(never) => match never {},
         }
     }
 
-    /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every
-    /// submission, and decides how the render continues.
+    /// Renders a picture of a scene that is already on this device like [`Headless::render_uploaded`], without blocking
+    /// the thread while the device works.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
-    /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
-    /// uploaded without the structure of the spheres that cast shadows.
-    pub fn render_uploaded(
+    /// The same as for [`Headless::render_uploaded`].
+    pub async fn render_uploaded_async(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -256,16 +272,16 @@ impl Headless {
     ) -> Result<Picture, GpuError> {
         if settings.integrator.is_primary() {
             let primary = scene.primary_settings(settings)?;
-            let image = self.render_primary(scene, view, &primary, layers, watch)?;
+            let image = self.render_primary(scene, view, &primary, layers, watch).await?;
             Ok(Picture { image, samples: 1, noise: None, hits: None })
         } else {
-            self.render_lit(scene, view, settings, layers, watch)
+            self.render_lit(scene, view, settings, layers, watch).await
         }
     }
 
     /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and
     /// records the elapsed time for the size of the next submission.
-    pub(in crate::gpu) fn submit_slice(
+    pub(in crate::gpu) async fn submit_slice(
         &self,
         encoder: CommandEncoder,
         groups: Groups,
@@ -273,7 +289,7 @@ impl Headless {
         mapped: &[&wgpu::Buffer],
     ) -> Result<Duration, GpuError> {
         let started = Instant::now();
-        self.run(encoder, mapped)?;
+        self.run(encoder, mapped).await?;
         let elapsed = started.elapsed();
         scene.adapt_submission_size(groups, elapsed);
         Ok(elapsed)
@@ -293,40 +309,49 @@ impl Headless {
         }
     }
 
-    /// Calls `work` with the renderer for a key, while no other thread uses this device.
-    pub(in crate::gpu) fn with_renderer<T>(
+    /// Calls `work` with the renderer for a key, while nothing else uses this device.
+    pub(in crate::gpu) async fn with_renderer<T>(
         &self,
         key: RendererKey,
-        work: impl FnOnce(&Renderer) -> Result<T, GpuError>,
+        work: impl AsyncFnOnce(&Renderer) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        self.alone(|renderers| renderers.of(&self.device, key).and_then(work))
+        self.alone(async |renderers: &mut Renderers| {
+            work(renderers.of(&self.device, key).await?).await
+        })
+        .await
     }
 
-    /// Calls `work` with the passes for a key, while no other thread uses this device.
-    pub(in crate::gpu) fn with_lit_passes<T>(
+    /// Calls `work` with the passes for a key, while nothing else uses this device.
+    pub(in crate::gpu) async fn with_lit_passes<T>(
         &self,
         key: LitKey,
-        work: impl FnOnce(&LitPasses) -> Result<T, GpuError>,
+        work: impl AsyncFnOnce(&LitPasses) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        self.alone(|renderers| renderers.lit(&self.device, key).and_then(work))
+        self.alone(async |renderers: &mut Renderers| {
+            work(renderers.lit(&self.device, key).await?).await
+        })
+        .await
     }
 
-    /// Calls `work` with the pass that writes new colours, while no other thread uses this device.
-    pub(in crate::gpu) fn with_recolor<T>(
+    /// Calls `work` with the pass that writes new colours, while nothing else uses this device.
+    pub(in crate::gpu) async fn with_recolor<T>(
         &self,
-        work: impl FnOnce(&Recolor) -> Result<T, GpuError>,
+        work: impl AsyncFnOnce(&Recolor) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        self.alone(|renderers| renderers.recolor(&self.device).and_then(work))
+        self.alone(async |renderers: &mut Renderers| {
+            work(renderers.recolor(&self.device).await?).await
+        })
+        .await
     }
 
-    /// Calls `work` while no other thread uses this device.
-    fn alone<T>(
+    /// Calls `work` while nothing else uses this device.
+    async fn alone<T>(
         &self,
-        work: impl FnOnce(&mut Renderers) -> Result<T, GpuError>,
+        work: impl AsyncFnOnce(&mut Renderers) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let mut renderers = self.renderers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut turn = self.renderers.turn().await;
         self.faults.forget();
-        work(&mut renderers).map_err(|error| self.explained(error))
+        work(&mut turn.value).await.map_err(|error| self.explained(error))
     }
 
     /// Submits an encoder without waiting.
@@ -335,39 +360,47 @@ impl Headless {
     }
 
     /// Submits an encoder, and waits until it has finished and the buffers are mapped.
-    pub(in crate::gpu) fn run(
+    pub(in crate::gpu) async fn run(
         &self,
         encoder: CommandEncoder,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
         let submission = self.start(encoder);
-        self.wait(mapped, submission)
+        self.wait(mapped, submission).await
     }
 
     /// Waits until a submission has finished and the buffers are mapped.
-    pub(in crate::gpu) fn wait(
+    pub(in crate::gpu) async fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,
     ) -> Result<(), GpuError> {
+        let mut answers = Vec::new();
         for buffer in mapped {
-            let faults = Arc::clone(&self.faults);
-            buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-                if let Err(error) = mapped {
-                    faults.report(GpuError::Device { message: error.to_string() });
-                }
-            });
+            let (answer, to_answer) = waiting::answer();
+            buffer.map_async(wgpu::MapMode::Read, .., |mapped| to_answer.give(mapped));
+            answers.push(answer);
         }
-        let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index: Some(submission),
-            timeout: Some(self.timeout),
-        });
-        // A fault that the device reported explains more than the failure of the poll.
+        let done = waiting::until_done(&self.device, &self.queue, submission, self.timeout).await;
+        // A fault that the device reported explains more than the failure of the wait.
         self.faults.check()?;
-        match polled {
-            Ok(_) => Ok(()),
-            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout { waited: self.timeout }),
-            Err(error) => Err(GpuError::Device { message: error.to_string() }),
+        match done {
+            Ok(()) => {}
+            Err(wgpu::PollError::Timeout) => {
+                return Err(GpuError::Timeout { waited: self.timeout });
+            }
+            Err(error) => return Err(GpuError::Device { message: error.to_string() }),
         }
+        for answer in answers {
+            // Native devices map buffers before they report the end of the submission; browsers promise no order.
+            let mapped = match cfg!(target_arch = "wasm32") {
+                true => Some(answer.await),
+                false => answer.known(),
+            };
+            if let Some(Err(error)) = mapped {
+                return Err(GpuError::Device { message: error.to_string() });
+            }
+        }
+        self.faults.check()
     }
 }

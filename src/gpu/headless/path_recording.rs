@@ -39,12 +39,12 @@ struct PathRecorder<'a> {
 
 impl PathRecorder<'_> {
     /// Reads the state that a pass has changed.
-    fn read(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
+    async fn read(&mut self, flow: &mut Flow<'_>, moment: Moment) -> Result<(), GpuError> {
         let frame = self.frame;
         if moment == Moment::Accumulated {
             frame.record_copy_film(flow.encoder(), 0);
             frame.record_copy_spent(flow.encoder());
-            flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()])?;
+            flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()]).await?;
             let used = FILM_SLOTS as usize * self.pixels;
             self.sample.sums = frame.film_back.read(|sums: &[[u32; 4]]| {
                 let sums = sums[..used].chunks_exact(FILM_SLOTS as usize);
@@ -54,7 +54,7 @@ impl PathRecorder<'_> {
             return frame.read_spent();
         }
         self.paths.record_copy(flow.encoder(), &frame.paths);
-        flow.finish(&[self.paths.buffer()])?;
+        flow.finish(&[self.paths.buffer()]).await?;
         let pixels = self.pixels;
         let (states, hits) = self.paths.read(|vectors: &[[u32; 4]]| {
             let slot = |which: usize, index: usize| vectors[which * pixels + index];
@@ -113,14 +113,11 @@ fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
 }
 
 impl Headless {
-    /// Traces the paths of some samples and records their state after every pass, from which
-    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. If a side of the film has
-    /// more than 256 pixels, only a rectangle in the middle of the film is recorded.
+    /// Records paths like [`Headless::record_paths`], without blocking the thread.
     ///
     /// # Errors
-    /// [`GpuError::NotPaths`] if the integrator is not `path`; the same errors as for [`Headless::render_uploaded`];
-    /// [`GpuError::Stopped`] if `watch` finishes or stops the recording.
-    pub fn record_paths(
+    /// The same as for [`Headless::record_paths`].
+    pub async fn record_paths_async(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -137,21 +134,22 @@ impl Headless {
         let tile = middle_of(&view.film);
         let mut recording = new_recording(scene.space(), view, settings, &lighting);
         let key = scenes.key(view, &lighting, &self.device().limits());
-        self.with_lit_passes(key, |passes| {
+        self.with_lit_passes(key, async |passes: &LitPasses| {
             let (region, limit) =
                 (scenes.visible_region(view, settings), iteration_limit(self.device()));
             let frames = scenes.frames(view, region, tile, limit);
             let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
             let tiles = std::iter::once((tile, frames));
             let frame =
-                LitFrame::new(self.device(), self.queue(), passes, sizes, &lighting, tiles)?;
+                LitFrame::new(self.device(), self.queue(), passes, sizes, &lighting, tiles).await?;
             recording.samples =
-                self.record_samples(passes, scenes, &frame, &lighting, samples, watch)?;
+                self.record_samples(passes, scenes, &frame, &lighting, samples, watch).await?;
             Ok(recording)
         })
+        .await
     }
 
-    fn record_samples(
+    async fn record_samples(
         &self,
         passes: &LitPasses,
         LitScene { all, occluders }: LitScene<'_>,
@@ -187,9 +185,9 @@ impl Headless {
             frame.record_clear_film(flow.encoder(), 0);
             flow.begin(0);
             for step in round.steps(sample..sample + 1)? {
-                flow.step(&step, &mut after)?;
+                flow.step(&step, &mut after).await?;
                 if let Some(moment) = step.moment {
-                    recorder.read(&mut flow, moment)?;
+                    recorder.read(&mut flow, moment).await?;
                     after()?;
                 }
             }

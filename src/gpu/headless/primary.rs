@@ -3,7 +3,8 @@
 use wgpu::ComputePassDescriptor;
 
 use crate::camera::View;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::derived::Derived;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
@@ -30,7 +31,7 @@ pub(in crate::gpu) struct Output<'a> {
 
 impl Headless {
     /// Renders a picture with a ray through the centre of every pixel.
-    pub(in crate::gpu) fn render_primary(
+    pub(in crate::gpu) async fn render_primary(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -40,15 +41,16 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         let data_layers = layers != LayerSet::COLOR;
         let key = RendererKey { data_layers, ..RendererKey::new(scene, view.camera) };
-        self.with_renderer(key, |renderer| {
+        self.with_renderer(key, async |renderer: &Renderer| {
             let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
             let output = Output { image: &mut image, pixels: None };
-            self.render_tiles(renderer, scene, view, primary, output, watch)?;
+            self.render_tiles(renderer, scene, view, primary, output, watch).await?;
             Ok(image)
         })
+        .await
     }
 
-    pub(in crate::gpu) fn render_tiles(
+    pub(in crate::gpu) async fn render_tiles(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
@@ -60,9 +62,9 @@ impl Headless {
         let (device, film) = (self.device(), &view.film);
         let tile_size = tile_size(&device.limits(), film, renderer.keeps_rays);
         let textures =
-            scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers))?;
-        let mut frame = Frame::new(renderer, device, &textures.targets())?;
-        let traced = scoped(device, || ReadableTrace::new(device, &frame))?;
+            scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
+        let mut frame = Frame::new_async(renderer, device, &textures.targets()).await?;
+        let traced = scoped(device, || ReadableTrace::new(device, &frame)).await?;
         let derived = Derived { view: *view, appearance: scene.appearance() };
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
@@ -73,7 +75,7 @@ impl Headless {
                 frame.record_clear(&mut encoder);
             }
             let mut unfinished = Groups::NONE;
-            for part in frame.parts() {
+            for part in frame.parts().collect::<Vec<_>>() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.band, groups.first);
@@ -86,7 +88,7 @@ impl Headless {
                         unfinished = groups;
                         break;
                     }
-                    self.submit_slice(encoder, groups, scene, &[])?;
+                    self.submit_slice(encoder, groups, scene, &[]).await?;
                     done.add(groups, watch)?;
                     encoder = self.encoder();
                 }
@@ -105,7 +107,7 @@ impl Headless {
                 traced.record_copy(&mut encoder, &frame);
                 mapped.extend(traced.buffers());
             }
-            self.submit_slice(encoder, unfinished, scene, &mapped)?;
+            self.submit_slice(encoder, unfinished, scene, &mapped).await?;
             if textures.status().read(|words: &[u32]| words[0])? != 0 {
                 return Err(GpuError::Steps);
             }

@@ -8,6 +8,7 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
 use crate::gpu::headless::renderers::RendererKey;
+use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::image::{Image, LayerSet, NO_ID};
@@ -60,13 +61,11 @@ fn new_recording(
 }
 
 impl Headless {
-    /// Renders a picture of primary rays with all layers and keeps the ray and the hit of every pixel, from which
-    /// [`Checker::certify`] judges the device.
+    /// Records a picture like [`Headless::record`], without blocking the thread.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
-    /// picture. [`Headless::record_paths`] records the paths of such pictures.
-    pub fn record(
+    /// The same as for [`Headless::record`].
+    pub async fn record_async(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
@@ -79,40 +78,39 @@ impl Headless {
             keeps_rays: true,
             ..RendererKey::new(scene, view.camera)
         };
-        self.with_renderer(key, |renderer| {
+        self.with_renderer(key, async |renderer: &Renderer| {
             let mut recording = new_recording(scene.space(), view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
-            self.render_tiles(renderer, scene, view, &primary, output, watch)?;
+            self.render_tiles(renderer, scene, view, &primary, output, watch).await?;
             Ok(recording)
         })
+        .await
     }
 
-    /// Records a picture like [`Headless::record`], and renders the view a second time with
-    /// [`Headless::render_uploaded`], whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
+    /// Records and renders a picture like [`Headless::record_and_render`], without blocking the thread.
     ///
     /// # Errors
     /// The same as for [`Headless::record`].
-    pub fn record_and_render(
+    pub async fn record_and_render_async(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
         settings: &RenderSettings,
         watch: &mut Watch<'_>,
     ) -> Result<Recording, GpuError> {
-        let mut recording = self.record(scene, view, settings, watch)?;
-        let picture = self.render_uploaded(scene, view, settings, LayerSet::DATA, watch)?;
+        let mut recording = self.record_async(scene, view, settings, watch).await?;
+        let layers = LayerSet::DATA;
+        let picture = self.render_uploaded_async(scene, view, settings, layers, watch).await?;
         recording.compare(picture.image);
         Ok(recording)
     }
 
-    /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels
-    /// of [`Headless::render`] and those of [`Headless::record`] are checked, the latter stage by stage.
+    /// Renders and checks a picture like [`Headless::verify`], without blocking the thread while the device works.
     ///
     /// # Errors
-    /// If the picture cannot be rendered, as for [`Headless::record`], or if there is not enough memory to check it. A
-    /// picture that is not legal is not an error.
-    pub fn verify(
+    /// The same as for [`Headless::verify`].
+    pub async fn verify_async(
         &self,
         scene: &Scene,
         view: &View<'_>,
@@ -122,9 +120,10 @@ impl Headless {
             return Err(GpuError::NotPrimary { integrator: settings.integrator.name() });
         }
         let plan = |choice: AccelChoice| self.plan_record(scene, view, choice, 0);
-        let recording = self.with_uploaded(scene, plan, |buffers| {
-            self.record_and_render(buffers, view, settings, &mut go_on)
-        })?;
+        let work = async |buffers: &SceneBuffers| {
+            self.record_and_render_async(buffers, view, settings, &mut go_on).await
+        };
+        let recording = self.with_uploaded(scene, plan, work).await?;
         Ok(Checker::new(scene)?.certify(&recording))
     }
 }

@@ -43,7 +43,7 @@ impl RendererKey {
 }
 
 /// The renderers and passes that have been built so far.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(in crate::gpu) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
     lit: AllLitPasses,
@@ -58,7 +58,7 @@ impl Renderers {
     }
 
     /// Returns the renderer for a key, and builds it if necessary.
-    pub(in crate::gpu) fn of(
+    pub(in crate::gpu) async fn of(
         &mut self,
         device: &Device,
         key: RendererKey,
@@ -80,28 +80,30 @@ impl Renderers {
                     keeps_rays,
                     edits: self.edits.clone(),
                 };
-                Ok(entry.insert(Renderer::new(device, &options)?))
+                Ok(entry.insert(Renderer::new_async(device, &options).await?))
             }
         }
     }
 
     /// Returns the pass that writes new colours, and builds it if necessary.
-    pub(in crate::gpu) fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
+    pub(in crate::gpu) async fn recolor(&mut self, device: &Device) -> Result<&Recolor, GpuError> {
         match &mut self.recolor {
             Some(built) => Ok(built),
-            entry @ None => Ok(entry.insert(Recolor::new(device)?)),
+            entry @ None => Ok(entry.insert(Recolor::new_async(device).await?)),
         }
     }
 
     /// Returns the passes of lit pictures for a key, and builds them if necessary.
-    pub(in crate::gpu) fn lit(
+    pub(in crate::gpu) async fn lit(
         &mut self,
         device: &Device,
         key: LitKey,
     ) -> Result<&LitPasses, GpuError> {
         match self.lit.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(entry) => Ok(entry.insert(LitPasses::new(device, key, &self.edits)?)),
+            Entry::Vacant(entry) => {
+                Ok(entry.insert(LitPasses::new(device, key, &self.edits).await?))
+            }
         }
     }
 }

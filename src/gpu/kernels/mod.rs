@@ -61,5 +61,6 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
     kernels.extend(crate::gpu::passes::lit::all_kernels());
     kernels.push(crate::gpu::headless::denoise::denoise_kernel());
     kernels.push(crate::gpu::scene::recolor::recolor_kernel());
+    kernels.extend(crate::gpu::host::kernels());
     kernels
 }

@@ -25,6 +25,9 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
     Ok(module)
 }
 
+/// The parts with entry points of render passes.
+const RENDERED: [&str; 2] = ["host/composite.wgsl", "host/cover.wgsl"];
+
 #[test]
 fn every_kernel_composes_and_validates() {
     let kernels = all_kernels();
@@ -34,6 +37,7 @@ fn every_kernel_composes_and_validates() {
             * (6 * BrickKind::of(Structure::ALL, Primitive::ALL).count()
                 + 2 * Primitive::ALL.len() * ColorTarget::ALL.len())
             + 5
+            + crate::gpu::host::kernels().len()
             + crate::gpu::passes::lit::all_kernels().len()
     );
     for kernel in kernels {
@@ -41,7 +45,11 @@ fn every_kernel_composes_and_validates() {
         let entry = &module.entry_points[0];
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name());
         assert_eq!(entry.name, kernel.entry_point);
-        assert_eq!(entry.workgroup_size.iter().product::<u32>(), 64);
+        // Those of render passes have no workgroups.
+        let is_compute = entry.stage == naga::ShaderStage::Compute;
+        assert!(is_compute != kernel.parts.iter().any(|part| RENDERED.contains(&part.name)));
+        let size = entry.workgroup_size.iter().product::<u32>();
+        assert_eq!(size, if is_compute { 64 } else { 0 });
     }
 }
 

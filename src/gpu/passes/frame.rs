@@ -3,7 +3,8 @@
 use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
 
 use crate::camera::{CameraKind, View};
-use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::bands::{BandBuffers, rows_per_band};
 use crate::gpu::passes::order::nearest_first;
 use crate::gpu::passes::renderer::Renderer;
@@ -12,6 +13,8 @@ use crate::gpu::passes::visible_region::VisibleRegion;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
 
@@ -91,7 +94,20 @@ impl Frame {
     /// # Errors
     /// If a target does not have the format, size or usage that the renderer needs, or if the device has no memory
     /// left.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
+        renderer: &Renderer,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(renderer, device, targets))
+    }
+
+    /// Creates a frame like [`Frame::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`Frame::new`].
+    pub async fn new_async(
         renderer: &Renderer,
         device: &Device,
         targets: &Targets<'_>,
@@ -164,7 +180,8 @@ impl Frame {
                 entries: &entries,
             });
             (records, hits, rays, status, band_groups, target_group)
-        })?;
+        })
+        .await?;
         let Renderer { color, data_layers, .. } = *renderer;
         Ok(Self {
             color,
@@ -263,25 +280,20 @@ impl Frame {
     }
 
     /// The bricks and bands to be traced for the view, in order.
-    pub(in crate::gpu) fn parts(&self) -> Vec<BandBrick> {
-        let Some(view) = &self.view else {
-            return Vec::new();
-        };
-        let brick_count = view.order.len();
-        let mut parts = Vec::new();
-        for (band, record) in view.records.iter().enumerate() {
-            for (position, brick) in view.order.iter().enumerate() {
-                parts.push(BandBrick {
+    pub(in crate::gpu) fn parts(&self) -> impl Iterator<Item = BandBrick> + '_ {
+        self.view.iter().flat_map(|view| {
+            let (band_count, brick_count) = (view.records.len(), view.order.len());
+            view.records.iter().enumerate().flat_map(move |(band, record)| {
+                view.order.iter().enumerate().map(move |(position, brick)| BandBrick {
                     band,
                     brick: *brick,
                     groups: Groups { first: [0, 0], size: record.traced_size },
                     is_first_of_band: position == 0,
                     is_last_of_band: position + 1 == brick_count,
-                    is_last: position + 1 == brick_count && band + 1 == view.records.len(),
-                });
-            }
-        }
-        parts
+                    is_last: position + 1 == brick_count && band + 1 == band_count,
+                })
+            })
+        })
     }
 
     /// Records commands that clear the hits, and the rays if they are kept.
@@ -329,6 +341,11 @@ impl Frame {
             return Err(GpuError::OtherScene);
         }
         Ok(view)
+    }
+
+    /// Width and height of the targets.
+    pub(in crate::gpu) fn size(&self) -> [u32; 2] {
+        self.size
     }
 
     /// Bind group 0 of every kernel, one for each band.

@@ -15,6 +15,8 @@ use crate::gpu::passes::lit::{
 };
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::render::RenderSettings;
 
 /// A lit picture that accumulates samples, on a device that the caller owns.
@@ -44,7 +46,24 @@ impl HostedPicture {
     ///
     /// # Errors
     /// The errors of [`RenderSettings::check`]; [`GpuError::NoOccluders`]; an error if the device has no memory left.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        is_indirect: bool,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, queue, scene, view, settings, is_indirect))
+    }
+
+    /// Creates the passes and the buffers like [`HostedPicture::new`], without blocking the thread while a browser
+    /// answers.
+    ///
+    /// # Errors
+    /// The same as for [`HostedPicture::new`].
+    pub async fn new_async(
         device: &Device,
         queue: &Queue,
         scene: &SceneBuffers,
@@ -55,13 +74,14 @@ impl HostedPicture {
         settings.check_with(scene.appearance())?;
         let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
         let lighting = LightingData::new(settings, scene.summary(), view.camera);
-        let passes = LitPasses::new(device, scenes.key(view, &lighting, &device.limits()), &[])?;
+        let key = scenes.key(view, &lighting, &device.limits());
+        let passes = LitPasses::new(device, key, &[]).await?;
         let samples = settings.sampling.samples;
         let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, samples);
         let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let records = tiles(&view.film, sizes.tile)
             .map(|tile| (tile, scenes.frames(view, region, tile, limit)));
-        let frame = LitFrame::new(device, queue, &passes, sizes, &lighting, records)?;
+        let frame = LitFrame::new(device, queue, &passes, sizes, &lighting, records).await?;
         Ok(Self { passes, frame, lighting, is_indirect })
     }
 

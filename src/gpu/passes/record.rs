@@ -1,29 +1,32 @@
 //! Recording a frame of primary rays.
 
-use wgpu::ComputePass;
+use wgpu::{ComputePass, ComputePipeline};
 
+use crate::accel::BrickKind;
+use crate::camera::CameraKind;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::{BandBrick, Frame};
-use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::renderer::{PassKey, Renderer};
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::BrickPass;
 
 impl Renderer {
     /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
     ///
-    /// Nothing is submitted. The frame's targets contain the picture after the device has executed the encoder. They
-    /// are overwritten completely.
+    /// Nothing is submitted, awaited or read back, and no resource of the device is created. The frame's targets contain
+    /// the picture after the device has executed the encoder. They are overwritten completely.
     ///
     /// # Errors
     /// If the frame has no view of this scene, was made for other targets, or has a camera that this renderer was not
-    /// built for.
+    /// built for; [`GpuError::NotReady`] if a pipeline is still being built. Nothing is recorded then.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         scene: &SceneBuffers,
         frame: &Frame,
     ) -> Result<(), GpuError> {
-        frame.view(self, scene)?;
+        self.check_pipelines(scene, frame)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
@@ -35,6 +38,28 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+
+    /// Returns an error if a pipeline that the frame needs is missing.
+    fn check_pipelines(&self, scene: &SceneBuffers, frame: &Frame) -> Result<(), GpuError> {
+        let camera = frame.view(self, scene)?.camera;
+        for part in frame.parts().filter(|part| part.groups.count() > 0) {
+            self.trace_pipeline(camera, scene.bricks()[part.brick].kind, part)?;
+        }
+        for brick in scene.bricks() {
+            self.pipeline(PassKey::Shade(camera, brick.kind.primitive), brick.kind)?;
+        }
+        Ok(())
+    }
+
+    fn trace_pipeline(
+        &self,
+        camera: CameraKind,
+        kind: BrickKind,
+        part: BandBrick,
+    ) -> Result<&ComputePipeline, GpuError> {
+        let brick_pass = if part.is_first_of_band { BrickPass::First } else { BrickPass::Later };
+        self.pipeline(PassKey::Trace(camera, kind, brick_pass), kind)
     }
 
     /// Records the tracing of a brick for a band or for a slice of one. The record of the band must contain the first
@@ -51,16 +76,7 @@ impl Renderer {
             return Ok(());
         }
         let brick = &scene.bricks()[part.brick];
-        let kind = brick.kind;
-        let pipeline = self
-            .trace
-            .iter()
-            .find(|(of, searched, _)| *of == camera && *searched == kind)
-            .and_then(|(_, _, pipelines)| match part.is_first_of_band {
-                true => Some(&pipelines.first),
-                false => pipelines.later.as_ref(),
-            })
-            .ok_or(GpuError::NoPipeline { camera, kind })?;
+        let pipeline = self.trace_pipeline(camera, brick.kind, part)?;
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
         pass.set_bind_group(1, &brick.trace_group, &[]);
@@ -85,12 +101,8 @@ impl Renderer {
         for brick in scene.bricks() {
             let kind = brick.kind;
             if bound != Some(kind.primitive) {
-                let pipeline = self
-                    .shade
-                    .iter()
-                    .find(|(of, primitive, _)| *of == camera && *primitive == kind.primitive)
-                    .map(|(_, _, pipeline)| pipeline)
-                    .ok_or(GpuError::NoPipeline { camera, kind })?;
+                let shade = PassKey::Shade(camera, kind.primitive);
+                let pipeline = self.pipeline(shade, kind)?;
                 pass.set_pipeline(pipeline);
                 bound = Some(kind.primitive);
             }

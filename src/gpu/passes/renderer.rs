@@ -1,15 +1,21 @@
 //! The pipelines of primary rays.
 
-use wgpu::{ComputePipeline, Device};
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
+use wgpu::{BindGroupLayout, ComputePipeline, Device};
 
 use crate::accel::{BrickKind, Primitive};
 use crate::camera::CameraKind;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::Checks;
+use crate::gpu::edit::ShaderEdit;
+use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::{Query, RendererOptions};
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::Layouts;
-use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{self, BrickPass};
+use crate::gpu::shader::{self, BrickPass, Kernel, pipeline};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 
 /// The pipelines of primary rays for a device and a kind of target. All scenes and frames can share one renderer.
 #[derive(Debug)]
@@ -18,53 +24,190 @@ pub struct Renderer {
     pub(in crate::gpu) color: ColorTarget,
     pub(in crate::gpu) data_layers: bool,
     pub(in crate::gpu) keeps_rays: bool,
-    pub(in crate::gpu) shade: Vec<(CameraKind, Primitive, ComputePipeline)>,
-    pub(in crate::gpu) trace: Vec<(CameraKind, BrickKind, TracePipelines)>,
+    query: Query,
+    edits: Vec<ShaderEdit>,
+    /// Pipelines that can be recorded.
+    built: Vec<(PassKey, ComputePipeline)>,
+    /// Pipelines that the device has not yet accepted, and what is known of them. The mutex makes a renderer `Sync`,
+    /// and is never locked.
+    building: Mutex<VecDeque<(PassKey, ComputePipeline, Checks)>>,
+    /// Pipelines that are not ready: those being built, and then those whose building has not begun.
+    remaining: VecDeque<PassKey>,
+    /// What the device says of the layouts.
+    layouts_check: Mutex<Checks>,
+    /// The error that ended the building.
+    failed: Option<GpuError>,
 }
 
-/// Pipelines that trace the first brick of a scene and the later ones.
-#[derive(Debug)]
-pub(in crate::gpu) struct TracePipelines {
-    pub(in crate::gpu) first: ComputePipeline,
-    pub(in crate::gpu) later: Option<ComputePipeline>,
+/// What a pipeline is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum PassKey {
+    Trace(CameraKind, BrickKind, BrickPass),
+    Shade(CameraKind, Primitive),
 }
 
 impl Renderer {
-    /// Builds the pipelines on a device that the caller owns.
+    /// Builds the pipelines on a device that the caller owns. This takes from milliseconds to seconds;
+    /// [`Renderer::begin`] does it in pieces, and another thread can do it as well.
     ///
     /// # Errors
     /// If the device rejects a kernel, which is a defect of this crate or of the driver.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, options))
+    }
+
+    /// Builds the pipelines on a device that the caller owns, without blocking the thread while a browser builds them.
+    ///
+    /// # Errors
+    /// If the device rejects a kernel, which is a defect of this crate or of the driver.
+    pub async fn new_async(device: &Device, options: &RendererOptions) -> Result<Self, GpuError> {
+        let mut renderer = Self::begin(device, options);
+        // A browser builds pipelines at the same time, so all are begun before the first is awaited.
+        while renderer.begin_next(device)? {}
+        std::mem::take(renderer.layouts_check.get_mut().unwrap_or_else(PoisonError::into_inner))
+            .passed()
+            .await?;
+        let building = std::mem::take(renderer.in_building());
+        for (key, pipeline, checks) in building {
+            checks.passed().await?;
+            renderer.built.push((key, pipeline));
+        }
+        renderer.remaining.clear();
+        Ok(renderer)
+    }
+
+    /// Begins a renderer without building any pipeline. [`Renderer::build_next`] builds them one by one.
+    ///
+    /// Scenes can be uploaded and frames made with it at once. Until the pipelines of a frame are built,
+    /// [`Renderer::record`] records nothing and returns [`GpuError::NotReady`].
+    #[must_use]
+    pub fn begin(device: &Device, options: &RendererOptions) -> Self {
         let RendererOptions { color, data_layers, query, keeps_rays, .. } = *options;
-        let layouts = scoped(device, || Layouts::new(device, options))?;
-        let (shade, trace) = (Vec::new(), Vec::new());
-        let mut renderer = Self { layouts, color, data_layers, keeps_rays, shade, trace };
+        let checks = Checks::default();
+        let layouts = checks.create(device, || Layouts::new(device, options));
+        let mut remaining = VecDeque::new();
         for &camera in &options.cameras {
-            let Layouts { frame, targets, .. } = &renderer.layouts;
-            for &primitive in &options.primitives {
-                let kernel = shader::shade_kernel(camera, primitive, color, data_layers)
-                    .edited(&options.edits)?;
-                let surface = renderer.layouts.surface_of(primitive);
-                let shade = pipeline(device, &kernel, &[frame, surface, targets])?;
-                renderer.shade.push((camera, primitive, shade));
+            for (kind, _) in &layouts.brick {
+                remaining.push_back(PassKey::Trace(camera, *kind, BrickPass::First));
             }
-            for (kind, brick) in &renderer.layouts.brick {
-                let groups = [frame, brick];
-                let build = |brick_pass| {
-                    let kernel = match query {
-                        Query::Nearest => {
-                            shader::trace_kernel(camera, *kind, brick_pass, keeps_rays)
-                        }
-                        Query::Any => shader::occluded_kernel(camera, *kind, brick_pass),
-                    };
-                    pipeline(device, &kernel.edited(&options.edits)?, &groups)
-                };
-                let later = options.several_bricks.then(|| build(BrickPass::Later)).transpose()?;
-                let pipelines = TracePipelines { first: build(BrickPass::First)?, later };
-                renderer.trace.push((camera, *kind, pipelines));
+            let shade = options.primitives.iter().map(|of| PassKey::Shade(camera, *of));
+            remaining.extend(shade);
+            let later = layouts.brick.iter().filter(|_| options.several_bricks);
+            remaining.extend(later.map(|(of, _)| PassKey::Trace(camera, *of, BrickPass::Later)));
+        }
+        Self {
+            layouts,
+            color,
+            data_layers,
+            keeps_rays,
+            query,
+            edits: options.edits.clone(),
+            built: Vec::new(),
+            building: Mutex::new(VecDeque::new()),
+            remaining,
+            layouts_check: Mutex::new(checks),
+            failed: None,
+        }
+    }
+
+    /// Builds one more pipeline, and returns the number of pipelines that are still not ready. The renderer is complete
+    /// when it is 0.
+    ///
+    /// It never waits. On a native device the call takes as long as the driver needs for one pipeline. A browser builds
+    /// in the background, so there the number may stay the same for some calls.
+    ///
+    /// # Errors
+    /// If the device rejects a kernel, which is a defect of this crate or of the driver. All later calls return the
+    /// same error.
+    pub fn build_next(&mut self, device: &Device) -> Result<usize, GpuError> {
+        if let Some(error) = &self.failed {
+            return Err(error.clone());
+        }
+        let progress = self.begin_next(device).and_then(|_| self.take_built());
+        progress.map(|()| self.remaining.len()).inspect_err(|error| {
+            self.failed = Some(error.clone());
+        })
+    }
+
+    /// Begins to build the next pipeline. Returns whether there was one.
+    fn begin_next(&mut self, device: &Device) -> Result<bool, GpuError> {
+        let begun = self.in_building().len();
+        let Some(key) = self.remaining.get(begun).copied() else {
+            return Ok(false);
+        };
+        let kernel = self.kernel(key).edited(&self.edits)?;
+        let checks = Checks::default();
+        let pipeline = pipeline(device, &kernel, &self.groups(key)?, &checks);
+        self.in_building().push_back((key, pipeline, checks));
+        Ok(true)
+    }
+
+    /// Moves the pipelines that the device has accepted to those that can be recorded.
+    fn take_built(&mut self) -> Result<(), GpuError> {
+        let layouts = self.layouts_check.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if !layouts.are_known()? {
+            return Ok(());
+        }
+        while let Some((_, _, checks)) = self.in_building().front_mut() {
+            if !checks.are_known()? {
+                break;
+            }
+            if let Some((key, pipeline, _)) = self.in_building().pop_front() {
+                self.built.push((key, pipeline));
+                self.remaining.pop_front();
             }
         }
-        Ok(renderer)
+        Ok(())
+    }
+
+    fn in_building(&mut self) -> &mut VecDeque<(PassKey, ComputePipeline, Checks)> {
+        self.building.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kernel(&self, key: PassKey) -> Kernel {
+        match (key, self.query) {
+            (PassKey::Shade(camera, primitive), _) => {
+                shader::shade_kernel(camera, primitive, self.color, self.data_layers)
+            }
+            (PassKey::Trace(camera, kind, brick_pass), Query::Nearest) => {
+                shader::trace_kernel(camera, kind, brick_pass, self.keeps_rays)
+            }
+            (PassKey::Trace(camera, kind, brick_pass), Query::Any) => {
+                shader::occluded_kernel(camera, kind, brick_pass)
+            }
+        }
+    }
+
+    /// The layouts of the bind groups of a pipeline.
+    fn groups(&self, key: PassKey) -> Result<Vec<&BindGroupLayout>, GpuError> {
+        let Layouts { frame, targets, .. } = &self.layouts;
+        Ok(match key {
+            PassKey::Shade(_, primitive) => {
+                vec![frame, self.layouts.surface_of(primitive), targets]
+            }
+            PassKey::Trace(_, kind, _) => vec![frame, self.layouts.brick_of(kind)?],
+        })
+    }
+
+    /// The pipeline for a purpose.
+    ///
+    /// # Errors
+    /// [`GpuError::NotReady`] if it is not built yet; [`GpuError::NoPipeline`] if it never will be. `kind` is that of
+    /// the brick it is needed for.
+    pub(in crate::gpu) fn pipeline(
+        &self,
+        key: PassKey,
+        kind: BrickKind,
+    ) -> Result<&ComputePipeline, GpuError> {
+        let (PassKey::Trace(camera, ..) | PassKey::Shade(camera, _)) = key;
+        match self.built.iter().find(|(of, _)| *of == key) {
+            Some((_, pipeline)) => Ok(pipeline),
+            None if self.remaining.contains(&key) => {
+                Err(GpuError::NotReady { remaining: self.remaining.len() })
+            }
+            None => Err(GpuError::NoPipeline { camera, kind }),
+        }
     }
 }
 
@@ -94,7 +237,9 @@ mod tests {
                     ..RendererOptions::default()
                 };
                 let renderer = Renderer::new(&device, &options).unwrap();
-                assert_eq!(renderer.shade.len(), CameraKind::ALL.len() * Primitive::ALL.len());
+                let of_shading = |(key, _): &&_| matches!(key, PassKey::Shade(..));
+                let shading = renderer.built.iter().filter(of_shading).count();
+                assert_eq!(shading, CameraKind::ALL.len() * Primitive::ALL.len());
             }
         }
     }
@@ -115,7 +260,9 @@ mod tests {
                 false,
             )
             .with_part("broken.wgsl", broken);
-            match pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1]) {
+            let checks = Checks::default();
+            pipeline(&device, &kernel, &[&layouts.frame, &layouts.brick[0].1], &checks);
+            match block_on(checks.passed()) {
                 Err(GpuError::Device { message }) => {
                     assert!(message.contains("broken.wgsl:"), "{message}");
                 }

@@ -3,7 +3,8 @@
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
 use crate::accel::{Brick, BrickKind, Index};
-use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::order::CenterBox;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::appearance::AppearanceWords;
@@ -64,19 +65,14 @@ pub(in crate::gpu) struct Upload<'a> {
 }
 
 impl Upload<'_> {
-    pub(in crate::gpu) fn brick(
+    pub(in crate::gpu) async fn brick(
         &mut self,
         brick: &BrickContents<'_>,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
         let BrickContents { kind, center_box, shapes, ids, index } = *brick;
         let layouts = &self.renderer.layouts;
-        let trace_layout = layouts
-            .brick
-            .iter()
-            .find(|(of, _)| *of == kind)
-            .map(|(_, layout)| layout)
-            .ok_or(GpuError::NoStructure { kind })?;
+        let trace_layout = layouts.brick_of(kind)?;
         let appearances = AppearanceWords::of(self.appearance, ids);
         let mut record = records::Brick {
             shape_count: ids.len() as u32,
@@ -157,6 +153,7 @@ impl Upload<'_> {
                 shape_count,
             }
         })
+        .await
     }
 
     pub(in crate::gpu) fn storage<T: bytemuck::Pod>(

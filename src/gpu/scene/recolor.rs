@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device, Queue};
 
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::Checks;
+use crate::gpu::error::GpuError;
 use crate::gpu::scene::appearance::color_words;
 use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
@@ -11,6 +12,8 @@ use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::shader::layouts::{layout_of, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, part};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
 
@@ -43,12 +46,23 @@ impl Recolor {
     ///
     /// # Errors
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(device: &Device) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device))
+    }
+
+    /// Builds the pipeline like [`Recolor::new`], without blocking the thread while a browser builds it.
+    ///
+    /// # Errors
+    /// The same as for [`Recolor::new`].
+    pub async fn new_async(device: &Device) -> Result<Self, GpuError> {
         let words = storage::<u32>(true);
         let kinds =
             [(0, uniform::<RecolorRange>()), (1, words), (2, words), (3, storage::<u32>(false))];
-        let layout = scoped(device, || layout_of(device, "pinhole recolor", &kinds))?;
-        let pipeline = pipeline(device, &recolor_kernel(), &[&layout])?;
+        let checks = Checks::default();
+        let layout = checks.create(device, || layout_of(device, "pinhole recolor", &kinds));
+        let pipeline = pipeline(device, &recolor_kernel(), &[&layout], &checks);
+        checks.passed().await?;
         Ok(Self { layout, pipeline })
     }
 
@@ -61,7 +75,25 @@ impl Recolor {
     /// # Errors
     /// [`GpuError::NotInPlace`] if [`SceneBuffers::takes_in_place`] returns `false`; an error if the device has no
     /// memory left.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn record(
+        &self,
+        device: &Device,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        buffers: &mut SceneBuffers,
+        scene: &Scene,
+        update: &SceneUpdate<'_>,
+    ) -> Result<(), GpuError> {
+        block_on(self.record_async(device, queue, encoder, buffers, scene, update))
+    }
+
+    /// Records the new colours like [`Recolor::record`], without blocking the thread while a browser answers. All
+    /// commands are recorded when the future is first polled.
+    ///
+    /// # Errors
+    /// The same as for [`Recolor::record`].
+    pub async fn record_async(
         &self,
         device: &Device,
         queue: &Queue,
@@ -76,11 +108,15 @@ impl Recolor {
         // The words of this number of spheres, with four bytes each, fit into a binding.
         let max_count = u32::try_from(binding_limit(&device.limits()) / 4).unwrap_or(u32::MAX);
         let range = update.range();
+        let checks = Checks::default();
         for first in range.clone().step_by(max_count as usize) {
             let ids = first..range.end.min(first.saturating_add(max_count));
             let words = color_words(scene.appearance().colors(), ids);
-            self.record_range((device, queue), encoder, buffers, first, &words)?;
+            checks.create(device, || {
+                self.record_range((device, queue), encoder, buffers, first, &words);
+            });
         }
+        checks.passed().await?;
         buffers.set_summary(SceneSummary::of(scene));
         Ok(())
     }
@@ -92,43 +128,41 @@ impl Recolor {
         buffers: &SceneBuffers,
         first: u32,
         words: &[u32],
-    ) -> Result<(), GpuError> {
-        scoped(device, || {
-            let of_contents = |contents: &[u8], usage| {
-                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("pinhole recolor"),
-                    size: contents.len() as u64,
-                    usage: usage | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                queue.write_buffer(&buffer, 0, contents);
-                buffer
-            };
-            let new_words = of_contents(bytemuck::cast_slice(words), BufferUsages::STORAGE);
-            for brick in buffers.bricks() {
-                let BrickBuffers { ids, appearances, shape_count, .. } = brick;
-                let (count, shape_count) = (words.len() as u32, *shape_count);
-                let record = RecolorRange { first, count, shape_count, zero: 0 };
-                let range = of_contents(bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
-                let entries: Vec<_> = (0..)
-                    .zip([&range, &new_words, ids, appearances].map(Buffer::as_entire_binding))
-                    .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                    .collect();
-                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("pinhole recolor"),
-                    layout: &self.layout,
-                    entries: &entries,
-                });
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some("pinhole recolor"),
-                    timestamp_writes: None,
-                });
-                pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, &group, &[]);
-                let groups = shape_count.div_ceil(64);
-                pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
-            }
-        })
+    ) {
+        let of_contents = |contents: &[u8], usage| {
+            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole recolor"),
+                size: contents.len() as u64,
+                usage: usage | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            queue.write_buffer(&buffer, 0, contents);
+            buffer
+        };
+        let new_words = of_contents(bytemuck::cast_slice(words), BufferUsages::STORAGE);
+        for brick in buffers.bricks() {
+            let BrickBuffers { ids, appearances, shape_count, .. } = brick;
+            let (count, shape_count) = (words.len() as u32, *shape_count);
+            let record = RecolorRange { first, count, shape_count, zero: 0 };
+            let range = of_contents(bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
+            let entries: Vec<_> = (0..)
+                .zip([&range, &new_words, ids, appearances].map(Buffer::as_entire_binding))
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                .collect();
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole recolor"),
+                layout: &self.layout,
+                entries: &entries,
+            });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("pinhole recolor"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            let groups = shape_count.div_ceil(64);
+            pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
+        }
     }
 }
 

@@ -8,7 +8,8 @@ use std::time::Duration;
 use wgpu::{Buffer, Device, Queue};
 
 use crate::accel::{Accel, AccelChoice, AccelPlan, BrickKind, LIST_LEN, Structure};
-use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::submission_size::SubmissionSize;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
@@ -17,6 +18,8 @@ use crate::gpu::scene::brick_buffers::{BrickBuffers, BrickContents, Upload};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::shape_ids::{ExcludeBy, ShapeIds};
 use crate::gpu::shader::records::SceneSpace;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -62,15 +65,31 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// The same as for [`SceneBuffers::with_accel`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
         scene: &Scene,
     ) -> Result<Self, GpuError> {
-        let plan =
-            AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding_limit(&device.limits()));
-        Self::with_accel(renderer, device, queue, scene, &plan.build(scene.spheres()))
+        block_on(Self::new_async(renderer, device, queue, scene))
+    }
+
+    /// Copies a scene like [`SceneBuffers::new`], without blocking the thread while a browser answers. The structure is
+    /// built by the thread that first polls the future.
+    ///
+    /// # Errors
+    /// The same as for [`SceneBuffers::with_accel_async`].
+    pub async fn new_async(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+    ) -> Result<Self, GpuError> {
+        let limit = binding_limit(&device.limits());
+        let plan = AccelPlan::new(scene.spheres(), AccelChoice::Auto, limit);
+        let accel = plan.build(scene.spheres());
+        Self::with_accel_async(renderer, device, queue, scene, &accel).await
     }
 
     /// Copies a scene to a device, with a structure that was built for it.
@@ -80,6 +99,7 @@ impl SceneBuffers {
     /// # Errors
     /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
     /// the scene does not fit into its memory.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn with_accel(
         renderer: &Renderer,
         device: &Device,
@@ -87,32 +107,48 @@ impl SceneBuffers {
         scene: &Scene,
         accel: &Accel,
     ) -> Result<Self, GpuError> {
+        block_on(Self::with_accel_async(renderer, device, queue, scene, accel))
+    }
+
+    /// Copies a scene like [`SceneBuffers::with_accel`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// If the renderer was not built for this structure, if a brick does not fit into a binding of the device, or if
+    /// the scene does not fit into its memory.
+    pub async fn with_accel_async(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+        accel: &Accel,
+    ) -> Result<Self, GpuError> {
         let ids = ShapeIds::of_all(scene, accel);
-        Self::upload(renderer, device, queue, SceneSummary::of(scene), accel, &ids, || Ok(()))
+        let summary = SceneSummary::of(scene);
+        Self::upload(renderer, device, queue, summary, accel, &ids, async || Ok(())).await
     }
 
     /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can
     /// submit the queued copy and free its memory.
-    pub(in crate::gpu) fn upload(
+    pub(in crate::gpu) async fn upload(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
         summary: SceneSummary,
         accel: &Accel,
         ids: &ShapeIds,
-        mut flush: impl FnMut() -> Result<(), GpuError>,
+        mut flush: impl AsyncFnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
         let appearance = &summary.appearance;
         let mut upload = Upload { renderer, device, queue, appearance, first_shape: 0, bytes: 0 };
         let palette = appearance::palette(appearance);
         check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
-        let palette = scoped(device, || upload.storage("pinhole palette", &palette))?;
+        let palette = scoped(device, || upload.storage("pinhole palette", &palette)).await?;
         let mut bricks = Vec::new();
         for brick in accel.bricks() {
             let ids = ids.of(&brick.ids);
             let contents = BrickContents::of_spheres(brick, &ids, accel.kind());
-            bricks.push(upload.brick(&contents, &palette)?);
-            flush()?;
+            bricks.push(upload.brick(&contents, &palette).await?);
+            flush().await?;
         }
         let bytes = upload.bytes;
         let (min, max) = accel.bounds();
@@ -130,9 +166,9 @@ impl SceneBuffers {
         })
     }
 
-    /// The same scene together with the spheres that cast shadows in a studio; `None` if all spheres do.
-    pub(in crate::gpu) fn with_occluders(self, occluders: Option<Self>) -> Self {
-        Self { occluders: occluders.map(Box::new), ..self }
+    /// The same scene together with those of its spheres that cast shadows in a studio.
+    pub(in crate::gpu) fn with_occluders(self, occluders: Self) -> Self {
+        Self { occluders: Some(Box::new(occluders)), ..self }
     }
 
     /// Replaces the summary after the colours in the buffers were changed.

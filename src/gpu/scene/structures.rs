@@ -3,6 +3,8 @@
 use crate::accel::{Accel, AccelChoice, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
 use crate::scene::Scene;
 
 /// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them; they can also be made
@@ -62,16 +64,30 @@ pub struct Retry {
 ///
 /// # Errors
 /// The outer error is the caller's own and ends the function at once; the inner error is that of the device.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn with_retries<T, E>(
     choice: AccelChoice,
     plan: impl Fn(AccelChoice) -> RenderPlan,
-    mut retrying: impl FnMut(Retry),
+    retrying: impl FnMut(Retry),
     mut work: impl FnMut(&RenderPlan) -> Result<Result<T, GpuError>, E>,
+) -> Result<Result<T, GpuError>, E> {
+    block_on(with_retries_async(choice, plan, retrying, async |plan: &RenderPlan| work(plan)))
+}
+
+/// Repeats `work` like [`with_retries`], without blocking the thread.
+///
+/// # Errors
+/// The same as for [`with_retries`].
+pub async fn with_retries_async<T, E>(
+    choice: AccelChoice,
+    plan: impl Fn(AccelChoice) -> RenderPlan,
+    mut retrying: impl FnMut(Retry),
+    mut work: impl AsyncFnMut(&RenderPlan) -> Result<Result<T, GpuError>, E>,
 ) -> Result<Result<T, GpuError>, E> {
     let mut tried = choice;
     loop {
         let plan = plan(tried);
-        match (work(&plan)?, plan.instead()) {
+        match (work(&plan).await?, plan.instead()) {
             (Err(GpuError::Steps), Some(next)) if choice == AccelChoice::Auto => {
                 retrying(Retry { failed: plan.accel.structure, next });
                 tried = next;

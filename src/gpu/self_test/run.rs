@@ -10,7 +10,8 @@ use wgpu::{
 use super::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
 use super::report::{SelfTestExtent, SelfTestReport};
 use super::{exactness, inputs, loops, rounding};
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::Checks;
+use crate::gpu::error::GpuError;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
@@ -41,18 +42,23 @@ struct Full {
 }
 
 impl SelfTestRun {
-    pub(in crate::gpu) fn new(device: &Device, extent: SelfTestExtent) -> Result<Self, GpuError> {
+    pub(in crate::gpu) async fn new(
+        device: &Device,
+        extent: SelfTestExtent,
+    ) -> Result<Self, GpuError> {
+        let checks = Checks::default();
         let count = match extent {
             SelfTestExtent::Quick => QUICK,
             SelfTestExtent::Full => FULL,
         };
         let operands = inputs::operands(count);
-        let kernel = TestKernel::<_, Arithmetic>::new(device, Probe::Arithmetic)?;
-        let arithmetic = kernel.dispatch(device, &SelfTest::default(), &operands)?;
+        let kernel = TestKernel::<_, Arithmetic>::new(device, Probe::Arithmetic, &checks);
+        let arithmetic = kernel.dispatch(device, &SelfTest::default(), &operands, &checks);
         let full = match extent {
             SelfTestExtent::Quick => None,
-            SelfTestExtent::Full => Some(Full::new(device, count)?),
+            SelfTestExtent::Full => Some(Full::new(device, count, &checks)),
         };
+        checks.passed().await?;
         Ok(Self { operands, arithmetic, full })
     }
 
@@ -86,19 +92,19 @@ impl SelfTestRun {
 }
 
 impl Full {
-    fn new(device: &Device, count: usize) -> Result<Self, GpuError> {
+    fn new(device: &Device, count: usize, checks: &Checks) -> Self {
         let values = inputs::values(count);
-        let kernel = TestKernel::<_, Exact>::new(device, Probe::Exact)?;
-        let exact = kernel.dispatch(device, &SelfTest::default(), &values)?;
-        let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops)?;
+        let kernel = TestKernel::<_, Exact>::new(device, Probe::Exact, checks);
+        let exact = kernel.dispatch(device, &SelfTest::default(), &values, checks);
+        let kernel = TestKernel::<u32, Looped>::new(device, Probe::Loops, checks);
         let limit = iteration_limit(device);
         // Only the number of inputs matters, because the kernel does not read them.
         let invocations = [0_u32; loops::INVOCATIONS as usize];
         let loops = loops::runs(limit)
             .iter()
-            .map(|uniform| kernel.dispatch(device, uniform, &invocations))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { values, exact, limit, loops })
+            .map(|uniform| kernel.dispatch(device, uniform, &invocations, checks))
+            .collect();
+        Self { values, exact, limit, loops }
     }
 }
 
@@ -120,10 +126,10 @@ struct Dispatch {
 }
 
 impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
-    fn new(device: &Device, probe: Probe) -> Result<Self, GpuError> {
-        let layout = scoped(device, || layout_of::<Input, Answer>(device))?;
-        let pipeline = pipeline(device, &self_test_kernel(probe), &[&layout])?;
-        Ok(Self { pipeline, layout, records: PhantomData })
+    fn new(device: &Device, probe: Probe, checks: &Checks) -> Self {
+        let layout = checks.create(device, || layout_of::<Input, Answer>(device));
+        let pipeline = pipeline(device, &self_test_kernel(probe), &[&layout], checks);
+        Self { pipeline, layout, records: PhantomData }
     }
 
     /// Creates a dispatch with one invocation for each input.
@@ -132,8 +138,9 @@ impl<Input: Pod, Answer: Pod> TestKernel<Input, Answer> {
         device: &Device,
         uniform: &SelfTest,
         inputs: &[Input],
-    ) -> Result<Dispatch, GpuError> {
-        scoped(device, || {
+        checks: &Checks,
+    ) -> Dispatch {
+        checks.create(device, || {
             let filled = |label, bytes: &[u8], usage| {
                 let buffer = device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(label),
@@ -205,13 +212,14 @@ fn layout_of<Input, Answer>(device: &Device) -> wgpu::BindGroupLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::waiting::block_on;
 
     #[test]
     fn every_kernel_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
-        let run = SelfTestRun::new(&device, SelfTestExtent::Full).unwrap();
+        let run = block_on(SelfTestRun::new(&device, SelfTestExtent::Full)).unwrap();
         assert_eq!(run.buffers().len(), 5);
-        let run = SelfTestRun::new(&device, SelfTestExtent::Quick).unwrap();
+        let run = block_on(SelfTestRun::new(&device, SelfTestExtent::Quick)).unwrap();
         assert_eq!(run.buffers().len(), 1);
     }
 }

@@ -5,6 +5,7 @@ use std::num::NonZeroU64;
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use crate::accel::{BrickKind, ListLayout, Primitive, Structure};
+use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records;
@@ -74,6 +75,12 @@ impl Layouts {
 }
 
 impl Layouts {
+    /// Layout of bind group 1 of `trace` and `occluded`.
+    pub(in crate::gpu) fn brick_of(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
+        let found = self.brick.iter().find(|(of, _)| *of == kind);
+        found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
+    }
+
     /// Layout of bind group 1 of `shade`.
     pub(in crate::gpu) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
         match primitive {

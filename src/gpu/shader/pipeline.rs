@@ -3,17 +3,20 @@
 use wgpu::{ComputePipeline, Device};
 
 use super::kernel::Kernel;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::checks::Checks;
+use crate::gpu::error::GpuError;
 
-/// Creates the pipeline of a kernel. `groups` are the layouts of its bind groups, in order.
+/// Creates the pipeline of a kernel. `groups` are the layouts of its bind groups, in order. Whether the device accepts
+/// the kernel is known when the checks have passed.
 pub(in crate::gpu) fn pipeline(
     device: &Device,
     kernel: &Kernel,
     groups: &[&wgpu::BindGroupLayout],
-) -> Result<ComputePipeline, GpuError> {
+    checks: &Checks,
+) -> ComputePipeline {
     let name = kernel.name();
     let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
-    scoped(device, || {
+    let create = || {
         let module = shader_module(
             device,
             wgpu::ShaderModuleDescriptor {
@@ -34,10 +37,11 @@ pub(in crate::gpu) fn pipeline(
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         })
-    })
-    .map_err(|error| match error {
+    };
+    let refused = kernel.clone();
+    checks.create_explained(device, create, move |error| match error {
         GpuError::Device { message } => {
-            GpuError::Device { message: kernel.with_positions_in_files(&message) }
+            GpuError::Device { message: refused.with_positions_in_files(&message) }
         }
         other => other,
     })

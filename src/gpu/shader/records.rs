@@ -201,6 +201,7 @@ mod tests {
     use super::*;
     use crate::camera::{CameraKind, CameraVectors};
     use crate::gpu::headless::denoise::Denoise;
+    use crate::gpu::host::host_view::HostView;
     use crate::gpu::kernels;
     use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::scene::recolor::RecolorRange;
@@ -318,6 +319,18 @@ mod tests {
             }),
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
+            layout!(HostView {
+                right,
+                is_parallel,
+                up,
+                slope,
+                forward,
+                far,
+                film_depth,
+                zero,
+                size,
+                first_pixel
+            }),
             layout!(DispatchParameters {
                 sample,
                 surface,

@@ -6,7 +6,8 @@ use super::lighting::LightingData;
 use super::passes::LitPasses;
 use super::records::{DispatchParameters, QUEUE_HEAD};
 use super::sizes::LitSizes;
-use crate::gpu::error::{GpuError, check_storage_size, scoped};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::tiles::Tile;
@@ -75,7 +76,7 @@ impl LitTile {
 
 impl LitFrame {
     /// Creates the buffers for some tiles, none of which may be larger than `sizes.tile`.
-    pub(in crate::gpu) fn new(
+    pub(in crate::gpu) async fn new(
         device: &Device,
         queue: &Queue,
         passes: &LitPasses,
@@ -149,6 +150,7 @@ impl LitFrame {
                 variations,
             }
         })
+        .await
     }
 
     /// Queues the parameters of the next submission's dispatches, of which there may be at most [`MAX_DISPATCHES`].

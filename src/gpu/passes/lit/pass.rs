@@ -5,6 +5,7 @@ use wgpu::{
     Device,
 };
 
+use crate::gpu::checks::Checks;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
 use crate::gpu::shader::Kernel;
@@ -41,14 +42,16 @@ pub(in crate::gpu) enum Extent<'a> {
 }
 
 impl Pass {
-    /// Builds the pipeline. `groups` are the layouts of its bind groups, in order.
+    /// Builds the pipeline. `groups` are the layouts of its bind groups, in order. Whether the device accepts it is
+    /// known when the checks have passed.
     pub(super) fn new(
         device: &Device,
         kernel: Kernel,
         groups: &[&BindGroupLayout],
         edits: &[ShaderEdit],
+        checks: &Checks,
     ) -> Result<Self, GpuError> {
-        Ok(Self { pipeline: pipeline(device, &kernel.edited(edits)?, groups)? })
+        Ok(Self { pipeline: pipeline(device, &kernel.edited(edits)?, groups, checks) })
     }
 
     /// Records one dispatch. Nothing is submitted.

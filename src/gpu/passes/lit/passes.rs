@@ -10,8 +10,9 @@ use super::pass::Pass;
 use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
 use crate::accel::{ListLayout, Structure};
 use crate::camera::CameraKind;
+use crate::gpu::checks::Checks;
 use crate::gpu::edit::ShaderEdit;
-use crate::gpu::error::{GpuError, scoped};
+use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::shape_ids::ExcludeBy;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage, uniform};
@@ -146,20 +147,34 @@ fn storage_of(bytes: u64) -> BindingType {
 
 impl LitPasses {
     /// Builds all pipelines.
-    pub(in crate::gpu) fn new(
+    pub(in crate::gpu) async fn new(
         device: &Device,
         key: LitKey,
         edits: &[ShaderEdit],
+    ) -> Result<Self, GpuError> {
+        let checks = Checks::default();
+        let passes = Self::begin(device, key, edits, &checks)?;
+        checks.passed().await?;
+        Ok(passes)
+    }
+
+    /// Begins to build all pipelines. Whether the device accepts them is known when the checks have passed.
+    fn begin(
+        device: &Device,
+        key: LitKey,
+        edits: &[ShaderEdit],
+        checks: &Checks,
     ) -> Result<Self, GpuError> {
         let options = RendererOptions {
             cameras: Vec::new(),
             structures: vec![key.structure, key.occluders],
             ..RendererOptions::default()
         };
-        let scene = scoped(device, || Layouts::new(device, &options))?;
-        let layouts = scoped(device, || LitLayouts::new(device))?;
-        let build =
-            |kernel: Kernel, groups: &[&BindGroupLayout]| Pass::new(device, kernel, groups, edits);
+        let scene = checks.create(device, || Layouts::new(device, &options));
+        let layouts = checks.create(device, || LitLayouts::new(device));
+        let build = |kernel: Kernel, groups: &[&BindGroupLayout]| {
+            Pass::new(device, kernel, groups, edits, checks)
+        };
         let both = |kernel: &dyn Fn(Schedule) -> Kernel, groups: &[&BindGroupLayout]| {
             Ok::<_, GpuError>(BySchedule {
                 pixels: build(kernel(Schedule::Pixels), groups)?,
@@ -245,6 +260,7 @@ pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
 mod tests {
     use super::super::kernels::{Materials, Sources};
     use super::*;
+    use crate::gpu::waiting::block_on;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
     /// device supports, without any driver.
@@ -276,14 +292,14 @@ mod tests {
                         several_bricks,
                         one_pass: None,
                     };
-                    LitPasses::new(&device, key, &[]).unwrap();
+                    block_on(LitPasses::new(&device, key, &[])).unwrap();
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
                     let structure = Structure::NestedGrid(ListLayout::Copied);
                     for studio in OnePass::ALL {
                         let key = LitKey { structure, one_pass: Some(studio), ..key };
                         if mode == Mode::Studio {
-                            LitPasses::new(&device, key, &[]).unwrap();
+                            block_on(LitPasses::new(&device, key, &[])).unwrap();
                         }
                     }
                 }

@@ -1,0 +1,207 @@
+//! Renders spheres among the triangles of a host program: they hide each other.
+//!
+//! The host rasterizes a square with its own pipeline, its own matrices and reversed depth. pinhole renders the spheres
+//! with the same matrices, draws them into the host's render pass, and says which sphere is in the middle.
+//!
+//! ```sh
+//! cargo run --release --example embed_depth -- embed_depth.png
+//! ```
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
+use std::error::Error;
+
+use pinhole::camera::{DepthOrder, HostCamera};
+use pinhole::gpu::{
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, DataTargets, Frame, Picker,
+    Renderer, RendererOptions, SceneBuffers, Targets, adapter, wgpu,
+};
+use pinhole::{Film, LinearRgb, RenderSettings, Scene, Sphere, View};
+use wgpu::{TextureFormat, TextureUsages};
+
+const WIDTH: u32 = 640;
+const HEIGHT: u32 = 480;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args().nth(1).unwrap_or_else(|| "embed_depth.png".to_owned());
+
+    // The host has a device, matrices and attachments.
+    let adapter = adapter::choose(None)?;
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let (to_view, projection) = host_matrices();
+    let drawn = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+    let color = texture(&device, TextureFormat::Rgba8UnormSrgb, drawn);
+    let depth = texture(&device, TextureFormat::Depth32Float, drawn);
+    let [color_view, depth_view] = [&color, &depth].map(view_of);
+    let square = host_square(&device);
+
+    // Pictures of spheres have data layers, because the host's depth is computed from theirs.
+    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
+    let renderer = Renderer::new(&device, &options)?;
+    let spheres: Vec<Sphere> = (0..60_u8)
+        .map(|i| {
+            let angle = f64::from(i) * 0.4;
+            let color = LinearRgb::from_srgb8([255 - 3 * i, 120, 60 + 3 * i]);
+            let height = f64::from(i) * 0.1 - 3.0;
+            Sphere::new([2.0 * angle.cos(), height, 2.0 * angle.sin()], 0.4, color)
+        })
+        .collect();
+    let scene = SceneBuffers::new(&renderer, &device, &queue, &Scene::new(&spheres)?)?;
+    let layer = |format| {
+        let written = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
+        view_of(&texture(&device, format, written | TextureUsages::COPY_SRC))
+    };
+    let spheres_color = layer(options.color.texture_format());
+    let [distance, normal, id] =
+        [TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::R32Uint].map(layer);
+    let data = Some(DataTargets { depth: &distance, normal: &normal, id: &id });
+    let targets = Targets { color: &spheres_color, data };
+    let mut frame = Frame::new(&renderer, &device, &targets)?;
+
+    // Once for a kind of render pass, and once for each set of targets.
+    let compared = CompositeDepth::new(depth.format(), DepthOrder::NearIsOne);
+    let composite = Composite::new(&device, &CompositeOptions::new(color.format(), compared))?;
+    let mut picture = CompositePicture::new(&composite, &device, &targets)?;
+    let mut picker = Picker::new(&device, 3)?;
+
+    // For every picture: the host's camera, the spheres, and the host's render pass.
+    let camera = HostCamera::new(to_view, projection, DepthOrder::NearIsOne)?;
+    let view = View::new(&camera, Film::new(WIDTH, HEIGHT)?);
+    frame.set_view(&queue, &scene, &view, &RenderSettings::default())?;
+    picture.set_camera(&queue, &camera, [0, 0]);
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    renderer.record(&mut encoder, &scene, &frame)?;
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &color_view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth_view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    pass.set_pipeline(&square);
+    pass.draw(0..6, 0..1);
+    composite.draw(&mut pass, &picture)?;
+    drop(pass);
+    picker.record(&mut encoder, &targets, &view, [WIDTH / 2, HEIGHT / 2])?;
+    let readback = host_copy(&device, &mut encoder, &color);
+    queue.submit([encoder.finish()]);
+
+    readback.map_async(wgpu::MapMode::Read, .., |_| {});
+    device.poll(wgpu::PollType::wait_indefinitely())?;
+    // WebGPU aligns rows to 256 bytes, and 640 pixels of 4 bytes are a multiple of that.
+    let pixels = readback.get_mapped_range(..)?.to_vec();
+    image::save_buffer(&path, &pixels, WIDTH, HEIGHT, image::ExtendedColorType::Rgba8)?;
+    println!("wrote {path}; in the middle: {:?}", picker.take()?.and_then(|picked| picked.hit));
+    Ok(())
+}
+
+/// A camera 12 in front of the origin, slightly turned, and a projection with reversed depth and no far plane.
+fn host_matrices() -> ([[f32; 4]; 4], [[f32; 4]; 4]) {
+    let (sin, cos) = (0.35, 0.936_749_9);
+    let to_view =
+        [[1.0, 0.0, 0.0, 0.0], [0.0, cos, sin, 0.0], [0.0, -sin, cos, 0.0], [0.0, 0.0, -12.0, 1.0]];
+    let projection =
+        [[2.1, 0.0, 0.0, 0.0], [0.0, 2.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+    (to_view, projection)
+}
+
+/// The host's pipeline of a square through the spheres. The matrices are those of `host_matrices`.
+fn host_square(device: &wgpu::Device) -> wgpu::RenderPipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("the host's square"),
+        source: wgpu::ShaderSource::Wgsl(
+            "const SIN = 0.35; const COS = 0.9367499;
+            @vertex fn square(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+                let x = select(-3.0, 3.0, i == 1u || i == 2u || i == 4u);
+                let z = select(-3.0, 3.0, i == 2u || i == 4u || i == 5u);
+                let at = vec3f(x, -SIN * z, COS * z - 12.0);
+                return vec4f(2.1 * at.x, 2.8 * at.y, 0.1, -at.z);
+            }
+            @fragment fn gray() -> @location(0) vec4f { return vec4f(0.3, 0.35, 0.4, 1.0); }"
+                .into(),
+        ),
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("the host's square"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(TextureFormat::Rgba8UnormSrgb.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn texture(device: &wgpu::Device, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: WIDTH, height: HEIGHT, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn host_copy(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    texture: &wgpu::Texture,
+) -> wgpu::Buffer {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("the host's readback"),
+        size: u64::from(WIDTH * HEIGHT * 4),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(WIDTH * 4),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    buffer
+}

@@ -1,0 +1,31 @@
+// The colour of a pixel as the host's target takes it.
+
+//// as-stored
+// Passing on colours as they are stored.
+// provides: color_for_host
+
+fn color_for_host(color: vec3f) -> vec3f {
+    return color;
+}
+
+//// to-linear
+// Turning sRGB into linear light.
+// provides: color_for_host
+
+// The inverse transfer function of sRGB, IEC 61966-2-1.
+fn color_for_host(color: vec3f) -> vec3f {
+    let power = pow((color + 0.055) / 1.055, vec3f(2.4));
+    return select(power, color / 12.92, color <= vec3f(0.04045));
+}
+
+//// to-srgb
+// Turning linear light into sRGB.
+// provides: color_for_host
+
+// The transfer function of sRGB, IEC 61966-2-1.
+fn color_for_host(color: vec3f) -> vec3f {
+    let light = clamp(color, vec3f(0.0), vec3f(1.0));
+    // Below the threshold the power is not used. The maximum keeps its base away from zero.
+    let power = 1.055 * pow(max(light, vec3f(0.0031308)), vec3f(1.0 / 2.4)) - 0.055;
+    return select(power, light * 12.92, light <= vec3f(0.0031308));
+}

@@ -1,0 +1,120 @@
+//! Creating things on a device in error scopes, so that errors of the device come back as values and never reach the
+//! error handler of the application that owns the device.
+//!
+//! Nothing here waits. A browser tells what a scope has caught only later, so a scope is popped at once, and its answer
+//! is awaited when everything has been created. Native devices answer at once.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::pin::Pin;
+use std::task::{Context, Poll, Waker};
+
+use wgpu::{Device, ErrorFilter, WasmNotSend};
+
+use crate::gpu::error::GpuError;
+
+/// A future of the error that a scope has caught. It can be sent to other threads where wgpu's futures can.
+trait CaughtError: Future<Output = Option<GpuError>> + WasmNotSend {}
+impl<T: Future<Output = Option<GpuError>> + WasmNotSend> CaughtError for T {}
+
+/// The answer of the device, which may not be known yet, whether something was created.
+pub(super) struct Check(Pin<Box<dyn CaughtError>>);
+
+impl fmt::Debug for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Check").finish_non_exhaustive()
+    }
+}
+
+impl Check {
+    /// Runs `create` in error scopes.
+    fn of<T>(device: &Device, create: impl FnOnce() -> T) -> (T, Self) {
+        let memory = device.push_error_scope(ErrorFilter::OutOfMemory);
+        let validation = device.push_error_scope(ErrorFilter::Validation);
+        let internal = device.push_error_scope(ErrorFilter::Internal);
+        let created = create();
+        // Scopes nest, so they are popped in reverse order.
+        let (internal, validation, memory) = (internal.pop(), validation.pop(), memory.pop());
+        let caught = async move {
+            // A resource without memory also causes validation errors wherever it is used, so the scope for memory is
+            // reported first.
+            let errors = [memory.await, validation.await, internal.await];
+            errors.iter().flatten().next().map(GpuError::from_wgpu)
+        };
+        (created, Self(Box::pin(caught)))
+    }
+
+    /// The same check, with errors that `explain` has changed.
+    fn explained(self, explain: impl FnOnce(GpuError) -> GpuError + WasmNotSend + 'static) -> Self {
+        Self(Box::pin(async move { self.0.await.map(explain) }))
+    }
+
+    async fn passed(self) -> Result<(), GpuError> {
+        self.0.await.map_or(Ok(()), Err)
+    }
+
+    /// Returns the answer if it is known, without waiting. It must not be called again after that.
+    fn answer(&mut self) -> Option<Result<(), GpuError>> {
+        match Future::poll(self.0.as_mut(), &mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(error) => Some(error.map_or(Ok(()), Err)),
+            Poll::Pending => None,
+        }
+    }
+}
+
+/// The checks of several things that are created one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Checks {
+    pending: RefCell<Vec<Check>>,
+}
+
+impl Checks {
+    /// Runs `create` in error scopes.
+    pub(super) fn create<T>(&self, device: &Device, create: impl FnOnce() -> T) -> T {
+        let (created, check) = Check::of(device, create);
+        self.pending.borrow_mut().push(check);
+        created
+    }
+
+    /// Runs `create` in error scopes whose errors are changed by `explain`.
+    pub(super) fn create_explained<T>(
+        &self,
+        device: &Device,
+        create: impl FnOnce() -> T,
+        explain: impl FnOnce(GpuError) -> GpuError + WasmNotSend + 'static,
+    ) -> T {
+        let (created, check) = Check::of(device, create);
+        self.pending.borrow_mut().push(check.explained(explain));
+        created
+    }
+
+    /// Waits for the answers, and returns the error of what was created first.
+    pub(super) async fn passed(self) -> Result<(), GpuError> {
+        for check in self.pending.into_inner() {
+            check.passed().await?;
+        }
+        Ok(())
+    }
+
+    /// Returns, without waiting, whether all answers are known, or the error of what was created first.
+    pub(super) fn are_known(&mut self) -> Result<bool, GpuError> {
+        let pending = self.pending.get_mut();
+        while let Some(check) = pending.first_mut() {
+            match check.answer() {
+                None => return Ok(false),
+                Some(answer) => {
+                    pending.remove(0);
+                    answer?;
+                }
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Runs `create` in error scopes, and waits for what they have caught.
+pub(super) async fn scoped<T>(device: &Device, create: impl FnOnce() -> T) -> Result<T, GpuError> {
+    let (created, check) = Check::of(device, create);
+    check.passed().await?;
+    Ok(created)
+}

@@ -1,0 +1,196 @@
+//! Waiting for a device, for callbacks and for turns, by futures.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll, Waker};
+use std::time::Duration;
+
+use wgpu::{Device, PollError, Queue, SubmissionIndex};
+
+#[cfg(not(target_arch = "wasm32"))]
+pub(in crate::gpu) use std::time::Instant;
+#[cfg(target_arch = "wasm32")]
+pub(in crate::gpu) use web_time::Instant;
+
+/// Waits until the device has finished a submission.
+///
+/// A native device tells nothing unless some thread waits for it. If this one must not, another one does.
+#[cfg(not(target_arch = "wasm32"))]
+pub(in crate::gpu) async fn until_done(
+    device: &Device,
+    _: &Queue,
+    submission: SubmissionIndex,
+    timeout: Duration,
+) -> Result<(), PollError> {
+    let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(timeout) };
+    if crate::gpu::waiting::may_block() {
+        return device.poll(wait).map(|_| ());
+    }
+    let (answer, to_answer) = answer();
+    let (waiting, how) = (device.clone(), wait.clone());
+    let thread = std::thread::Builder::new().name("pinhole: wait".to_owned());
+    match thread.spawn(move || to_answer.give(waiting.poll(how).map(|_| ()))) {
+        Ok(_) => answer.await,
+        // The system has no thread left.
+        Err(_) => device.poll(wait).map(|_| ()),
+    }
+}
+
+/// Waits until the device has finished everything that was submitted. The browser waits as long as it takes.
+#[cfg(target_arch = "wasm32")]
+pub(in crate::gpu) async fn until_done(
+    _: &Device,
+    queue: &Queue,
+    _: SubmissionIndex,
+    _: Duration,
+) -> Result<(), PollError> {
+    let (answer, to_answer) = answer();
+    queue.on_submitted_work_done(move || to_answer.give(()));
+    answer.await;
+    Ok(())
+}
+
+/// Returns a future, and the place where a callback gives its result.
+pub(in crate::gpu) fn answer<T>() -> (Answer<T>, ToAnswer<T>) {
+    let shared = Arc::new(Mutex::new(Shared { given: None, waker: None }));
+    (Answer(Arc::clone(&shared)), ToAnswer(shared))
+}
+
+/// A result that a callback will give.
+#[derive(Debug)]
+pub(in crate::gpu) struct Answer<T>(Arc<Mutex<Shared<T>>>);
+
+/// The place where a callback gives a result.
+#[derive(Debug)]
+pub(in crate::gpu) struct ToAnswer<T>(Arc<Mutex<Shared<T>>>);
+
+#[derive(Debug)]
+struct Shared<T> {
+    given: Option<T>,
+    waker: Option<Waker>,
+}
+
+impl<T> ToAnswer<T> {
+    pub(in crate::gpu) fn give(self, result: T) {
+        let waker = {
+            let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            shared.given = Some(result);
+            shared.waker.take()
+        };
+        if let Some(waker) = waker {
+            waker.wake();
+        }
+    }
+}
+
+impl<T> Answer<T> {
+    /// Returns the result if it has been given, without waiting.
+    pub(in crate::gpu) fn known(self) -> Option<T> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).given.take()
+    }
+}
+
+impl<T> Future for Answer<T> {
+    type Output = T;
+
+    fn poll(self: std::pin::Pin<&mut Self>, context: &mut Context<'_>) -> Poll<T> {
+        let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match shared.given.take() {
+            Some(result) => Poll::Ready(result),
+            None => {
+                shared.waker = Some(context.waker().clone());
+                Poll::Pending
+            }
+        }
+    }
+}
+
+/// A value that one task at a time uses; others wait for their turn. Unlike a guard of [`Mutex`], a turn may last
+/// while a future waits.
+#[derive(Debug, Default)]
+pub(in crate::gpu) struct Turns<T> {
+    shared: Mutex<Place<T>>,
+}
+
+#[derive(Debug, Default)]
+struct Place<T> {
+    value: T,
+    is_taken: bool,
+    waiting: Vec<Waker>,
+}
+
+/// The turn of a task, which ends when this is dropped.
+#[derive(Debug)]
+pub(in crate::gpu) struct Turn<'a, T: Default> {
+    turns: &'a Turns<T>,
+    pub(in crate::gpu) value: T,
+}
+
+impl<T: Default> Turns<T> {
+    pub(in crate::gpu) fn new(value: T) -> Self {
+        Self { shared: Mutex::new(Place { value, is_taken: false, waiting: Vec::new() }) }
+    }
+
+    /// Waits until no other task uses the value.
+    pub(in crate::gpu) async fn turn(&self) -> Turn<'_, T> {
+        std::future::poll_fn(|context| {
+            let mut place = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+            if place.is_taken {
+                place.waiting.push(context.waker().clone());
+                return Poll::Pending;
+            }
+            place.is_taken = true;
+            Poll::Ready(Turn { turns: self, value: std::mem::take(&mut place.value) })
+        })
+        .await
+    }
+}
+
+impl<T: Default> Drop for Turn<'_, T> {
+    fn drop(&mut self) {
+        let waiting = {
+            let mut place = self.turns.shared.lock().unwrap_or_else(PoisonError::into_inner);
+            place.value = std::mem::take(&mut self.value);
+            place.is_taken = false;
+            std::mem::take(&mut place.waiting)
+        };
+        // All are woken, because any of them may have been given up meanwhile.
+        waiting.into_iter().for_each(Waker::wake);
+    }
+}
+
+#[cfg(all(test, not(target_arch = "wasm32")))]
+mod tests {
+    use super::*;
+    use crate::gpu::waiting::block_on;
+
+    #[test]
+    fn a_turn_that_was_given_up_blocks_nobody() {
+        let turns = Turns::new(1);
+        let first = block_on(turns.turn());
+        let mut context = Context::from_waker(Waker::noop());
+        let mut given_up = Box::pin(turns.turn());
+        assert!(Future::poll(given_up.as_mut(), &mut context).is_pending());
+        drop(given_up);
+        std::thread::scope(|scope| {
+            let second = scope.spawn(|| {
+                let mut turn = block_on(turns.turn());
+                turn.value += 1;
+                turn.value
+            });
+            drop(first);
+            assert_eq!(second.join().unwrap(), 2);
+        });
+        assert_eq!(block_on(turns.turn()).value, 2);
+    }
+
+    /// Outside of a blocking form, a future returns to its caller while a device or a callback is busy.
+    #[test]
+    fn an_answer_is_awaited_without_blocking() {
+        let (answer, to_answer) = answer();
+        let mut answer = Box::pin(answer);
+        let mut context = Context::from_waker(Waker::noop());
+        assert!(Future::poll(answer.as_mut(), &mut context).is_pending());
+        to_answer.give(7);
+        assert_eq!(Future::poll(answer.as_mut(), &mut context), Poll::Ready(7));
+    }
+}

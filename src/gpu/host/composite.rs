@@ -1,0 +1,241 @@
+//! Drawing pictures into a host's render pass, with the host's depth.
+
+use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, RenderPass, RenderPipeline};
+
+use crate::camera::HostCamera;
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
+use crate::gpu::host::composite_options::{CompositeOptions, TargetEncoding};
+use crate::gpu::host::host_view::HostView;
+use crate::gpu::passes::frame::Targets;
+use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
+use crate::gpu::shader::layouts::uniform;
+use crate::gpu::shader::{Kernel, part};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
+
+/// The pipeline that draws pictures into a host's render pass. One is enough for a device and a kind of render pass.
+#[derive(Debug)]
+pub struct Composite {
+    layout: BindGroupLayout,
+    pipeline: RenderPipeline,
+    source: ColorTarget,
+}
+
+/// A picture to be drawn: the textures of a frame, and the host's camera.
+#[derive(Debug)]
+pub struct CompositePicture {
+    group: BindGroup,
+    view: Buffer,
+    size: [u32; 2],
+    has_camera: bool,
+}
+
+/// The kernel of the vertices.
+pub(in crate::gpu) fn cover_kernel() -> Kernel {
+    Kernel { entry_point: "cover", parts: vec![part!("host/cover.wgsl")] }
+}
+
+/// The kernel of the pixels, for colours stored as `source`.
+pub(in crate::gpu) fn composite_kernel(source: ColorTarget, encoding: TargetEncoding) -> Kernel {
+    let stored = match source {
+        ColorTarget::Srgb8 => TargetEncoding::Srgb,
+        ColorTarget::Linear16 | ColorTarget::Linear32 => TargetEncoding::Linear,
+    };
+    let color = match (stored, encoding) {
+        (TargetEncoding::Srgb, TargetEncoding::Linear) => {
+            part!("host/host_color.wgsl", "to-linear")
+        }
+        (TargetEncoding::Linear, TargetEncoding::Srgb) => part!("host/host_color.wgsl", "to-srgb"),
+        _ => part!("host/host_color.wgsl", "as-stored"),
+    };
+    let parts = vec![part!("host/clip_depth.wgsl"), color, part!("host/composite.wgsl")];
+    Kernel { entry_point: "composite", parts }
+}
+
+impl Composite {
+    /// Builds the pipeline on a device that the caller owns.
+    ///
+    /// # Errors
+    /// If the device cannot render to these formats, or not with this number of samples.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, options))
+    }
+
+    /// Builds the pipeline like [`Composite::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`Composite::new`].
+    pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
+        let kernels = [cover_kernel(), composite_kernel(options.source, options.encoding)];
+        let texture = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let view = wgpu::BindGroupLayoutEntry { ty: uniform::<HostView>(), ..texture(0) };
+        let (layout, pipeline) = scoped(device, || {
+            let label = Some("pinhole composite");
+            let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label,
+                entries: &[view, texture(1), texture(2)],
+            });
+            let [vertex, fragment] = kernels.each_ref().map(|kernel| {
+                device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(kernel.entry_point),
+                    source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
+                })
+            });
+            let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label,
+                layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label,
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                })),
+                vertex: wgpu::VertexState {
+                    module: &vertex,
+                    entry_point: Some(kernels[0].entry_point),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: options.depth.format,
+                    depth_write_enabled: Some(options.depth.write),
+                    depth_compare: Some(options.depth.compare),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState {
+                    count: options.sample_count,
+                    ..wgpu::MultisampleState::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &fragment,
+                    entry_point: Some(kernels[1].entry_point),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: options.format,
+                        blend: options.blend,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            });
+            (layout, pipeline)
+        })
+        .await?;
+        Ok(Self { layout, pipeline, source: options.source })
+    }
+
+    /// Draws the picture into the host's render pass, over the viewport that is set there. Spheres are drawn where the
+    /// depth test lets them, with the depth that the host's camera gives their points; misses, and hits behind the far
+    /// plane, leave the pixel as it is. Hits in front of the near plane get its depth.
+    ///
+    /// The pipeline and bind group 0 of the pass are then those of the picture. Its viewport, scissor rectangle and
+    /// stencil reference stay as they are.
+    ///
+    /// # Errors
+    /// [`GpuError::NoView`] if the picture has no camera yet.
+    pub fn draw(
+        &self,
+        pass: &mut RenderPass<'_>,
+        picture: &CompositePicture,
+    ) -> Result<(), GpuError> {
+        if !picture.has_camera {
+            return Err(GpuError::NoView);
+        }
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &picture.group, &[]);
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+}
+
+impl CompositePicture {
+    /// A picture in the targets of a frame, which must have data layers. The textures of colour and depth must also
+    /// have the usage `TEXTURE_BINDING`.
+    ///
+    /// # Errors
+    /// If there are no data layers, or a texture has another format or usage.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(
+        composite: &Composite,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(composite, device, targets))
+    }
+
+    /// A picture like that of [`CompositePicture::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`CompositePicture::new`].
+    pub async fn new_async(
+        composite: &Composite,
+        device: &Device,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        let Some(data) = &targets.data else {
+            return Err(GpuError::Target {
+                layer: "data",
+                found: "absent".to_owned(),
+                expected: "present, with the depth of every pixel".to_owned(),
+            });
+        };
+        for (layer, view, format) in [
+            ("color", targets.color, composite.source.texture_format()),
+            ("depth", data.depth, DEPTH_FORMAT),
+        ] {
+            let texture = view.texture();
+            let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
+            if texture.format() != format {
+                return refused(format!("{:?}", texture.format()), format!("{format:?}"));
+            }
+            if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+                let expected = "usable as TEXTURE_BINDING".to_owned();
+                return refused(format!("{:?}", texture.usage()), expected);
+            }
+        }
+        let (view, group) = scoped(device, || {
+            let view = HostView::buffer(device);
+            let resources = [
+                view.as_entire_binding(),
+                wgpu::BindingResource::TextureView(targets.color),
+                wgpu::BindingResource::TextureView(data.depth),
+            ];
+            let entries: Vec<_> = (0..)
+                .zip(resources)
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                .collect();
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole composite"),
+                layout: &composite.layout,
+                entries: &entries,
+            });
+            (view, group)
+        })
+        .await?;
+        let texture = targets.color.texture();
+        let size = [texture.width(), texture.height()];
+        Ok(Self { group, view, size, has_camera: false })
+    }
+
+    /// Sets the camera with which the frame was rendered, on a film with y up, and the pixel of the host's attachments
+    /// at which the top left pixel of the picture is drawn. The picture is never scaled.
+    ///
+    /// The values are queued on `queue` and take effect with its next submission.
+    pub fn set_camera(&mut self, queue: &Queue, camera: &HostCamera, first_pixel: [u32; 2]) {
+        let view = HostView::new(camera, self.size, first_pixel);
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        self.has_camera = true;
+    }
+}

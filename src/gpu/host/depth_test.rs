@@ -1,0 +1,219 @@
+//! The depth of a host ends primary rays, so that pixels hidden by the host's geometry are not shaded.
+
+use wgpu::{BindGroup, BindGroupLayout, Buffer, ComputePass, ComputePipeline, Device, Queue};
+
+use crate::camera::HostCamera;
+use crate::gpu::checks::{Checks, scoped};
+use crate::gpu::error::GpuError;
+use crate::gpu::host::host_view::HostView;
+use crate::gpu::passes::frame::Frame;
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::tiles::Groups;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::shader::layouts::uniform;
+use crate::gpu::shader::pipeline;
+use crate::gpu::shader::{Kernel, part};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
+
+/// The pass that removes hits behind the depth of a host. One is enough for a renderer.
+#[derive(Debug)]
+pub struct DepthTest {
+    layout: BindGroupLayout,
+    pipeline: ComputePipeline,
+}
+
+/// A depth texture of the host, and the camera that it was rendered with.
+#[derive(Debug)]
+pub struct HostDepth {
+    group: BindGroup,
+    view: Buffer,
+    texture_size: [u32; 2],
+    /// The size of the pictures, once the camera is set.
+    size: Option<[u32; 2]>,
+}
+
+pub(in crate::gpu) fn hide_kernel() -> Kernel {
+    let parts = vec![
+        part!("scene/records.wgsl"),
+        part!("scene/frame.wgsl"),
+        part!("math/fence.wgsl"),
+        part!("primary/hits.wgsl"),
+        part!("host/clip_depth.wgsl"),
+        part!("host/hide.wgsl"),
+    ];
+    Kernel { entry_point: "hide", parts }
+}
+
+impl DepthTest {
+    /// Builds the pipeline for the frames of a renderer.
+    ///
+    /// # Errors
+    /// If the device rejects the kernel, which is a defect of this crate or of the driver.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
+        block_on(Self::new_async(renderer, device))
+    }
+
+    /// Builds the pipeline like [`DepthTest::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`DepthTest::new`].
+    pub async fn new_async(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        };
+        let depth = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let checks = Checks::default();
+        let layout = checks.create(device, || {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("pinhole host depth"),
+                entries: &[entry(0, uniform::<HostView>()), entry(1, depth)],
+            })
+        });
+        let groups = [&renderer.layouts.frame, &layout];
+        let pipeline = pipeline(device, &hide_kernel(), &groups, &checks);
+        checks.passed().await?;
+        Ok(Self { layout, pipeline })
+    }
+
+    fn record(
+        &self,
+        pass: &mut ComputePass<'_>,
+        frame: &Frame,
+        band: usize,
+        size: [u32; 2],
+        depth: &HostDepth,
+    ) {
+        let [width, height] = Groups::of_size(size).size;
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        pass.set_bind_group(1, &depth.group, &[]);
+        pass.dispatch_workgroups(width, height, 1);
+    }
+}
+
+impl HostDepth {
+    /// A depth texture with one sample for each pixel, of any depth format, and the usage `TEXTURE_BINDING`. The view
+    /// must show the depth aspect alone.
+    ///
+    /// # Errors
+    /// If the texture cannot be bound, for one of these reasons.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(
+        test: &DepthTest,
+        device: &Device,
+        texture: &wgpu::TextureView,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(test, device, texture))
+    }
+
+    /// The depth like that of [`HostDepth::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`HostDepth::new`].
+    pub async fn new_async(
+        test: &DepthTest,
+        device: &Device,
+        texture: &wgpu::TextureView,
+    ) -> Result<Self, GpuError> {
+        let (view, group) = scoped(device, || {
+            let view = HostView::buffer(device);
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("pinhole host depth"),
+                layout: &test.layout,
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
+                    wgpu::BindGroupEntry {
+                        binding: 1,
+                        resource: wgpu::BindingResource::TextureView(texture),
+                    },
+                ],
+            });
+            (view, group)
+        })
+        .await?;
+        let texture = texture.texture();
+        let texture_size = [texture.width(), texture.height()];
+        Ok(Self { group, view, texture_size, size: None })
+    }
+
+    /// Sets the camera that the depth was rendered with, and that the frame has, on a film with y up, and the pixel of
+    /// the depth texture at the top left pixel of the frame.
+    ///
+    /// The values are queued on `queue` and take effect with its next submission.
+    ///
+    /// # Errors
+    /// If the frame does not lie within the depth texture.
+    pub fn set_camera(
+        &mut self,
+        queue: &Queue,
+        camera: &HostCamera,
+        frame: &Frame,
+        first_pixel: [u32; 2],
+    ) -> Result<(), GpuError> {
+        let size = frame.size();
+        if (0..2).any(|axis| {
+            u64::from(first_pixel[axis]) + u64::from(size[axis]) > self.texture_size[axis].into()
+        }) {
+            let [width, height] = self.texture_size;
+            return Err(GpuError::Target {
+                layer: "host's depth",
+                found: format!("{width}x{height}"),
+                expected: format!(
+                    "large enough for {}x{} pixels from pixel {first_pixel:?} on",
+                    size[0], size[1]
+                ),
+            });
+        }
+        let view = HostView::new(camera, size, first_pixel);
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        self.size = Some(size);
+        Ok(())
+    }
+}
+
+impl Renderer {
+    /// Records the frame's view of the scene like [`Renderer::record`], except that hits behind the host's depth become
+    /// misses before they are shaded: they have the background's colour, and neither depth nor id. A hit at the very
+    /// depth of the host stays.
+    ///
+    /// The comparison is that of a depth test, between depths that are computed in f32; it may be wrong only where the
+    /// two differ by less than rounding, a few units of 2⁻²⁴ of the numbers that are subtracted.
+    ///
+    /// # Errors
+    /// The errors of [`Renderer::record`]; [`GpuError::NoView`] if the depth has no camera yet, or that of a frame of
+    /// another size.
+    pub fn record_with_depth(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        test: &DepthTest,
+        depth: &HostDepth,
+    ) -> Result<(), GpuError> {
+        if depth.size != Some(frame.size()) {
+            return Err(GpuError::NoView);
+        }
+        let bands = &frame.view(self, scene)?.bands;
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("pinhole"),
+            timestamp_writes: None,
+        });
+        for part in frame.parts() {
+            self.record_trace(&mut pass, scene, frame, part)?;
+            if part.is_last_of_band {
+                test.record(&mut pass, frame, part.band, bands[part.band], depth);
+                self.record_shade(&mut pass, scene, frame, part.band)?;
+            }
+        }
+        Ok(())
+    }
+}

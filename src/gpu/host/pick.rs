@@ -1,0 +1,231 @@
+//! What is at a pixel, read back without waiting.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use glam::DVec3;
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
+
+use crate::camera::View;
+use crate::geometry::ray::Ray;
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::Targets;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
+use crate::image::NO_ID;
+use crate::verify::NO_HIT;
+
+/// A ring of small buffers into which the id and depth of a pixel are copied. The result is there some frames later.
+#[derive(Debug)]
+pub struct Picker {
+    slots: Vec<Slot>,
+    /// The slot of the next request, and that of the oldest one that has not been taken.
+    next: usize,
+    oldest: usize,
+}
+
+/// What is at a pixel of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picked {
+    /// Column and row of the pixel.
+    pub pixel: [u32; 2],
+    /// The sphere whose surface is nearest at the centre of the pixel; `None` for a miss.
+    pub hit: Option<PickedHit>,
+}
+
+/// A sphere at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedHit {
+    /// Index of the sphere in input order.
+    pub id: u32,
+    /// Distance along the ray, in scene units, in the precision of the depth layer.
+    pub distance: f32,
+    /// The point on the sphere in world space.
+    pub place: DVec3,
+}
+
+/// Why a pixel cannot be picked, or was not.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PickError {
+    /// The pixel is not in the picture.
+    #[error("there is no pixel {pixel:?} in a picture of {}x{}", size[0], size[1])]
+    Outside {
+        /// Column and row that were asked for.
+        pixel: [u32; 2],
+        /// Size of the picture.
+        size: [u32; 2],
+    },
+    /// The film of the view has another size than the targets.
+    #[error("the film is {}x{} pixels large, and the targets {}x{}", film[0], film[1], size[0], size[1])]
+    OtherFilm {
+        /// Size of the film.
+        film: [u32; 2],
+        /// Size of the targets.
+        size: [u32; 2],
+    },
+    /// The frame has no data layers.
+    #[error("the targets have no data layers; build the renderer with `data_layers`")]
+    NoDataLayers,
+    /// A texture cannot be copied from.
+    #[error("the texture of the layer {layer} lacks the usage COPY_SRC")]
+    Usage {
+        /// The layer.
+        layer: &'static str,
+    },
+    /// All buffers wait for results.
+    #[error("all {capacity} buffers wait for results; take them, or make a larger ring")]
+    Full {
+        /// Number of buffers.
+        capacity: usize,
+    },
+    /// The encoder was dropped without a submission, or the device was lost.
+    #[error("the pick of pixel {pixel:?} has no result: its commands were not executed")]
+    Lost {
+        /// The pixel.
+        pixel: [u32; 2],
+    },
+}
+
+#[derive(Debug)]
+struct Slot {
+    buffer: Buffer,
+    state: Arc<AtomicU8>,
+    /// The pixel and its ray, until the result is taken.
+    asked: Option<([u32; 2], Option<Ray>)>,
+}
+
+const WAITING: u8 = 0;
+const READY: u8 = 1;
+const LOST: u8 = 2;
+
+/// The state of a slot that waits. If the callback is dropped before it is called, the result is lost.
+struct Waiting(Arc<AtomicU8>);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        let _ = self.0.compare_exchange(WAITING, LOST, Ordering::AcqRel, Ordering::Acquire);
+    }
+}
+
+impl Picker {
+    /// A ring of `capacity` buffers, at least one, for as many picks at a time. Three are enough for one in each frame.
+    ///
+    /// # Errors
+    /// If the device has no memory left.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(device: &Device, capacity: usize) -> Result<Self, GpuError> {
+        block_on(Self::new_async(device, capacity))
+    }
+
+    /// A ring like that of [`Picker::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`Picker::new`].
+    pub async fn new_async(device: &Device, capacity: usize) -> Result<Self, GpuError> {
+        let slots = scoped(device, || {
+            let slot = |_| Slot {
+                buffer: device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("pinhole pick"),
+                    size: 8,
+                    usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+                    mapped_at_creation: false,
+                }),
+                state: Arc::new(AtomicU8::new(WAITING)),
+                asked: None,
+            };
+            (0..capacity.max(1)).map(slot).collect()
+        })
+        .await?;
+        Ok(Self { slots, next: 0, oldest: 0 })
+    }
+
+    /// Records copies of the id and depth at a pixel, given as column and row, into the encoder, after the frame was
+    /// recorded there or submitted before. `view` must be that of the frame.
+    ///
+    /// # Errors
+    /// The errors of [`PickError`] except [`PickError::Lost`]; nothing is recorded then.
+    pub fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        targets: &Targets<'_>,
+        view: &View<'_>,
+        pixel: [u32; 2],
+    ) -> Result<(), PickError> {
+        let data = targets.data.ok_or(PickError::NoDataLayers)?;
+        let size = [data.id.texture().width(), data.id.texture().height()];
+        let film = [view.film.width(), view.film.height()];
+        if film != size {
+            return Err(PickError::OtherFilm { film, size });
+        }
+        if pixel[0] >= size[0] || pixel[1] >= size[1] {
+            return Err(PickError::Outside { pixel, size });
+        }
+        let layers = [("id", data.id.texture()), ("depth", data.depth.texture())];
+        for (layer, texture) in layers {
+            if !texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
+                return Err(PickError::Usage { layer });
+            }
+        }
+        let capacity = self.slots.len();
+        let slot = &mut self.slots[self.next];
+        if slot.asked.is_some() {
+            return Err(PickError::Full { capacity });
+        }
+        for ((_, texture), offset) in layers.into_iter().zip([0, 4]) {
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo {
+                    origin: wgpu::Origin3d { x: pixel[0], y: pixel[1], z: 0 },
+                    ..texture.as_image_copy()
+                },
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &slot.buffer,
+                    layout: wgpu::TexelCopyBufferLayout { offset, ..Default::default() },
+                },
+                wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            );
+        }
+        slot.state = Arc::new(AtomicU8::new(WAITING));
+        let waiting = Waiting(Arc::clone(&slot.state));
+        encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| {
+            waiting.0.store(if mapped.is_ok() { READY } else { LOST }, Ordering::Release);
+        });
+        slot.asked = Some((pixel, view.ray_through_center(pixel)));
+        self.next = (self.next + 1) % capacity;
+        Ok(())
+    }
+
+    /// Takes the oldest result, if it is there. This never waits: results arrive when the program submits or polls its
+    /// device, after the device has executed the copies.
+    ///
+    /// # Errors
+    /// [`PickError::Lost`], once for each pick whose commands were not executed.
+    pub fn take(&mut self) -> Result<Option<Picked>, PickError> {
+        let capacity = self.slots.len();
+        let slot = &mut self.slots[self.oldest];
+        let Some((pixel, ray)) = slot.asked else { return Ok(None) };
+        let state = slot.state.load(Ordering::Acquire);
+        if state == WAITING {
+            return Ok(None);
+        }
+        slot.asked = None;
+        self.oldest = (self.oldest + 1) % capacity;
+        if state == LOST {
+            return Err(PickError::Lost { pixel });
+        }
+        let words = slot.buffer.get_mapped_range(..).map(|bytes| {
+            let word = |at: usize| u32::from_ne_bytes([0, 1, 2, 3].map(|i| bytes[at + i]));
+            [word(0), word(4)]
+        });
+        slot.buffer.unmap();
+        let [id, depth] = words.map_err(|_| PickError::Lost { pixel })?;
+        let distance = f32::from_bits(depth);
+        let hit = ray.filter(|_| id != NO_ID && distance < NO_HIT).map(|ray| PickedHit {
+            id,
+            distance,
+            place: ray.at(f64::from(distance)),
+        });
+        Ok(Some(Picked { pixel, hit }))
+    }
+}

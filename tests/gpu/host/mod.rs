@@ -1,0 +1,24 @@
+//! Tests of spheres among the triangles of a host program.
+#![allow(clippy::float_cmp, reason = "depths to which a host clears are exact")]
+
+mod depth_in;
+mod depth_out;
+mod pick;
+mod same_picture;
+mod stage;
+mod triangle;
+
+use libtest_mimic::Trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    [
+        same_picture::trials(),
+        depth_out::trials(),
+        triangle::trials(),
+        depth_in::trials(),
+        pick::trials(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

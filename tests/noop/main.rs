@@ -1,0 +1,126 @@
+//! What a host program relies on, tested on wgpu's `noop` device. It has WebGPU's default limits and no features, checks
+//! every call as any device does, and executes nothing. No driver is needed.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod async_forms;
+mod calls;
+mod passes;
+mod pieces;
+mod steady_state;
+mod version;
+
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::{
+    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+};
+use pinhole::gpu::{DataTargets, Frame, Renderer, RendererOptions, SceneBuffers, Targets, wgpu};
+use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
+
+/// A program with a device that has WebGPU's default limits and features.
+struct Host {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+}
+
+impl Host {
+    fn new() -> Self {
+        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
+        assert_eq!(device.features(), wgpu::DeviceDescriptor::default().required_features);
+        Self { device, queue }
+    }
+
+    fn texture(&self, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("host"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING,
+            view_formats: &[],
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
+        let color = self.texture(size, options.color.texture_format());
+        let depth = self.texture(size, wgpu::TextureFormat::R32Float);
+        let normal = self.texture(size, wgpu::TextureFormat::Rgba32Float);
+        let id = self.texture(size, wgpu::TextureFormat::R32Uint);
+        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
+        let targets = Targets { color: &color, data: options.data_layers.then_some(data) };
+        Frame::new(renderer, &self.device, &targets).unwrap()
+    }
+
+    /// A scene in a structure, divided into bricks of at most `binding` bytes.
+    fn scene(
+        &self,
+        renderer: &Renderer,
+        scene: &Scene,
+        choice: AccelChoice,
+        binding: u64,
+    ) -> SceneBuffers {
+        let accel = AccelPlan::new(scene.spheres(), choice, binding).build(scene.spheres());
+        SceneBuffers::with_accel(renderer, &self.device, &self.queue, scene, &accel).unwrap()
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// Runs `work` and returns what the device refuses of it.
+    fn refused(&self, work: impl FnOnce()) -> Option<String> {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        work();
+        pollster::block_on(scope.pop()).map(|error| error.to_string())
+    }
+}
+
+/// Enough spheres for every structure.
+fn spheres() -> Vec<[f32; 4]> {
+    let spheres = (0..300_u16).map(|i| {
+        let i = f32::from(i);
+        [(i * 0.7).cos() * 3.0, i * 0.02 - 3.0, (i * 0.7).sin() * 3.0, 0.2]
+    });
+    spheres.collect()
+}
+
+fn scene() -> Scene {
+    Scene::from_f32(spheres(), LinearRgb::WHITE).unwrap()
+}
+
+fn pinhole_camera() -> PinholeCamera {
+    let pose = Pose::looking_at([0.0, 1.0, 12.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap()
+}
+
+/// A camera of every kind.
+fn cameras() -> Vec<Box<dyn Camera>> {
+    let pose = Pose::looking_at([0.0, 1.0, 12.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let pinhole = pinhole_camera();
+    vec![
+        Box::new(pinhole),
+        Box::new(OrthographicCamera::new(pose, [6.0, 4.0]).unwrap()),
+        Box::new(ThinLensCamera::new(pinhole, 0.1, 12.0).unwrap()),
+        Box::new(PanoramaCamera::new(pose)),
+        Box::new(FisheyeCamera::new(pose, 3.0, 1.5).unwrap()),
+    ]
+}
+
+const SIZE: [u32; 2] = [48, 32];
+
+fn film() -> Film {
+    Film::new(SIZE[0], SIZE[1]).unwrap()
+}
+
+/// A frame of a scene whose view is set, and that is ready to be recorded.
+fn ready(host: &Host, renderer: &Renderer, options: &RendererOptions) -> (SceneBuffers, Frame) {
+    let buffers = host.scene(renderer, &scene(), AccelChoice::Auto, 1 << 27);
+    let mut frame = host.frame(renderer, options, SIZE);
+    let camera = pinhole_camera();
+    let view = View::new(&camera, film());
+    frame.set_view(&host.queue, &buffers, &view, &RenderSettings::default()).unwrap();
+    (buffers, frame)
+}
