@@ -14,8 +14,6 @@ pub use crate::accel::wide_node::{WIDE_LEAF, WideNode};
 pub use crate::accel::wide_tree::{WIDE_LEVELS, WideTree};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::ShaderEdit;
-#[cfg(feature = "gpu")]
-pub use crate::gpu::passes::hosted::{HostedPicture, HostedSums};
 pub use crate::verify::paths::{
     PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky,
 };

@@ -2,8 +2,8 @@
 // brick, and that of the first brick also the misses. Twin: src/cpu/shade.rs.
 // dispatched: for each band and each brick, with 8x8 pixels for each workgroup.
 // provides: shade
-// needs: Hit, NO_HIT, NO_ID, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, make_entry, shape_normal, shapes,
-//   sphere_color, start_fences, surface_color, write_color, write_layers
+// needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, make_entry,
+//   shape_normal, shapes, sphere_color, start_fences, surface_color, write_color, write_layers, write_with_alpha
 
 @compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
@@ -20,7 +20,8 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     let pixel = frame.target_origin + invocation.xy;
     if (hit.id == NO_ID) {
         if (brick.is_first != 0u) {
-            write_color(pixel, frame.background);
+            let alpha = select(1.0, 0.0, (frame.shading & SHADING_TRANSPARENT) != 0u);
+            write_with_alpha(pixel, frame.background, alpha);
             // The depth is NO_HIT for a miss, or the result of `occluded`, which records no ids.
             write_layers(pixel, hit.t, vec3f(0.0), NO_ID);
         }

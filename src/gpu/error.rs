@@ -130,6 +130,11 @@ pub enum GpuError {
         /// The integrator that was requested.
         integrator: &'static str,
     },
+    /// A lit picture was requested for the integrator `primary`, which has no light that samples are taken of.
+    #[error(
+        "lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`"
+    )]
+    NotLit,
     /// A studio picture needs a separate structure of the spheres that cast shadows, and the scene was uploaded
     /// without.
     #[error(
@@ -138,6 +143,16 @@ pub enum GpuError {
          settings"
     )]
     NoOccluders,
+    /// A host allowed fewer rays than the smallest part of a lit picture has.
+    #[error(
+        "a recording may trace {given} rays, too few for any part of the picture; allow {needed} or more"
+    )]
+    Budget {
+        /// Number of rays of the smallest part that is next.
+        needed: u64,
+        /// Number of rays that were allowed.
+        given: u64,
+    },
     /// The renderer's pipelines are still being built: `Renderer::begin` was called, and `Renderer::build_next` has more
     /// to do.
     #[error(

@@ -72,12 +72,14 @@ pub struct PrimarySettings {
     pub shading: Shading,
     /// The colour where no sphere is hit: the background, or black where the picture is transparent.
     pub background: LinearRgb,
+    /// Whether pixels without a sphere have the alpha 0, in targets that keep alpha.
+    pub is_transparent: bool,
 }
 
 impl Default for PrimarySettings {
     /// The settings of [`RenderSettings::default`](super::RenderSettings::default): headlight over white.
     fn default() -> Self {
-        Self { shading: Shading::default(), background: LinearRgb::WHITE }
+        Self { shading: Shading::default(), background: LinearRgb::WHITE, is_transparent: false }
     }
 }
 

@@ -158,7 +158,7 @@ impl RenderSettings {
             Integrator::Primary(shading) => {
                 let background =
                     if self.is_transparent { LinearRgb::BLACK } else { self.background };
-                Some(PrimarySettings { shading, background })
+                Some(PrimarySettings { shading, background, is_transparent: self.is_transparent })
             }
             Integrator::Studio(_) | Integrator::Path(_) => None,
         }

@@ -44,14 +44,24 @@ impl Host {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
+    fn with_targets<T>(
+        &self,
+        options: &RendererOptions,
+        size: [u32; 2],
+        work: impl FnOnce(&Targets<'_>) -> T,
+    ) -> T {
         let color = self.texture(size, options.color.texture_format());
         let depth = self.texture(size, wgpu::TextureFormat::R32Float);
         let normal = self.texture(size, wgpu::TextureFormat::Rgba32Float);
         let id = self.texture(size, wgpu::TextureFormat::R32Uint);
         let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        let targets = Targets { color: &color, data: options.data_layers.then_some(data) };
-        Frame::new(renderer, &self.device, &targets).unwrap()
+        work(&Targets { color: &color, data: options.data_layers.then_some(data) })
+    }
+
+    fn frame(&self, renderer: &Renderer, options: &RendererOptions, size: [u32; 2]) -> Frame {
+        self.with_targets(options, size, |targets| {
+            Frame::new(renderer, &self.device, targets).unwrap()
+        })
     }
 
     /// A scene in a structure, divided into bricks of at most `binding` bytes.

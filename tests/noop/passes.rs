@@ -1,8 +1,9 @@
 //! Every kind of pass, recorded and submitted on a device with WebGPU's default limits and no features.
 
 use pinhole::accel::{AccelChoice, AccelPlan, Structure};
-use pinhole::gpu::{ColorTarget, Query, Recolor, Renderer, RendererOptions};
-use pinhole::internals::HostedPicture;
+use pinhole::gpu::{
+    ColorTarget, LitPicture, LitRenderer, Query, Recolor, Renderer, RendererOptions,
+};
 use pinhole::render::Sampling;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, RenderSettings, Scene, SphereArray, View};
@@ -93,21 +94,29 @@ fn new_colors() {
 fn studios_and_paths() {
     let host = Host::new();
     let scene = scene();
-    let renderer = Renderer::new(&host.device, &RendererOptions::default()).unwrap();
-    let buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
-    for settings in [RenderSettings::studio(), RenderSettings::path()] {
-        let sampling = Sampling { samples: 2, ..settings.sampling };
-        let settings = RenderSettings { sampling, ..settings };
-        for camera in cameras() {
-            let view = View::new(camera.as_ref(), film());
-            for is_indirect in [false, true] {
+    for (color, data_layers, indirect) in [
+        (ColorTarget::Srgb8, false, true),
+        (ColorTarget::Linear16, true, true),
+        (ColorTarget::Linear32, true, false),
+    ] {
+        let options =
+            RendererOptions { color, data_layers, indirect, ..RendererOptions::default() };
+        let renderer = Renderer::new(&host.device, &options).unwrap();
+        let buffers = host.scene(&renderer, &scene, AccelChoice::Auto, 1 << 27);
+        let lit = LitRenderer::new(renderer);
+        for settings in [RenderSettings::studio(), RenderSettings::path()] {
+            let sampling = Sampling { samples: 2, ..settings.sampling };
+            let settings = RenderSettings { sampling, ..settings };
+            for camera in cameras() {
+                let view = View::new(camera.as_ref(), film());
                 let (device, queue) = (&host.device, &host.queue);
-                let picture =
-                    HostedPicture::new(device, queue, &buffers, &view, &settings, is_indirect)
-                        .unwrap();
+                let mut picture = host.with_targets(&options, SIZE, |targets| {
+                    LitPicture::new(&lit, device, queue, &buffers, &view, &settings, targets)
+                        .unwrap()
+                });
                 let refused = host.refused(|| {
                     let mut encoder = host.encoder();
-                    picture.record(queue, &mut encoder, &buffers, &settings, 0..2).unwrap();
+                    picture.record(&lit, queue, &mut encoder, &buffers, u64::MAX).unwrap();
                     queue.submit([encoder.finish()]);
                 });
                 assert_eq!(refused, None, "{} {:?}", settings.integrator.name(), camera.kind());

@@ -3,7 +3,9 @@
 use std::thread;
 
 use pinhole::camera::CameraKind;
-use pinhole::gpu::{Frame, GpuError, Headless, Recolor, Renderer, RendererOptions, SceneBuffers};
+use pinhole::gpu::{
+    Frame, GpuError, Headless, LitPicture, Recolor, Renderer, RendererOptions, SceneBuffers,
+};
 
 use crate::async_forms::broken;
 use crate::{Host, ready};
@@ -14,6 +16,7 @@ fn everything_may_be_shared_between_threads() {
     shared::<Renderer>();
     shared::<SceneBuffers>();
     shared::<Frame>();
+    shared::<LitPicture>();
     shared::<Recolor>();
     shared::<Headless>();
     shared::<GpuError>();

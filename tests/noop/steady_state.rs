@@ -1,10 +1,12 @@
 //! What recording a frame costs a host: nothing is created, submitted, awaited or read back.
 
-use pinhole::gpu::{Renderer, RendererOptions, wgpu};
+use pinhole::accel::AccelChoice;
+use pinhole::camera::{PinholeCamera, Pose};
+use pinhole::gpu::{LitPicture, LitRenderer, LitState, Renderer, RendererOptions, wgpu};
 use pinhole::{RenderSettings, View};
 
 use crate::calls::{self, Calls};
-use crate::{Host, film, pinhole_camera, ready};
+use crate::{Host, SIZE, film, pinhole_camera, ready, scene};
 
 /// The counts below mean something: each kind of call is seen.
 #[test]
@@ -53,5 +55,51 @@ fn recording_creates_submits_awaits_and_reads_nothing() {
             assert_eq!(recorded, Calls { all: recorded.all, ..Calls::default() });
             host.queue.submit([encoder.finish()]);
         }
+    }
+}
+
+/// Lit pictures allocate nothing while the camera moves and while samples accumulate. Each recording asks for a few
+/// bytes to be mapped when it is submitted, and reads those of an earlier one.
+#[test]
+fn lit_pictures_create_submit_and_await_nothing() {
+    let host = Host::new();
+    let (device, queue) = (&host.device, &host.queue);
+    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
+    let renderer = Renderer::new(device, &options).unwrap();
+    let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
+    let lit = LitRenderer::new(renderer);
+    for settings in [RenderSettings::studio(), RenderSettings::path()] {
+        let camera = pinhole_camera();
+        let pose = Pose::looking_at([0.5, 1.0, 12.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+        let moved_camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
+        let view = View::new(&camera, film());
+        let mut picture = host.with_targets(&options, SIZE, |targets| {
+            LitPicture::new(&lit, device, queue, &scene, &view, &settings, targets).unwrap()
+        });
+        let mut record = |moves: bool| {
+            let moved = if moves { moved_camera } else { camera };
+            let view = View::new(&moved, film());
+            let (set, begins_again) =
+                calls::of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+            assert_eq!(begins_again.unwrap(), moves);
+            assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
+            assert!(set.writes <= if moves { 4 } else { 0 }, "{set:?}");
+            let mut encoder = host.encoder();
+            let (recorded, done) =
+                calls::of(|| picture.record(&lit, queue, &mut encoder, &scene, 1 << 16));
+            let mapped = recorded.mapped;
+            let only = Calls { writes: 1, mapped, all: recorded.all, ..Calls::default() };
+            assert_eq!(recorded, only);
+            assert!(mapped <= 1, "{recorded:?}");
+            let done = done.unwrap();
+            assert!(
+                done.rays > 0 && done.state == LitState::Refining && !done.was_lost,
+                "{done:?}"
+            );
+            queue.submit([encoder.finish()]);
+            device.poll(wgpu::PollType::Poll).unwrap();
+        };
+        record(false);
+        record(true);
     }
 }

@@ -147,7 +147,7 @@ impl<'a> Flow<'a> {
             return Ok(());
         };
         let queue = self.headless.queue();
-        self.frame.queue_parameters(queue, &self.recorder.take_parameters());
+        self.frame.queue_parameters(queue, 0, &self.recorder.take_parameters());
         let at = Instant::now();
         let index = self.headless.start(encoder);
         for (tile, samples) in self.accumulated.drain(..) {

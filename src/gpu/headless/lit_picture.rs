@@ -10,7 +10,7 @@ use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::lit::sums::{self, Totals};
 use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, Round,
+    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Round,
 };
 use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -141,7 +141,9 @@ impl Work<'_> {
         let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let tiles = tiles(&view.film, sizes.tile);
         let records = tiles.map(|tile| (tile, scenes.frames(view, region, tile, limit)));
-        let frame = LitFrame::new(device, queue, passes, sizes, lighting, records).await?;
+        let frame =
+            LitFrame::new((device, queue), passes, sizes, lighting, RecordedBy::Headless, records)
+                .await?;
         let mut flow = Flow::new(headless, &frame, passes, scenes.all);
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
         let mut wants_noise = false;

@@ -13,7 +13,7 @@ use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::lit::records::{FILM_SLOTS, LightingParameters};
 use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, Round,
+    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, RecordedBy, Round,
 };
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -140,8 +140,15 @@ impl Headless {
             let frames = scenes.frames(view, region, tile, limit);
             let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
             let tiles = std::iter::once((tile, frames));
-            let frame =
-                LitFrame::new(self.device(), self.queue(), passes, sizes, &lighting, tiles).await?;
+            let frame = LitFrame::new(
+                (self.device(), self.queue()),
+                passes,
+                sizes,
+                &lighting,
+                RecordedBy::Headless,
+                tiles,
+            )
+            .await?;
             recording.samples =
                 self.record_samples(passes, scenes, &frame, &lighting, samples, watch).await?;
             Ok(recording)

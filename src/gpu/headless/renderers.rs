@@ -78,6 +78,7 @@ impl Renderers {
                     several_bricks,
                     query,
                     keeps_rays,
+                    indirect: true,
                     edits: self.edits.clone(),
                 };
                 Ok(entry.insert(Renderer::new_async(device, &options).await?))

@@ -6,6 +6,7 @@ pub(in crate::gpu) mod composite;
 pub(in crate::gpu) mod composite_options;
 pub(in crate::gpu) mod depth_test;
 pub(in crate::gpu) mod host_view;
+pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod pick;
 
 /// The kernels of everything here.
@@ -14,6 +15,7 @@ pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     use composite_options::TargetEncoding;
 
     let mut kernels = vec![composite::cover_kernel(), depth_test::hide_kernel()];
+    kernels.extend(ColorTarget::ALL.iter().map(|color| lit::resolve::resolve_kernel(*color)));
     for source in [ColorTarget::Srgb8, ColorTarget::Linear16] {
         for encoding in [TargetEncoding::Linear, TargetEncoding::Srgb] {
             kernels.push(composite::composite_kernel(source, encoding));

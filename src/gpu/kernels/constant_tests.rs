@@ -100,6 +100,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "NO_PATH",
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",
+    "SHADING_TRANSPARENT",
     "SMALLEST_SPOT",
     // The reference has it in f64.
     "NO_NOISE",

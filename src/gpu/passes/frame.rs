@@ -216,6 +216,25 @@ impl Frame {
         settings: &RenderSettings,
     ) -> Result<(), GpuError> {
         let primary = scene.primary_settings(settings)?;
+        self.set_primary(queue, scene, view, &primary)
+    }
+
+    /// Sets a view like [`Frame::set_view`], with settings that have been checked.
+    pub(in crate::gpu) fn set_primary(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        primary: &PrimarySettings,
+    ) -> Result<(), GpuError> {
+        self.check_film(view)?;
+        let tile = Tile { origin: [0, 0], size: self.size, in_target: [0, 0] };
+        self.set_tile(queue, scene, view, tile, primary);
+        Ok(())
+    }
+
+    /// Returns an error if the film has another size than the targets.
+    pub(in crate::gpu) fn check_film(&self, view: &View<'_>) -> Result<(), GpuError> {
         let film_size = [view.film.width(), view.film.height()];
         if film_size != self.size {
             return Err(GpuError::Target {
@@ -224,8 +243,6 @@ impl Frame {
                 expected: format!("as large as the film, {}", describe_size(film_size)),
             });
         }
-        let tile = Tile { origin: [0, 0], size: film_size, in_target: [0, 0] };
-        self.set_tile(queue, scene, view, tile, &primary);
         Ok(())
     }
 
@@ -326,6 +343,15 @@ impl Frame {
         self.bytes
     }
 
+    /// Returns an error if the frame was made for a renderer with other targets.
+    pub(in crate::gpu) fn check_renderer(&self, renderer: &Renderer) -> Result<(), GpuError> {
+        let made_for = (self.color, self.data_layers, self.rays.is_some());
+        if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
+            return Err(GpuError::OtherRenderer);
+        }
+        Ok(())
+    }
+
     /// The view, if this renderer can record it for this scene.
     pub(in crate::gpu) fn view(
         &self,
@@ -333,10 +359,7 @@ impl Frame {
         scene: &SceneBuffers,
     ) -> Result<&SetView, GpuError> {
         let view = self.view.as_ref().ok_or(GpuError::NoView)?;
-        let made_for = (self.color, self.data_layers, self.rays.is_some());
-        if made_for != (renderer.color, renderer.data_layers, renderer.keeps_rays) {
-            return Err(GpuError::OtherRenderer);
-        }
+        self.check_renderer(renderer)?;
         if view.scene != scene.id() {
             return Err(GpuError::OtherScene);
         }

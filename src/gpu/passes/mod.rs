@@ -3,7 +3,6 @@
 pub(in crate::gpu) mod bands;
 pub(in crate::gpu) mod emitter_table;
 pub(in crate::gpu) mod frame;
-pub(crate) mod hosted;
 pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod order;
 pub(in crate::gpu) mod record;

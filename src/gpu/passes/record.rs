@@ -41,7 +41,11 @@ impl Renderer {
     }
 
     /// Returns an error if a pipeline that the frame needs is missing.
-    fn check_pipelines(&self, scene: &SceneBuffers, frame: &Frame) -> Result<(), GpuError> {
+    pub(in crate::gpu) fn check_pipelines(
+        &self,
+        scene: &SceneBuffers,
+        frame: &Frame,
+    ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
         for part in frame.parts().filter(|part| part.groups.count() > 0) {
             self.trace_pipeline(camera, scene.bricks()[part.brick].kind, part)?;

@@ -24,6 +24,7 @@ pub struct Renderer {
     pub(in crate::gpu) color: ColorTarget,
     pub(in crate::gpu) data_layers: bool,
     pub(in crate::gpu) keeps_rays: bool,
+    pub(in crate::gpu) is_indirect: bool,
     query: Query,
     edits: Vec<ShaderEdit>,
     /// Pipelines that can be recorded.
@@ -101,6 +102,7 @@ impl Renderer {
             color,
             data_layers,
             keeps_rays,
+            is_indirect: options.indirect,
             query,
             edits: options.edits.clone(),
             built: Vec::new(),
@@ -163,6 +165,11 @@ impl Renderer {
 
     fn in_building(&mut self) -> &mut VecDeque<(PassKey, ComputePipeline, Checks)> {
         self.building.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The edits of the shader source.
+    pub(in crate::gpu) fn edits(&self) -> &[ShaderEdit] {
+        &self.edits
     }
 
     fn kernel(&self, key: PassKey) -> Kernel {

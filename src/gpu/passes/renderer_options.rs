@@ -25,6 +25,9 @@ pub struct RendererOptions {
     pub query: Query,
     /// Whether frames keep the ray of every pixel, in 32 bytes each, for [`verify`](crate::verify).
     pub keeps_rays: bool,
+    /// Whether lit pictures use indirect dispatches, so that the device traces only paths that continue. All adapters
+    /// of this crate support them; the pictures do not depend on it.
+    pub indirect: bool,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
@@ -42,6 +45,7 @@ impl Default for RendererOptions {
             several_bricks: true,
             query: Query::Nearest,
             keeps_rays: false,
+            indirect: true,
             edits: Vec::new(),
         }
     }

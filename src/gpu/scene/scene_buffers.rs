@@ -31,6 +31,14 @@ pub(in crate::gpu) struct SceneId {
     shape: u64,
 }
 
+/// Identifies what a scene on a device looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) struct SceneLook {
+    id: SceneId,
+    /// Number of times that its colours have changed since it was copied to the device.
+    colors: u64,
+}
+
 impl SceneId {
     fn new() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
@@ -42,6 +50,7 @@ impl SceneId {
 #[derive(Debug)]
 pub struct SceneBuffers {
     id: SceneId,
+    colors: u64,
     space: SceneSpace,
     /// The data of the host's scene that pictures need.
     summary: SceneSummary,
@@ -127,6 +136,42 @@ impl SceneBuffers {
         Self::upload(renderer, device, queue, summary, accel, &ids, async || Ok(())).await
     }
 
+    /// Copies a scene like [`SceneBuffers::new`], with a second structure of the spheres that cast shadows if some do
+    /// not, because they are not opaque. Studios of such scenes need it.
+    ///
+    /// # Errors
+    /// The same as for [`SceneBuffers::with_accel`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn for_studio(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::for_studio_async(renderer, device, queue, scene))
+    }
+
+    /// Copies a scene like [`SceneBuffers::for_studio`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`SceneBuffers::with_accel`].
+    pub async fn for_studio_async(
+        renderer: &Renderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &Scene,
+    ) -> Result<Self, GpuError> {
+        let all = Self::new_async(renderer, device, queue, scene).await?;
+        let Some(opaque) = scene.opaque() else { return Ok(all) };
+        let limit = binding_limit(&device.limits());
+        let accel =
+            AccelPlan::new(opaque.spheres(), AccelChoice::Auto, limit).build(opaque.spheres());
+        let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
+        let none = async || Ok(());
+        let some = Self::upload(renderer, device, queue, summary, &accel, &ids, none).await?;
+        Ok(all.with_occluders(some))
+    }
+
     /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can
     /// submit the queued copy and free its memory.
     pub(in crate::gpu) async fn upload(
@@ -154,6 +199,7 @@ impl SceneBuffers {
         let (min, max) = accel.bounds();
         Ok(Self {
             id: SceneId::new(),
+            colors: 0,
             space: SceneSpace { origin: summary.origin, min, max },
             summary,
             structure: accel.structure(),
@@ -174,6 +220,7 @@ impl SceneBuffers {
     /// Replaces the summary after the colours in the buffers were changed.
     pub(in crate::gpu) fn set_summary(&mut self, summary: SceneSummary) {
         self.summary = summary;
+        self.colors += 1;
     }
 
     /// Replaces the buffers by a copy of the same scene with moved spheres, which [`SceneBuffers::new`] or
@@ -205,8 +252,13 @@ impl SceneBuffers {
     /// # Errors
     /// [`GpuError::NoOccluders`] if a studio needs a separate structure and the scene was uploaded without.
     pub(in crate::gpu) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
+        if settings.studio_parameters().is_none() { Ok(self) } else { self.studio_occluders() }
+    }
+
+    /// The buffers of the spheres that can hide lights from surfaces in a studio.
+    pub(in crate::gpu) fn studio_occluders(&self) -> Result<&Self, GpuError> {
         match &self.occluders {
-            _ if settings.studio_parameters().is_none() || self.summary.is_opaque() => Ok(self),
+            _ if self.summary.is_opaque() => Ok(self),
             Some(occluders) => Ok(occluders),
             None => Err(GpuError::NoOccluders),
         }
@@ -232,6 +284,10 @@ impl SceneBuffers {
 
     pub(in crate::gpu) fn id(&self) -> SceneId {
         self.id
+    }
+
+    pub(in crate::gpu) fn look(&self) -> SceneLook {
+        SceneLook { id: self.id, colors: self.colors }
     }
 
     /// Number of rays, at most `max`, that an invocation may search one after another. If each ray tests all spheres,

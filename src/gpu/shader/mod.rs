@@ -16,8 +16,8 @@ pub(super) use kernel::Kernel;
 pub(super) use part::{Part, part};
 #[cfg(test)]
 pub(super) use part::{VARIANT, variants};
-pub(super) use pipeline::pipeline;
+pub(super) use pipeline::{pipeline, pipeline_with};
 pub(super) use primary::{
-    BrickPass, Probe, camera_parts, occluded_kernel, self_test_kernel, shade_kernel,
+    BrickPass, Probe, camera_parts, color_target, occluded_kernel, self_test_kernel, shade_kernel,
     structure_parts, trace_kernel,
 };

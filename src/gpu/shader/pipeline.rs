@@ -14,8 +14,18 @@ pub(in crate::gpu) fn pipeline(
     groups: &[&wgpu::BindGroupLayout],
     checks: &Checks,
 ) -> ComputePipeline {
-    let name = kernel.name();
     let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
+    pipeline_with(device, kernel, &groups, checks)
+}
+
+/// Creates the pipeline of a kernel like [`pipeline`]. It has no bind group where there is `None`.
+pub(in crate::gpu) fn pipeline_with(
+    device: &Device,
+    kernel: &Kernel,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    checks: &Checks,
+) -> ComputePipeline {
+    let name = kernel.name();
     let create = || {
         let module = shader_module(
             device,
@@ -26,7 +36,7 @@ pub(in crate::gpu) fn pipeline(
         );
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&name),
-            bind_group_layouts: &groups,
+            bind_group_layouts: groups,
             immediate_size: 0,
         });
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

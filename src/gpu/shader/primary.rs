@@ -99,6 +99,15 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
     }
 }
 
+/// The part that writes colours.
+pub(in crate::gpu) fn color_target(color: ColorTarget) -> Part {
+    match color {
+        ColorTarget::Srgb8 => part!("primary/color_target.wgsl", "rgba8unorm"),
+        ColorTarget::Linear16 => part!("primary/color_target.wgsl", "rgba16float"),
+        ColorTarget::Linear32 => part!("primary/color_target.wgsl", "rgba32float"),
+    }
+}
+
 /// The kernel that computes colours and, if requested, data layers from hits.
 pub(in crate::gpu) fn shade_kernel(
     camera: CameraKind,
@@ -112,11 +121,7 @@ pub(in crate::gpu) fn shade_kernel(
         part!("scene/appearance.wgsl"),
         part!("primary/shade.wgsl"),
         part!("primary/shading.wgsl"),
-        match color {
-            ColorTarget::Srgb8 => part!("primary/color_target.wgsl", "rgba8unorm"),
-            ColorTarget::Linear16 => part!("primary/color_target.wgsl", "rgba16float"),
-            ColorTarget::Linear32 => part!("primary/color_target.wgsl", "rgba32float"),
-        },
+        color_target(color),
         if data_layers {
             part!("primary/data_layers.wgsl", "all")
         } else {

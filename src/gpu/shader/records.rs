@@ -92,6 +92,9 @@ pub(in crate::gpu) type Sphere = [f32; 4];
 /// A colour, which is a `vec4f`: linear red, green and blue, and alpha.
 pub(in crate::gpu) type Color = [f32; 4];
 
+/// The number for transparent misses, `SHADING_TRANSPARENT` in `shaders/primary/shading.wgsl`.
+const SHADING_TRANSPARENT: u32 = 2;
+
 /// Distance of a miss, `NO_HIT` in `shaders/scene/frame.wgsl`.
 pub(in crate::gpu) use crate::verify::NO_HIT;
 
@@ -150,7 +153,7 @@ impl FrameParameters {
             shading: match primary.shading {
                 Shading::Flat => 0,
                 Shading::Headlight => 1,
-            },
+            } + if primary.is_transparent { SHADING_TRANSPARENT } else { 0 },
             film_size: [film.width(), film.height()],
             tile_origin: tile.origin,
             tile_size: tile.size,
@@ -407,6 +410,9 @@ mod tests {
             numbers: [0.0; 3],
         };
         let source = include_str!("../../../shaders/primary/shading.wgsl");
+        assert!(
+            source.contains(&format!("const SHADING_TRANSPARENT: u32 = {SHADING_TRANSPARENT}u;"))
+        );
         for (shading, name) in [(Shading::Flat, "FLAT"), (Shading::Headlight, "HEADLIGHT")] {
             let primary = PrimarySettings { shading, ..PrimarySettings::default() };
             let scene = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ZERO };

@@ -65,6 +65,8 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     let primary = PrimarySettings {
         shading: named(file, "shading", &[Shading::Flat, Shading::Headlight], Shading::name)?,
         background: color("background", background)?,
+        // Alpha is not among the layers of a run file.
+        is_transparent: false,
     };
     Ok(Recording {
         camera: camera(file)?,

@@ -212,8 +212,8 @@ pub(super) const SHADE: &[Row] = &[
         views::balls,
         LIST,
         "primary/shade.wgsl",
-        "write_color(pixel, frame.background)",
-        "write_color(pixel, 0.999999 * frame.background)",
+        "write_with_alpha(pixel, frame.background, alpha)",
+        "write_with_alpha(pixel, 0.999999 * frame.background, alpha)",
     ),
     (
         "misses_have_a_depth",

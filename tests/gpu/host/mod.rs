@@ -3,6 +3,7 @@
 
 mod depth_in;
 mod depth_out;
+mod lit;
 mod pick;
 mod same_picture;
 mod stage;
@@ -17,6 +18,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         triangle::trials(),
         depth_in::trials(),
         pick::trials(),
+        lit::trials(),
     ]
     .into_iter()
     .flatten()

@@ -1,24 +1,17 @@
 //! Tests of the passes of lit pictures: recorded by an application, without indirect dispatches, and of their sums.
 
 use libtest_mimic::Trial;
-use pinhole::accel::{AccelChoice, AccelPlan};
-use pinhole::gpu::{
-    Decision, GpuError, Headless, HeadlessOptions, Progress, Renderer, RendererOptions,
-    SceneBuffers, wgpu,
-};
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Progress};
 use pinhole::image::Layer;
-use pinhole::internals::HostedPicture;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
 use super::scenes::{self, LitView};
-use crate::embedding::Host;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
-        trial("light::passes::a_host_records_a_studio_and_paths", hosted),
-        trial("light::passes::too_much_for_one_recording_is_refused", too_much),
         trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
         trial("light::passes::one_pass_makes_the_picture_of_several", one_pass),
         trial("light::passes::every_structure_makes_the_same_studio", structures),
@@ -40,92 +33,6 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn named(name: &str) -> LitView {
     let found = scenes::all().into_iter().find(|(found, _)| *found == name);
     found.unwrap_or_else(|| panic!("there is no scene {name}")).1
-}
-
-fn scene_of(host: &Host, view: &LitView) -> SceneBuffers {
-    let spheres = view.scene.spheres();
-    let accel = AccelPlan::new(spheres, AccelChoice::Grid, 1 << 27).build(spheres);
-    let options =
-        RendererOptions { structures: vec![accel.structure()], ..RendererOptions::default() };
-    let renderer = Renderer::new(&host.device, &options).unwrap();
-    SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &view.scene, &accel).unwrap()
-}
-
-/// The sums of every pixel, which are three vectors.
-fn read_sums(
-    host: &Host,
-    encoder: wgpu::CommandEncoder,
-    picture: &HostedPicture,
-) -> Vec<[f32; 12]> {
-    host.queue.submit([encoder.finish()]);
-    let mut all = Vec::new();
-    for sums in picture.sums() {
-        let bytes = 48 * u64::from(sums.size[0] * sums.size[1]);
-        let readable = host.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: bytes,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = host.encoder();
-        encoder.copy_buffer_to_buffer(sums.buffer, 0, &readable, 0, bytes);
-        host.queue.submit([encoder.finish()]);
-        readable.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
-        host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-        let bytes = readable.get_mapped_range(..).unwrap();
-        let numbers: Vec<f32> = bytes
-            .chunks_exact(4)
-            .map(|word| f32::from_ne_bytes(word.try_into().unwrap()))
-            .collect();
-        all.extend(numbers.chunks_exact(12).map(|pixel| <[f32; 12]>::try_from(pixel).unwrap()));
-    }
-    all
-}
-
-/// The mean colours, computed from sums in f64 and rounded once.
-fn means(sums: &[[f32; 12]], samples: u32) -> Vec<[f32; 3]> {
-    let mean = |sum: &[f32; 12], c: usize| {
-        ((f64::from(sum[c]) + f64::from(sum[4 + c])) / f64::from(samples)) as f32
-    };
-    sums.iter().map(|sum| [0, 1, 2].map(|c| mean(sum, c))).collect()
-}
-
-/// A picture that an application records into its own encoder, in two submissions, is identical to that of a headless
-/// device.
-fn hosted(headless: &'static Headless) {
-    let host = Host::new();
-    for name in ["studio_ambient_occlusion", "path_emissive_both"] {
-        let mut view = named(name);
-        view.settings.sampling.samples = 5;
-        let scene = scene_of(&host, &view);
-        let LitView { settings, .. } = &view;
-        let picture =
-            HostedPicture::new(&host.device, &host.queue, &scene, &view.seen(), settings, true);
-        let picture = picture.unwrap();
-        let mut encoder = host.encoder();
-        picture.record(&host.queue, &mut encoder, &scene, settings, 0..2).unwrap();
-        host.queue.submit([encoder.finish()]);
-        let mut encoder = host.encoder();
-        picture.record(&host.queue, &mut encoder, &scene, settings, 2..5).unwrap();
-        let found = means(&read_sums(&host, encoder, &picture), 5);
-        let wanted = headless.render(&view.scene, &view.seen(), settings, LayerSet::COLOR).unwrap();
-        assert_eq!(found, wanted.color(), "{name}");
-    }
-}
-
-fn too_much(_: &'static Headless) {
-    let host = Host::new();
-    let mut view = named("studio_ambient_occlusion");
-    // There are so many tiles that one submission cannot contain all of their dispatches.
-    view.film = Film::new(4096, 4096).unwrap();
-    let scene = scene_of(&host, &view);
-    let LitView { settings, .. } = &view;
-    let picture =
-        HostedPicture::new(&host.device, &host.queue, &scene, &view.seen(), settings, true);
-    let picture = picture.unwrap();
-    let mut encoder = host.encoder();
-    let refused = picture.record(&host.queue, &mut encoder, &scene, settings, 0..60).unwrap_err();
-    assert!(matches!(refused, GpuError::Limit { limit: 1024, .. }), "{refused}");
 }
 
 fn direct(headless: &'static Headless) {

@@ -1,6 +1,8 @@
 //! Buffers of a lit picture: those that all tiles share, and the sums of each tile.
 
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue};
+use wgpu::{
+    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue, TextureView,
+};
 
 use super::lighting::LightingData;
 use super::passes::LitPasses;
@@ -38,13 +40,13 @@ pub(in crate::gpu) struct LitFrame {
     pub(in crate::gpu) sizes: LitSizes,
     parameters: Buffer,
     parameter_stride: usize,
+    frame_stride: usize,
     pub(super) queue: Buffer,
     pub(super) groups_needed: Buffer,
     /// The state of all paths, slot by slot.
     pub(in crate::gpu) paths: Buffer,
     variations: Buffer,
-    pub(super) lighting: BindGroup,
-    pub(super) sky: Option<BindGroup>,
+    lit: LightingBuffers,
     pub(in crate::gpu) tiles: Vec<LitTile>,
     /// Read-back buffer of the status word, which is nonzero if an invocation reached its iteration limit.
     pub(in crate::gpu) spent_back: ReadableBuffer,
@@ -52,11 +54,43 @@ pub(in crate::gpu) struct LitFrame {
     pub(in crate::gpu) variations_back: ReadableBuffer,
 }
 
+/// Who records the passes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum RecordedBy {
+    /// This crate, which submits one recording before it makes the next, and reads the sums.
+    Headless,
+    /// A host program, which may have so many recordings under way, and shows the sums.
+    Host {
+        /// Number of recordings.
+        at_once: usize,
+    },
+}
+
+impl RecordedBy {
+    fn at_once(self) -> usize {
+        match self {
+            Self::Headless => 1,
+            Self::Host { at_once } => at_once,
+        }
+    }
+}
+
+/// The light of a picture on the device.
+#[derive(Debug)]
+struct LightingBuffers {
+    record: Buffer,
+    tables: Buffer,
+    emitters: TextureView,
+    group: BindGroup,
+    sky: Option<BindGroup>,
+}
+
 /// A tile, and the sums of its pixels.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitTile {
     pub(in crate::gpu) tile: Tile,
     pub(super) frames: Frames,
+    records: Buffer,
     film: Buffer,
     /// Bind group 0 of most passes, indexed by [`Area`].
     pub(super) groups: [BindGroup; 3],
@@ -77,35 +111,26 @@ impl LitTile {
 impl LitFrame {
     /// Creates the buffers for some tiles, none of which may be larger than `sizes.tile`.
     pub(in crate::gpu) async fn new(
-        device: &Device,
-        queue: &Queue,
+        (device, queue): (&Device, &Queue),
         passes: &LitPasses,
         sizes: LitSizes,
         lighting: &LightingData,
+        by: RecordedBy,
         tiles: impl Iterator<Item = (Tile, Frames)>,
     ) -> Result<Self, GpuError> {
         let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
         let parameter_stride = size_of::<DispatchParameters>().next_multiple_of(alignment);
+        let frame_stride = size_of::<FrameParameters>().next_multiple_of(alignment);
         check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
-        check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
-        let (limit_name, limit) = emitter_table::limit(&device.limits());
-        let needed = emitter_table::planned(lighting.emitters.len()).map_or(0, |table| table.bytes);
-        if needed > limit {
-            let what = emitter_table::WHAT;
-            return Err(GpuError::Limit { what, needed, limit_name, limit });
-        }
-        if let Some(environment) = &lighting.sky {
-            let bytes = 16 * environment.texels().len() as u64;
-            check_storage_size(device, "the image of the sky", bytes)?;
-        }
+        check_lighting(device, lighting)?;
         let make = Make { device, queue };
         scoped(device, || {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
             let parameters = make.buffer(
                 "pinhole parameters",
-                MAX_DISPATCHES * parameter_stride,
+                by.at_once() * MAX_DISPATCHES * parameter_stride,
                 BufferUsages::UNIFORM,
             );
             let of_paths = |label, bytes: u64| make.buffer(label, bytes as usize, storage);
@@ -117,6 +142,7 @@ impl LitFrame {
                 make.buffer("pinhole groups needed", sizes.groups_bytes() as usize, needed);
             let shared = Shared {
                 passes,
+                frame_stride,
                 parameters: &parameters,
                 lists: &lists,
                 paths: &paths,
@@ -125,25 +151,21 @@ impl LitFrame {
             };
             let tiles = tiles.map(|(tile, frames)| make.tile(&shared, sizes, tile, frames));
             let tiles = tiles.collect();
-            let layouts = &passes.layouts;
+            // A host reads nothing back.
+            let back = |label, bytes| match by {
+                RecordedBy::Headless => ReadableBuffer::new(device, label, bytes),
+                RecordedBy::Host { .. } => ReadableBuffer::new(device, label, 4),
+            };
             Self {
                 sizes,
-                lighting: make.lighting(&layouts.lighting, lighting),
-                sky: lighting.sky.as_deref().map(|sky| make.sky(&layouts.sky, sky)),
+                lit: make.lighting(passes, lighting, None),
                 tiles,
-                spent_back: ReadableBuffer::new(device, "pinhole spent read-back", 4),
-                film_back: ReadableBuffer::new(
-                    device,
-                    "pinhole sums read-back",
-                    sizes.film_bytes(),
-                ),
-                variations_back: ReadableBuffer::new(
-                    device,
-                    "pinhole variations read-back",
-                    variations.size(),
-                ),
+                spent_back: back("pinhole spent read-back", 4),
+                film_back: back("pinhole sums read-back", sizes.film_bytes()),
+                variations_back: back("pinhole variations read-back", variations.size()),
                 parameters,
                 parameter_stride,
+                frame_stride,
                 queue: lists,
                 groups_needed,
                 paths,
@@ -153,23 +175,79 @@ impl LitFrame {
         .await
     }
 
-    /// Queues the parameters of the next submission's dispatches, of which there may be at most [`MAX_DISPATCHES`].
+    /// Queues the parameters of a recording's dispatches, of which there may be at most [`MAX_DISPATCHES`]. `place` is
+    /// the number of the recording among those under way.
     pub(in crate::gpu) fn queue_parameters(
         &self,
         queue: &Queue,
+        place: usize,
         parameters: &[DispatchParameters],
     ) {
         let mut bytes = vec![0_u8; parameters.len() * self.parameter_stride];
         for (target, dispatch) in bytes.chunks_mut(self.parameter_stride).zip(parameters) {
             target[..size_of::<DispatchParameters>()].copy_from_slice(bytemuck::bytes_of(dispatch));
         }
-        queue.write_buffer(&self.parameters, 0, &bytes);
+        queue.write_buffer(&self.parameters, u64::from(self.parameter_offset(place, 0)), &bytes);
     }
 
-    /// Offset in bytes of the parameters of a dispatch, given its index in the submission.
-    pub(super) fn parameter_offset(&self, number: usize) -> u32 {
-        // There are at most MAX_DISPATCHES of them, so it fits into u32.
-        (number * self.parameter_stride) as u32
+    /// Offset in bytes of the parameters of a dispatch, given the place of its recording and its index there.
+    pub(super) fn parameter_offset(&self, place: usize, number: usize) -> u32 {
+        // There are at most MAX_DISPATCHES of them in a few recordings, so it fits into u32.
+        ((place * MAX_DISPATCHES + number) * self.parameter_stride) as u32
+    }
+
+    /// Bind group of lights and materials.
+    pub(super) fn lighting(&self) -> &BindGroup {
+        &self.lit.group
+    }
+
+    /// Bind group of the image of the sky.
+    pub(super) fn sky(&self) -> Option<&BindGroup> {
+        self.lit.sky.as_ref()
+    }
+
+    /// Queues other records for the tiles, in order, and returns whether any differs from what was there.
+    pub(in crate::gpu) fn set_frames(
+        &mut self,
+        queue: &Queue,
+        frames: impl Iterator<Item = Frames>,
+    ) -> bool {
+        let mut differs = false;
+        for (tile, frames) in self.tiles.iter_mut().zip(frames) {
+            if bytemuck::bytes_of(&tile.frames) != bytemuck::bytes_of(&frames) {
+                queue.write_buffer(&tile.records, 0, &strided(&frames, self.frame_stride));
+                tile.frames = frames;
+                differs = true;
+            }
+        }
+        differs
+    }
+
+    /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
+    /// the sky are uploaded if `is_new` says that they may be others.
+    pub(in crate::gpu) async fn set_lighting(
+        &mut self,
+        (device, queue): (&Device, &Queue),
+        passes: &LitPasses,
+        lighting: &LightingData,
+        is_new: bool,
+    ) -> Result<(), GpuError> {
+        if is_new || self.lit.tables.size() != lighting.table_bytes() {
+            check_lighting(device, lighting)?;
+            let make = Make { device, queue };
+            let kept = (!is_new).then_some(&self.lit);
+            self.lit = scoped(device, || make.lighting(passes, lighting, kept)).await?;
+        } else {
+            let record = bytemuck::bytes_of(&lighting.parameters);
+            queue.write_buffer(&self.lit.record, 0, record);
+            queue.write_buffer(&self.lit.tables, 0, bytemuck::cast_slice(&lighting.tables));
+        }
+        Ok(())
+    }
+
+    /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
+    pub(in crate::gpu) fn spent(&self) -> &Buffer {
+        &self.queue
     }
 
     /// Records a command that empties the lists.
@@ -216,6 +294,7 @@ struct Make<'a> {
 /// The passes and buffers that all tiles share.
 struct Shared<'a> {
     passes: &'a LitPasses,
+    frame_stride: usize,
     parameters: &'a Buffer,
     lists: &'a Buffer,
     paths: &'a Buffer,
@@ -257,12 +336,8 @@ impl Make<'_> {
     }
 
     fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
-        let alignment = self.device.limits().min_uniform_buffer_offset_alignment as usize;
-        let stride = size_of::<FrameParameters>().next_multiple_of(alignment);
-        let mut bytes = vec![0_u8; frames.len() * stride];
-        for (target, frame) in bytes.chunks_mut(stride).zip(&frames) {
-            target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
-        }
+        let stride = shared.frame_stride;
+        let bytes = strided(&frames, stride);
         let records = self.filled("pinhole frames", &bytes, BufferUsages::UNIFORM);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         // The buffers are copied completely, so all have the same size.
@@ -297,18 +372,32 @@ impl Make<'_> {
             ),
             advance: self.group("pinhole advance", &layouts.advance, &advance),
             sums: self.group("pinhole film", &layouts.film, &sums),
+            records,
             film,
         }
     }
 
-    fn lighting(&self, layout: &BindGroupLayout, lighting: &LightingData) -> BindGroup {
+    /// The light of a picture, with the emitters and the sky that are kept.
+    fn lighting(
+        &self,
+        passes: &LitPasses,
+        lighting: &LightingData,
+        kept: Option<&LightingBuffers>,
+    ) -> LightingBuffers {
+        let layouts = &passes.layouts;
         let record = bytemuck::bytes_of(&lighting.parameters);
         let record = self.filled("pinhole lighting", record, BufferUsages::UNIFORM);
         let tables = bytemuck::cast_slice(&lighting.tables);
         let tables = self.filled("pinhole tables", tables, BufferUsages::STORAGE);
-        let emitters = emitter_table::upload(self.device, self.queue, &lighting.emitters);
-        let emitters = (2, wgpu::BindingResource::TextureView(&emitters));
-        self.group("pinhole lighting", layout, &[whole(0, &record), whole(1, &tables), emitters])
+        let sky = || lighting.sky.as_deref().map(|sky| self.sky(&layouts.sky, sky));
+        let (emitters, sky) = match kept {
+            Some(kept) => (kept.emitters.clone(), kept.sky.clone()),
+            None => (emitter_table::upload(self.device, self.queue, &lighting.emitters), sky()),
+        };
+        let texture = (2, wgpu::BindingResource::TextureView(&emitters));
+        let entries = [whole(0, &record), whole(1, &tables), texture];
+        let group = self.group("pinhole lighting", &layouts.lighting, &entries);
+        LightingBuffers { record, tables, emitters, group, sky }
     }
 
     fn sky(&self, layout: &BindGroupLayout, environment: &Environment) -> BindGroup {
@@ -325,4 +414,29 @@ impl Make<'_> {
 
 fn whole(binding: u32, buffer: &Buffer) -> Entry<'_> {
     (binding, buffer.as_entire_binding())
+}
+
+/// Returns an error if the device has no room for the tables of a lighting.
+fn check_lighting(device: &Device, lighting: &LightingData) -> Result<(), GpuError> {
+    check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
+    let (limit_name, limit) = emitter_table::limit(&device.limits());
+    let needed = emitter_table::planned(lighting.emitters.len()).map_or(0, |table| table.bytes);
+    if needed > limit {
+        let what = emitter_table::WHAT;
+        return Err(GpuError::Limit { what, needed, limit_name, limit });
+    }
+    if let Some(environment) = &lighting.sky {
+        let bytes = 16 * environment.texels().len() as u64;
+        check_storage_size(device, "the image of the sky", bytes)?;
+    }
+    Ok(())
+}
+
+/// The bytes of records that lie so many bytes apart.
+fn strided(frames: &Frames, stride: usize) -> Vec<u8> {
+    let mut bytes = vec![0_u8; frames.len() * stride];
+    for (target, frame) in bytes.chunks_mut(stride).zip(frames) {
+        target[..size_of::<FrameParameters>()].copy_from_slice(bytemuck::bytes_of(frame));
+    }
+    bytes
 }

@@ -23,6 +23,10 @@ impl Mode {
         matches!(self, Self::Path(Materials::Any, ..))
     }
 
+    pub(in crate::gpu) fn is_studio(self) -> bool {
+        self == Self::Studio
+    }
+
     fn direct_light(self) -> Part {
         if self.samples_light() {
             part!("path/direct_light.wgsl", "any")

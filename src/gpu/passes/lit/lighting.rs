@@ -109,6 +109,26 @@ impl LightingData {
 }
 
 impl LightingData {
+    /// Whether pictures with this light are the same as with another light, of the same scene.
+    pub(in crate::gpu) fn is_same(&self, other: &Self) -> bool {
+        let counts = |of: &Self| (of.mode, of.max_surfaces, of.is_opaque, of.has_shadows);
+        counts(self) == counts(other)
+            && self.has_same_images(other)
+            && self.casts_shadow == other.casts_shadow
+            && bytemuck::bytes_of(&self.parameters) == bytemuck::bytes_of(&other.parameters)
+            && self.tables == other.tables
+    }
+
+    /// Whether the image of the sky and the table of emitters are the same as for another light, of the same scene.
+    pub(in crate::gpu) fn has_same_images(&self, other: &Self) -> bool {
+        let is_same_sky = match (&self.sky, &other.sky) {
+            (Some(sky), Some(other)) => Arc::ptr_eq(sky, other),
+            (None, None) => true,
+            _ => false,
+        };
+        is_same_sky && self.emitters.len() == other.emitters.len()
+    }
+
     /// The kind of studio, if one pass can take whole samples of a scene of so many bricks. With more lamps or
     /// directions than several passes take at once, they would be summed in another order.
     pub(super) fn one_pass(&self, bricks: usize) -> Option<OnePass> {

@@ -28,11 +28,11 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 
-pub(in crate::gpu) use frame::{Frames, LitFrame, MAX_DISPATCHES};
+pub(in crate::gpu) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
 pub(in crate::gpu) use kernels::Mode;
 pub(in crate::gpu) use kernels::all_kernels;
 pub(in crate::gpu) use lighting::LightingData;
-pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitPasses};
+pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
 pub(in crate::gpu) use recorder::Recorder;
 pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
 pub(in crate::gpu) use sizes::LitSizes;

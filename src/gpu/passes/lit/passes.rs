@@ -54,7 +54,7 @@ pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool
 pub(in crate::gpu) struct LitLayouts {
     pub(super) frame: BindGroupLayout,
     pub(super) advance: BindGroupLayout,
-    pub(super) film: BindGroupLayout,
+    pub(in crate::gpu) film: BindGroupLayout,
     /// Layout of bind group 0 of the pass that takes whole samples.
     pub(super) samples: BindGroupLayout,
     pub(super) lighting: BindGroupLayout,
@@ -103,7 +103,7 @@ pub(super) enum ShadePasses {
 }
 
 impl LitLayouts {
-    fn new(device: &Device) -> Self {
+    pub(in crate::gpu) fn new(device: &Device) -> Self {
         let frame = uniform::<records::FrameParameters>();
         let queue = storage_of(QUEUE_HEAD + 4);
         let paths = storage::<[f32; 4]>(false);

@@ -18,6 +18,8 @@ pub(in crate::gpu) struct Recorder<'a> {
     frame: &'a LitFrame,
     /// Index of the tile for which dispatches are recorded.
     pub(in crate::gpu) tile: usize,
+    /// The number of the recording among those under way.
+    place: usize,
     advance: &'a Pass,
     /// Whether indirect dispatches are used.
     is_indirect: bool,
@@ -26,7 +28,12 @@ pub(in crate::gpu) struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
-        Self { frame, tile: 0, advance, is_indirect, parameters: Vec::new() }
+        Self { frame, tile: 0, place: 0, advance, is_indirect, parameters: Vec::new() }
+    }
+
+    /// The same recorder for the recording with this number among those under way.
+    pub(in crate::gpu) fn at(self, place: usize) -> Self {
+        Self { place, ..self }
     }
 
     /// Number of dispatches since the last call of [`Recorder::take_parameters`].
@@ -108,7 +115,7 @@ impl<'a> Recorder<'a> {
             Work::Sums => (&tile.sums, Extent::Groups([x, y, 1])),
             Work::Samples => (&tile.samples, Extent::Groups([x, y, 1])),
         };
-        let last = step.appearance.or(self.frame.sky.as_ref());
+        let last = step.appearance.or(self.frame.sky());
         self.dispatch(encoder, step.pass, dispatch, group, [step.brick, last], extent);
     }
 
@@ -129,6 +136,28 @@ impl<'a> Recorder<'a> {
         (groups * WORKGROUP_SIZE) as usize
     }
 
+    /// Records the pass that writes the means of a tile whose pixels have `samples` samples each to the host's textures.
+    pub(in crate::gpu) fn record_resolve(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        resolve: &wgpu::ComputePipeline,
+        targets: &wgpu::BindGroup,
+        samples: u32,
+    ) {
+        let tile = &self.frame.tiles[self.tile];
+        let offset = self.frame.parameter_offset(self.place, self.parameters.len());
+        let dispatch = DispatchParameters { sample: samples, ..bytemuck::Zeroable::zeroed() };
+        self.parameters.push(dispatch);
+        let [width, height] = Groups::of_size(tile.tile.size).size;
+        let descriptor =
+            wgpu::ComputePassDescriptor { label: Some("pinhole resolve"), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(resolve);
+        pass.set_bind_group(0, &tile.sums, &[offset]);
+        pass.set_bind_group(2, targets, &[]);
+        pass.dispatch_workgroups(width, height, 1);
+    }
+
     fn dispatch(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -138,9 +167,9 @@ impl<'a> Recorder<'a> {
         [brick, last]: [Option<&wgpu::BindGroup>; 2],
         extent: Extent<'_>,
     ) {
-        let offset = self.frame.parameter_offset(self.parameters.len());
+        let offset = self.frame.parameter_offset(self.place, self.parameters.len());
         self.parameters.push(dispatch);
-        let lighting = &self.frame.lighting;
+        let lighting = self.frame.lighting();
         let bound = Bound { frame: group, dispatch: offset, brick, lighting, last };
         pass.record(encoder, bound, extent);
     }

@@ -1,0 +1,416 @@
+//! Lit pictures that accumulate samples in the encoders of a host.
+
+use std::sync::Arc;
+
+use wgpu::{CommandEncoder, ComputePassDescriptor, ComputePipeline, Device, Queue};
+
+use super::cursor::{Budget, Cursor, RAYS_PER_GROUP};
+use super::progress::{LitProgress, LitState, LitSums};
+use super::renderer::{LitRenderer, lit_key};
+use super::tickets::{AT_ONCE as RECORDINGS, Tickets};
+use crate::camera::View;
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::frame::{BandBrick, Frame, Targets, iteration_limit};
+use crate::gpu::passes::lit::{
+    AT_ONCE, Frames, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy,
+    Recorder, Round,
+};
+use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::tiles::{Groups, Tile, tiles};
+use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneLook};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
+use crate::render::{PrimarySettings, RenderSettings};
+
+/// A studio or a picture of paths that a host shows while samples accumulate: some with each of its frames, until the
+/// camera, the light or the scene changes.
+///
+/// The textures first get the picture by primary rays, with depth, normals and ids, and then the mean of the samples so
+/// far in the colour. It is premultiplied by alpha, and alpha is 0 where nothing is if the settings are transparent.
+#[derive(Debug)]
+pub struct LitPicture {
+    passes: Arc<LitPasses>,
+    resolve: ComputePipeline,
+    key: LitKey,
+    lighting: LightingData,
+    frame: LitFrame,
+    /// The picture by primary rays, and what is left of it to record.
+    data: Frame,
+    data_cursor: DataCursor,
+    primary: PrimarySettings,
+    look: SceneLook,
+    total: u32,
+    cursor: Cursor,
+    is_cleared: bool,
+    tickets: Tickets,
+    caution: Caution,
+    is_indirect: bool,
+}
+
+/// The place that the recording of the picture by primary rays has reached.
+#[derive(Debug, Default)]
+struct DataCursor {
+    /// Number of bricks of bands that are complete.
+    parts: usize,
+    /// The workgroups of the next one that are left, if some are recorded.
+    left: Vec<Groups>,
+}
+
+/// How few iterations an invocation must need. Each step is taken when a search was abandoned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Caution {
+    None,
+    /// A ray for each invocation, except those towards ambient light.
+    Steps,
+    /// A ray for each invocation.
+    OneByOne,
+}
+
+impl LitPicture {
+    /// Creates the buffers of a picture in the targets, which must be those of the renderer's options, as large as the
+    /// film, and with the usage `STORAGE_BINDING`. Pipelines are built if [`LitRenderer::build`] has not built them.
+    ///
+    /// # Errors
+    /// [`GpuError::NotLit`] for the integrator `primary`; the errors of [`RenderSettings::check`];
+    /// [`GpuError::NoOccluders`]; [`GpuError::Target`] if a target is not as described; an error if the device has no
+    /// memory left.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(renderer, device, queue, scene, view, settings, targets))
+    }
+
+    /// Creates the buffers like [`LitPicture::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`LitPicture::new`].
+    pub async fn new_async(
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        let (lighting, key) = lit_key(device, scene, view, settings)?;
+        let mut data = Frame::new_async(renderer.renderer(), device, targets).await?;
+        let primary = primary_of(settings);
+        data.set_primary(queue, scene, view, &primary)?;
+        let passes = renderer.passes(device, key).await?;
+        let resolve = renderer.resolve(device).await?;
+        let frame = new_frame((device, queue), &passes, &lighting, scene, view, settings).await?;
+        let tickets = scoped(device, || Tickets::new(device)).await?;
+        Ok(Self {
+            passes,
+            resolve,
+            key,
+            lighting,
+            frame,
+            data,
+            data_cursor: DataCursor::default(),
+            primary,
+            look: scene.look(),
+            total: settings.sampling.samples,
+            cursor: Cursor::default(),
+            is_cleared: false,
+            tickets,
+            caution: Caution::None,
+            is_indirect: renderer.renderer().is_indirect,
+        })
+    }
+
+    /// Sets the scene, the view and the light that the next recording shows. If nothing of the picture changes, the
+    /// samples so far are kept; a larger number of samples continues the picture. Returns whether it begins again.
+    ///
+    /// The new values are queued on `queue` and take effect with its next submission. Buffers are created only for
+    /// another number of lights or materials, another kind of light or camera, and images of the sky; pipelines are
+    /// built if [`LitRenderer::is_built`] says that some are missing.
+    ///
+    /// # Errors
+    /// The errors of [`LitPicture::new`]; the picture stays as it was.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn set(
+        &mut self,
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Result<bool, GpuError> {
+        block_on(self.set_async(renderer, device, queue, scene, view, settings))
+    }
+
+    /// Sets scene, view and light like [`LitPicture::set`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`LitPicture::set`].
+    pub async fn set_async(
+        &mut self,
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Result<bool, GpuError> {
+        self.data.check_renderer(renderer.renderer())?;
+        self.data.check_film(view)?;
+        let (lighting, key) = lit_key(device, scene, view, settings)?;
+        let key = if self.caution > Caution::None { LitKey { one_pass: None, ..key } } else { key };
+        let sizes = sizes_of(device, view, &lighting, settings);
+        let is_other_look = scene.look() != self.look;
+        let mut begins_again = is_other_look || primary_of(settings) != self.primary;
+        if key != self.key || sizes != self.frame.sizes {
+            let passes = renderer.passes(device, key).await?;
+            let queues = (device, queue);
+            self.frame = new_frame(queues, &passes, &lighting, scene, view, settings).await?;
+            self.passes = passes;
+            begins_again = true;
+        } else {
+            if is_other_look || !lighting.is_same(&self.lighting) {
+                let is_new = is_other_look || !lighting.has_same_images(&self.lighting);
+                let set = self.frame.set_lighting((device, queue), &self.passes, &lighting, is_new);
+                set.await?;
+                begins_again = true;
+            }
+            let records = frames_of(device, scene, view, settings, sizes)?;
+            begins_again |= self.frame.set_frames(queue, records.map(|(_, frames)| frames));
+        }
+        (self.key, self.lighting, self.look) = (key, lighting, scene.look());
+        begins_again |= settings.sampling.samples < self.cursor.samples;
+        self.total = settings.sampling.samples;
+        self.primary = primary_of(settings);
+        if begins_again {
+            self.data.set_primary(queue, scene, view, &self.primary)?;
+            self.begin_again();
+        }
+        Ok(begins_again)
+    }
+
+    fn begin_again(&mut self) {
+        self.cursor = Cursor::default();
+        self.is_cleared = false;
+        self.data_cursor = DataCursor::default();
+        self.tickets.begin_again();
+    }
+
+    /// Records the next part of the picture into the host's encoder: rays for depth, normals and ids if the view is new,
+    /// and then samples, at most `max_rays` rays in all. Nothing is submitted, awaited or created.
+    ///
+    /// The encoder must be submitted to `queue`, after those of earlier recordings and before the one of the next. A
+    /// recording that is dropped is noticed, and the picture begins again.
+    ///
+    /// # Errors
+    /// [`GpuError::OtherScene`] if the scene is not the one that was set, or has changed since;
+    /// [`GpuError::OtherRenderer`]; [`GpuError::NotReady`] if a pipeline of primary rays is still being built;
+    /// [`GpuError::Budget`] if `max_rays` is too small for any work. Nothing is recorded then. [`GpuError::Steps`] if
+    /// searches of an earlier recording were abandoned: after [`LitPicture::set`], passes are used that take fewer
+    /// iterations, and if it is returned again, the structure `list` always stays within the limit.
+    pub fn record(
+        &mut self,
+        renderer: &LitRenderer,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        max_rays: u64,
+    ) -> Result<LitProgress, GpuError> {
+        self.data.check_renderer(renderer.renderer())?;
+        if scene.look() != self.look {
+            return Err(GpuError::OtherScene);
+        }
+        let news = self.tickets.news();
+        if news.is_spent {
+            self.be_cautious();
+            return Err(GpuError::Steps);
+        }
+        if news.is_lost {
+            self.begin_again();
+        }
+        let progress = |picture: &Self, budget: &Budget, state| LitProgress {
+            samples: picture.cursor.samples,
+            total: picture.total,
+            rays: budget.rays,
+            state,
+            was_lost: news.is_lost,
+        };
+        let mut budget = Budget::new(max_rays);
+        if self.cursor.samples >= self.total {
+            return Ok(progress(self, &budget, LitState::Done));
+        }
+        let Some(place) = self.free_place(max_rays) else {
+            return Ok(progress(self, &budget, LitState::Waiting));
+        };
+        if !self.is_cleared {
+            for word in [self.frame.spent(), self.data.status()] {
+                encoder.clear_buffer(word, 0, Some(4));
+            }
+            for tile in 0..self.frame.tiles.len() {
+                self.frame.record_clear_film(encoder, tile);
+            }
+        }
+        self.record_data(renderer.renderer(), queue, encoder, scene, &mut budget)?;
+        if self.data_cursor.parts == self.data.parts().count() {
+            self.record_samples(queue, encoder, scene, place, &mut budget)?;
+        }
+        self.is_cleared = true;
+        self.tickets.record(encoder, place, [self.frame.spent(), self.data.status()]);
+        let is_done = self.cursor.samples >= self.total;
+        Ok(progress(self, &budget, if is_done { LitState::Done } else { LitState::Refining }))
+    }
+
+    /// The place of a recording that can be made now. A slice of the picture by primary rays has a record that is
+    /// queued, so it must be alone.
+    fn free_place(&self, max_rays: u64) -> Option<usize> {
+        let DataCursor { parts, left } = &self.data_cursor;
+        let is_begun = *parts > 0 || !left.is_empty();
+        let has_all = *parts == self.data.parts().count();
+        let is_sliced = !has_all && (is_begun || self.data_groups() * RAYS_PER_GROUP > max_rays);
+        self.tickets.free().filter(|_| !is_sliced || self.tickets.are_all_free())
+    }
+
+    /// Number of workgroups of the picture by primary rays, over all bricks.
+    fn data_groups(&self) -> u64 {
+        self.data.parts().map(|part| part.groups.count()).sum()
+    }
+
+    /// Records the picture by primary rays, or one more slice of it.
+    fn record_data(
+        &mut self,
+        renderer: &Renderer,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        budget: &mut Budget,
+    ) -> Result<(), GpuError> {
+        let (data, cursor) = (&mut self.data, &mut self.data_cursor);
+        let parts: Vec<BandBrick> = data.parts().collect();
+        renderer.check_pipelines(scene, data)?;
+        let groups = parts.iter().map(|part| part.groups.count()).sum();
+        if cursor.parts == 0 && cursor.left.is_empty() && groups <= budget.groups(1) {
+            for part in &parts {
+                data.set_first_group(queue, part.band, part.groups.first);
+            }
+            renderer.record(encoder, scene, data)?;
+            budget.take(groups, 1);
+            cursor.parts = parts.len();
+        }
+        while let Some(part) = parts.get(cursor.parts) {
+            if budget.groups(1) == 0 {
+                return Err(budget.too_small(1));
+            }
+            if cursor.left.is_empty() {
+                cursor.left.push(part.groups);
+            }
+            let slice = Groups::take(&mut cursor.left, budget.groups(1)).unwrap_or(Groups::NONE);
+            data.set_first_group(queue, part.band, slice.first);
+            let descriptor =
+                ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None };
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            renderer.record_trace(&mut pass, scene, data, BandBrick { groups: slice, ..*part })?;
+            budget.take(slice.count(), 1);
+            if cursor.left.is_empty() {
+                if part.is_last_of_band {
+                    renderer.record_shade(&mut pass, scene, data, part.band)?;
+                }
+                cursor.parts += 1;
+            }
+            if slice.count() > 0 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Records samples, and writes the means of the tiles that have more of them.
+    fn record_samples(
+        &mut self,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        place: usize,
+        budget: &mut Budget,
+    ) -> Result<(), GpuError> {
+        let Self { passes, frame, lighting, resolve, data, cursor, .. } = self;
+        let at_once = if self.caution == Caution::OneByOne { 1 } else { AT_ONCE };
+        let occluders = if lighting.mode.is_studio() { scene.studio_occluders()? } else { scene };
+        let room = frame.sizes.room();
+        let round = Round { passes, lighting, scene, occluders, room, at_once };
+        let mut recorder = Recorder::new(frame, passes.advance(), self.is_indirect).at(place);
+        let show = |encoder: &mut CommandEncoder, recorder: &mut Recorder<'_>, samples: u32| {
+            recorder.record_resolve(encoder, resolve, data.target_group(), samples);
+        };
+        let recorded =
+            cursor.record(encoder, (frame, &round), &mut recorder, budget, self.total, show);
+        frame.queue_parameters(queue, place, &recorder.take_parameters());
+        recorded
+    }
+
+    fn be_cautious(&mut self) {
+        self.caution = match self.caution {
+            Caution::None => Caution::Steps,
+            Caution::Steps | Caution::OneByOne => Caution::OneByOne,
+        };
+        self.begin_again();
+    }
+
+    /// The sums of every part of the picture.
+    pub fn sums(&self) -> impl Iterator<Item = LitSums<'_>> {
+        self.frame.tiles.iter().map(|tile| LitSums {
+            origin: tile.tile.origin,
+            size: tile.tile.size,
+            buffer: tile.film(),
+        })
+    }
+}
+
+/// The settings of the picture by primary rays.
+fn primary_of(settings: &RenderSettings) -> PrimarySettings {
+    settings.by_primary_rays().primary().unwrap_or_default()
+}
+
+fn sizes_of(
+    device: &Device,
+    view: &View<'_>,
+    lighting: &LightingData,
+    settings: &RenderSettings,
+) -> LitSizes {
+    LitSizes::new(&device.limits(), &view.film, lighting.mode, settings.sampling.samples)
+}
+
+/// The tiles of a picture and their records.
+fn frames_of<'a>(
+    device: &Device,
+    scene: &'a SceneBuffers,
+    view: &'a View<'a>,
+    settings: &RenderSettings,
+    sizes: LitSizes,
+) -> Result<impl Iterator<Item = (Tile, Frames)> + 'a, GpuError> {
+    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+    let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
+    Ok(tiles(&view.film, sizes.tile)
+        .map(move |tile| (tile, scenes.frames(view, region, tile, limit))))
+}
+
+async fn new_frame(
+    (device, queue): (&Device, &Queue),
+    passes: &LitPasses,
+    lighting: &LightingData,
+    scene: &SceneBuffers,
+    view: &View<'_>,
+    settings: &RenderSettings,
+) -> Result<LitFrame, GpuError> {
+    let sizes = sizes_of(device, view, lighting, settings);
+    let records = frames_of(device, scene, view, settings, sizes)?;
+    let by = RecordedBy::Host { at_once: RECORDINGS };
+    LitFrame::new((device, queue), passes, sizes, lighting, by, records).await
+}

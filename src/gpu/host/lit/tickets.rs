@@ -1,0 +1,189 @@
+//! Which of a host's recordings were executed, and in which order, without asking the device.
+//!
+//! Each recording ends with a copy of its status words into a small buffer, and asks for the buffer to be mapped when
+//! the encoder is submitted. The callback tells that the commands were executed; if it is dropped, they never will be.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
+
+/// Maximum number of recordings under way. With fewer, the device would be idle while the host makes the next.
+pub(super) const AT_ONCE: usize = 3;
+
+const FREE: u8 = 0;
+const WAITING: u8 = 1;
+const EXECUTED: u8 = 2;
+
+/// The recordings under way.
+#[derive(Debug)]
+pub(super) struct Tickets {
+    slots: [Slot; AT_ONCE],
+    /// Number of the next recording.
+    next: u64,
+    order: Arc<Mutex<Order>>,
+}
+
+#[derive(Debug)]
+struct Slot {
+    buffer: Buffer,
+    state: Arc<AtomicU8>,
+}
+
+/// What is known of the order in which recordings were executed.
+#[derive(Debug, Default)]
+struct Order {
+    /// The recordings before this one do not matter: the first command of this one clears what they made.
+    first: u64,
+    /// The recording that must be executed next.
+    expected: u64,
+    is_broken: bool,
+}
+
+impl Order {
+    fn executed(&mut self, number: u64) {
+        let is_before_all = number < self.first && self.expected == self.first;
+        if !is_before_all {
+            self.is_broken |= number != self.expected;
+            self.expected = number + 1;
+        }
+    }
+
+    fn dropped(&mut self, number: u64) {
+        self.is_broken |= number >= self.first;
+    }
+}
+
+/// A recording under way. If this is dropped before it is executed, the commands are lost.
+struct Ticket {
+    number: u64,
+    state: Arc<AtomicU8>,
+    order: Arc<Mutex<Order>>,
+}
+
+impl Ticket {
+    fn executed(self) {
+        self.order.lock().unwrap_or_else(PoisonError::into_inner).executed(self.number);
+        self.state.store(EXECUTED, Ordering::Release);
+    }
+}
+
+impl Drop for Ticket {
+    fn drop(&mut self) {
+        let changed =
+            self.state.compare_exchange(WAITING, FREE, Ordering::AcqRel, Ordering::Acquire);
+        if changed.is_ok() {
+            self.order.lock().unwrap_or_else(PoisonError::into_inner).dropped(self.number);
+        }
+    }
+}
+
+/// What has become known since the last question.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct News {
+    /// Commands were dropped, or executed in another order than they were recorded in.
+    pub(super) is_lost: bool,
+    /// A search was abandoned.
+    pub(super) is_spent: bool,
+}
+
+impl Tickets {
+    pub(super) fn new(device: &Device) -> Self {
+        let slot = |_| Slot {
+            buffer: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pinhole recording"),
+                size: 8,
+                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }),
+            state: Arc::new(AtomicU8::new(FREE)),
+        };
+        Self { slots: [0; AT_ONCE].map(slot), next: 0, order: Arc::default() }
+    }
+
+    /// Takes the results that have arrived. This never waits.
+    pub(super) fn news(&mut self) -> News {
+        let mut news = News::default();
+        for slot in &self.slots {
+            if slot.state.load(Ordering::Acquire) == EXECUTED {
+                let words = slot.buffer.get_mapped_range(..);
+                news.is_spent |= words.is_ok_and(|words| words.iter().any(|byte| *byte != 0));
+                slot.buffer.unmap();
+                slot.state.store(FREE, Ordering::Release);
+            }
+        }
+        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
+        news.is_lost = std::mem::take(&mut order.is_broken);
+        news
+    }
+
+    /// The place of a recording that can be made now.
+    pub(super) fn free(&self) -> Option<usize> {
+        self.slots.iter().position(|slot| slot.state.load(Ordering::Acquire) == FREE)
+    }
+
+    /// Whether no recording is under way.
+    pub(super) fn are_all_free(&self) -> bool {
+        self.slots.iter().all(|slot| slot.state.load(Ordering::Acquire) == FREE)
+    }
+
+    /// Notes that the next recording begins with clearing what all earlier ones made.
+    pub(super) fn begin_again(&mut self) {
+        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
+        *order = Order { first: self.next, expected: self.next, is_broken: false };
+    }
+
+    /// Records the copies of two status words, whose recording takes this place.
+    pub(super) fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        place: usize,
+        words: [&Buffer; 2],
+    ) {
+        let slot = &mut self.slots[place];
+        for (word, offset) in words.into_iter().zip([0, 4]) {
+            encoder.copy_buffer_to_buffer(word, 0, &slot.buffer, offset, 4);
+        }
+        slot.state = Arc::new(AtomicU8::new(WAITING));
+        let (state, order) = (Arc::clone(&slot.state), Arc::clone(&self.order));
+        let ticket = Ticket { number: self.next, state, order };
+        self.next += 1;
+        encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| {
+            // Without memory that is mapped, the ticket is dropped.
+            if mapped.is_ok() {
+                ticket.executed();
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(first: u64, events: &[Result<u64, u64>]) -> bool {
+        let mut order = Order { first, expected: first, is_broken: false };
+        for event in events {
+            match *event {
+                Ok(number) => order.executed(number),
+                Err(number) => order.dropped(number),
+            }
+        }
+        order.is_broken
+    }
+
+    #[test]
+    fn an_order_is_broken_by_what_is_lost_late_or_early() {
+        assert!(!after(0, &[Ok(0), Ok(1), Ok(2)]));
+        assert!(after(0, &[Ok(0), Err(1), Ok(2)]), "one was dropped");
+        assert!(after(0, &[Ok(1), Ok(0)]), "they were exchanged");
+        assert!(after(0, &[Ok(0), Ok(2)]), "one is missing");
+    }
+
+    #[test]
+    fn what_came_before_the_first_matters_only_if_it_is_executed_late() {
+        assert!(!after(5, &[Ok(3), Ok(4), Ok(5), Ok(6)]));
+        assert!(!after(5, &[Err(3), Ok(5), Err(4), Ok(6)]));
+        assert!(after(5, &[Ok(5), Ok(4)]));
+    }
+}

@@ -1,0 +1,356 @@
+//! Lit pictures that accumulate in a host's encoders: they are those of a headless device, to the bit.
+
+use libtest_mimic::Trial;
+use pinhole::gpu::{
+    ColorTarget, DataTargets, GpuError, Headless, LitPicture, LitProgress, LitRenderer, LitState,
+    Recolor, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
+};
+use pinhole::image::Layer;
+use pinhole::scene::{NewColors, SceneUpdate};
+use pinhole::{Appearance, Colors, Image, LayerSet, RenderSettings, Scene};
+
+use crate::embedding::Host;
+use crate::light::scenes::{self, LitView};
+use crate::trial;
+
+pub(super) fn trials() -> Vec<Trial> {
+    vec![
+        trial("host::lit::any_budget_makes_the_picture_of_a_headless_device", budgets),
+        trial("host::lit::every_scene_in_one_recording", every_scene),
+        trial("host::lit::new_views_light_and_data_begin_again", changes),
+        trial("host::lit::what_changes_nothing_keeps_the_samples", same),
+        trial("host::lit::recordings_that_are_lost_are_noticed", lost),
+        trial("host::lit::recordings_of_one_submission_do_not_mix", together),
+        trial("host::lit::a_scene_that_changed_is_refused", other_scene),
+        trial("host::lit::what_cannot_be_recorded_is_refused", refused),
+    ]
+}
+
+const LAYERS: LayerSet =
+    LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
+
+fn named(name: &str, samples: u32) -> LitView {
+    let found = scenes::all().into_iter().find(|(found, _)| *found == name);
+    let mut view = found.unwrap_or_else(|| panic!("there is no scene {name}")).1;
+    view.settings.sampling.samples = samples;
+    view
+}
+
+struct Show {
+    host: Host,
+    renderer: LitRenderer,
+    layers: [wgpu::Texture; 4],
+}
+
+impl Show {
+    fn new(size: [u32; 2]) -> Self {
+        let host = Host::new();
+        let options = RendererOptions {
+            color: ColorTarget::Linear32,
+            data_layers: true,
+            ..RendererOptions::default()
+        };
+        let renderer = LitRenderer::new(Renderer::new(&host.device, &options).unwrap());
+        use wgpu::TextureFormat::{R32Float, R32Uint, Rgba32Float};
+        let layers =
+            [Rgba32Float, R32Float, Rgba32Float, R32Uint].map(|format| host.texture(size, format));
+        Self { host, renderer, layers }
+    }
+
+    fn of(view: &LitView) -> Self {
+        Self::new([view.film.width(), view.film.height()])
+    }
+
+    fn scene(&self, scene: &Scene) -> SceneBuffers {
+        SceneBuffers::for_studio(
+            self.renderer.renderer(),
+            &self.host.device,
+            &self.host.queue,
+            scene,
+        )
+        .unwrap()
+    }
+
+    fn picture(&self, scene: &SceneBuffers, view: &LitView) -> Result<LitPicture, GpuError> {
+        let [color, depth, normal, id] =
+            self.layers.each_ref().map(|layer| layer.create_view(&Default::default()));
+        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
+        let targets = Targets { color: &color, data: Some(data) };
+        let Host { device, queue } = &self.host;
+        let (seen, settings) = (view.seen(), &view.settings);
+        LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, &targets)
+    }
+
+    fn set(
+        &self,
+        picture: &mut LitPicture,
+        scene: &SceneBuffers,
+        view: &LitView,
+    ) -> Result<bool, GpuError> {
+        let Host { device, queue } = &self.host;
+        picture.set(&self.renderer, device, queue, scene, &view.seen(), &view.settings)
+    }
+
+    fn record(
+        &self,
+        picture: &mut LitPicture,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &SceneBuffers,
+        max_rays: u64,
+    ) -> Result<LitProgress, GpuError> {
+        picture.record(&self.renderer, &self.host.queue, encoder, scene, max_rays)
+    }
+
+    /// Records and submits until the picture is done. Returns the number of recordings with work.
+    fn finish(&self, picture: &mut LitPicture, scene: &SceneBuffers, max_rays: u64) -> usize {
+        let mut recordings = 0;
+        loop {
+            let mut encoder = self.host.encoder();
+            let done = self.record(picture, &mut encoder, scene, max_rays).unwrap();
+            assert!(done.rays <= max_rays, "{done:?}");
+            assert!(!done.was_lost, "{done:?}");
+            self.host.queue.submit([encoder.finish()]);
+            match done.state {
+                LitState::Done if done.rays == 0 => return recordings,
+                LitState::Waiting => {
+                    self.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+                }
+                _ => recordings += 1,
+            }
+        }
+    }
+
+    /// Compares the textures with a picture of a headless device.
+    fn assert_shows(&self, wanted: &Image, what: &str) {
+        let [color, depth, _, id] = self.layers.each_ref().map(|layer| self.words(layer));
+        let floats =
+            |words: &[u32]| -> Vec<f32> { words.iter().map(|w| f32::from_bits(*w)).collect() };
+        let color = floats(&color);
+        let pixels: Vec<[f32; 3]> = color.chunks(4).map(|p| [p[0], p[1], p[2]]).collect();
+        let wrong = pixels.iter().zip(wanted.color()).filter(|(a, b)| a != b).count();
+        assert_eq!(wrong, 0, "{what}: colours of {} pixels", pixels.len());
+        let alpha: Vec<f32> = color.chunks(4).map(|p| p[3]).collect();
+        assert!(alpha == wanted.alpha().unwrap(), "{what}: alpha");
+        // A texture has 1e30 for a miss.
+        let depth = floats(&depth).into_iter().map(|d| if d >= 1e30 { f32::INFINITY } else { d });
+        assert!(depth.eq(wanted.depth().unwrap().iter().copied()), "{what}: depth");
+        assert!(id == wanted.id().unwrap(), "{what}: id");
+    }
+
+    fn words(&self, texture: &wgpu::Texture) -> Vec<u32> {
+        let bytes = self.host.submit_and_read(self.host.encoder(), texture);
+        bytes.chunks(4).map(|word| u32::from_ne_bytes(word.try_into().unwrap())).collect()
+    }
+}
+
+fn headless_picture(headless: &Headless, view: &LitView) -> Image {
+    headless.render(&view.scene, &view.seen(), &view.settings, LAYERS).unwrap()
+}
+
+fn budgets(headless: &'static Headless) {
+    for name in ["studio_ambient_occlusion", "studio_opacity", "path_lobes_and_metals"] {
+        let view = named(name, 7);
+        let wanted = headless_picture(headless, &view);
+        let show = Show::of(&view);
+        let scene = show.scene(&view.scene);
+        // The smallest part of a sample has 34 rays in each of 64 invocations.
+        for max_rays in [64 * 40, 64 * 40 + 17, 5_000, 50_000, u64::MAX] {
+            let mut picture = show.picture(&scene, &view).unwrap();
+            let recordings = show.finish(&mut picture, &scene, max_rays);
+            assert!(recordings > 1 || max_rays == u64::MAX, "{name} {max_rays}");
+            show.assert_shows(&wanted, &format!("{name}, {max_rays} rays at a time"));
+        }
+    }
+}
+
+fn every_scene(headless: &'static Headless) {
+    for (name, mut view) in scenes::all() {
+        view.settings.sampling.samples = 3;
+        view.settings.is_transparent = true;
+        let show = Show::of(&view);
+        let scene = show.scene(&view.scene);
+        let mut picture = show.picture(&scene, &view).unwrap();
+        show.finish(&mut picture, &scene, u64::MAX);
+        show.assert_shows(&headless_picture(headless, &view), name);
+    }
+}
+
+/// Every change begins again, and what was accumulated before leaves no trace.
+fn changes(headless: &'static Headless) {
+    let view = named("studio_ambient_occlusion", 4);
+    let show = Show::of(&view);
+    let scene = show.scene(&view.scene);
+    let mut picture = show.picture(&scene, &view).unwrap();
+    let mut others = vec![named("studio_key_and_fill", 4), named("path_matt_under_a_sky", 4)];
+    let mut brighter = named("studio_ambient_occlusion", 4);
+    let key = brighter.settings.lights[0].clone();
+    brighter.settings.lights.push(key);
+    let mut transparent = named("studio_ambient_occlusion", 4);
+    transparent.settings.is_transparent = true;
+    let mut seeded = named("studio_ambient_occlusion", 4);
+    seeded.settings.sampling.seed += 1;
+    let mut nearer = named("studio_ambient_occlusion", 4);
+    nearer.camera = nearer_camera(&nearer);
+    others.extend([brighter, transparent, seeded, nearer]);
+    for (number, other) in others.iter().enumerate() {
+        show.set(&mut picture, &scene, &view).unwrap();
+        // In the middle of a picture.
+        let mut encoder = show.host.encoder();
+        show.record(&mut picture, &mut encoder, &scene, 60_000).unwrap();
+        show.host.queue.submit([encoder.finish()]);
+        assert!(show.set(&mut picture, &scene, other).unwrap(), "change {number}");
+        show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        show.finish(&mut picture, &scene, 60_000);
+        show.assert_shows(&headless_picture(headless, other), &format!("change {number}"));
+    }
+}
+
+fn nearer_camera(view: &LitView) -> Box<dyn pinhole::camera::Camera> {
+    let pose =
+        pinhole::camera::Pose::looking_at([0.5, 1.5, 6.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let aspect = view.film.aspect();
+    Box::new(pinhole::camera::PinholeCamera::with_vertical_fov(pose, 0.6, aspect).unwrap())
+}
+
+fn same(headless: &'static Headless) {
+    let mut view = named("path_lobes_and_metals", 2);
+    let show = Show::of(&view);
+    let scene = show.scene(&view.scene);
+    let mut picture = show.picture(&scene, &view).unwrap();
+    show.finish(&mut picture, &scene, u64::MAX);
+    assert!(!show.set(&mut picture, &scene, &view).unwrap());
+    assert_eq!(show.finish(&mut picture, &scene, u64::MAX), 0, "nothing is left to do");
+    // More samples continue the picture.
+    for samples in [4, 9] {
+        view.settings.sampling.samples = samples;
+        show.set(&mut picture, &scene, &view).unwrap();
+        show.finish(&mut picture, &scene, u64::MAX);
+        show.assert_shows(&headless_picture(headless, &view), &format!("{samples} samples"));
+    }
+}
+
+fn lost(headless: &'static Headless) {
+    let view = named("studio_ambient_occlusion", 6);
+    let wanted = headless_picture(headless, &view);
+    let show = Show::of(&view);
+    let scene = show.scene(&view.scene);
+    let settle = || show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let finish = |mut picture: LitPicture, what: &str| {
+        settle();
+        let mut encoder = show.host.encoder();
+        let noticed = show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
+        assert!(noticed.was_lost, "{what}: {noticed:?}");
+        show.host.queue.submit([encoder.finish()]);
+        show.finish(&mut picture, &scene, 20_000);
+        show.assert_shows(&wanted, what);
+    };
+    let begin = || {
+        let mut picture = show.picture(&scene, &view).unwrap();
+        let mut encoder = show.host.encoder();
+        show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap();
+        show.host.queue.submit([encoder.finish()]);
+        picture
+    };
+    let recorded = |picture: &mut LitPicture| {
+        let mut encoder = show.host.encoder();
+        show.record(picture, &mut encoder, &scene, 20_000).unwrap();
+        encoder.finish()
+    };
+
+    let mut picture = begin();
+    drop(recorded(&mut picture));
+    finish(picture, "a recording that is dropped");
+
+    let mut picture = begin();
+    let [second, third] = [(); 2].map(|()| recorded(&mut picture));
+    show.host.queue.submit([third]);
+    show.host.queue.submit([second]);
+    finish(picture, "recordings that are exchanged");
+
+    // The recording that was left out is submitted after the picture has begun again.
+    let mut picture = begin();
+    let late = recorded(&mut picture);
+    show.host.queue.submit([recorded(&mut picture)]);
+    settle();
+    let mut encoder = show.host.encoder();
+    assert!(show.record(&mut picture, &mut encoder, &scene, 20_000).unwrap().was_lost);
+    show.host.queue.submit([encoder.finish()]);
+    show.host.queue.submit([late]);
+    finish(picture, "a recording that comes late");
+}
+
+fn together(headless: &'static Headless) {
+    let view = named("path_lobes_and_metals", 6);
+    let show = Show::of(&view);
+    let scene = show.scene(&view.scene);
+    let mut picture = show.picture(&scene, &view).unwrap();
+    loop {
+        let mut states = Vec::new();
+        let commands = [(); 2].map(|()| {
+            let mut encoder = show.host.encoder();
+            let done = show.record(&mut picture, &mut encoder, &scene, 100_000).unwrap();
+            assert!(!done.was_lost);
+            states.push(done.state);
+            encoder.finish()
+        });
+        show.host.queue.submit(commands);
+        show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        if states[1] == LitState::Done {
+            break;
+        }
+    }
+    show.assert_shows(&headless_picture(headless, &view), "two recordings in each submission");
+}
+
+fn other_scene(headless: &'static Headless) {
+    let mut view = named("studio_ambient_occlusion", 3);
+    let spheres = pinhole::SphereArray::F32(view.scene.spheres().to_vec());
+    let count = view.scene.len();
+    let colors = Appearance::new(Colors::Rgba8(vec![[9, 90, 200, 255]; count]));
+    view.scene = Scene::from_parts(spheres, colors).unwrap();
+    let show = Show::of(&view);
+    let mut scene = show.scene(&view.scene);
+    let mut picture = show.picture(&scene, &view).unwrap();
+    show.finish(&mut picture, &scene, u64::MAX);
+
+    let recolor = Recolor::new(&show.host.device).unwrap();
+    let new = vec![[200, 40, 9, 255]; count];
+    let update =
+        SceneUpdate { first: 0, colors: Some(NewColors::Rgba8(&new)), ..SceneUpdate::default() };
+    view.scene.apply(&update).unwrap();
+    let mut encoder = show.host.encoder();
+    let Host { device, queue } = &show.host;
+    recolor.record(device, queue, &mut encoder, &mut scene, &view.scene, &update).unwrap();
+    let refused = show.record(&mut picture, &mut encoder, &scene, u64::MAX).unwrap_err();
+    assert_eq!(refused, GpuError::OtherScene);
+    queue.submit([encoder.finish()]);
+    assert!(show.set(&mut picture, &scene, &view).unwrap());
+    show.finish(&mut picture, &scene, u64::MAX);
+    show.assert_shows(&headless_picture(headless, &view), "other colours");
+
+    let moved = show.scene(&view.scene);
+    scene.replace(moved);
+    let mut encoder = show.host.encoder();
+    let refused = show.record(&mut picture, &mut encoder, &scene, u64::MAX).unwrap_err();
+    assert_eq!(refused, GpuError::OtherScene);
+}
+
+fn refused(_: &'static Headless) {
+    let view = named("studio_ambient_occlusion", 3);
+    let show = Show::of(&view);
+    let scene = show.scene(&view.scene);
+    let mut picture = show.picture(&scene, &view).unwrap();
+    let mut encoder = show.host.encoder();
+    let few = show.record(&mut picture, &mut encoder, &scene, 63).unwrap_err();
+    assert_eq!(few, GpuError::Budget { needed: 64, given: 63 });
+    let primary =
+        LitView { settings: RenderSettings::default(), ..named("studio_key_and_fill", 1) };
+    assert_eq!(show.picture(&scene, &primary).unwrap_err(), GpuError::NotLit);
+    let small = Show::new([20, 20]);
+    let refused = small.picture(&small.scene(&view.scene), &view).unwrap_err();
+    assert!(matches!(refused, GpuError::Target { layer: "color", .. }), "{refused}");
+    let clear = named("studio_opacity", 3);
+    let Host { device, queue } = &show.host;
+    let without = SceneBuffers::new(show.renderer.renderer(), device, queue, &clear.scene).unwrap();
+    assert_eq!(show.picture(&without, &clear).unwrap_err(), GpuError::NoOccluders);
+}
