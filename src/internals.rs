@@ -12,6 +12,7 @@ pub use crate::accel::sphere::intersect_sphere;
 pub use crate::accel::tree_check::{TreeError, TreeStatistics};
 pub use crate::accel::wide_node::{WIDE_LEAF, WideNode};
 pub use crate::accel::wide_tree::{WIDE_LEVELS, WideTree};
+pub use crate::cpu::live::{LiveFrame, LiveReference};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::ShaderEdit;
 pub use crate::verify::paths::{

@@ -1,24 +1,6 @@
 // What a surface in a studio reflects of the light from all directions, in one pass. Twin: src/cpu/light/studio.rs.
-// provides: Seen, ambient_light
-// needs: Excluded, Material, Start, Vertex, axes_around, cosine_direction, is_hidden, lighting, sample_pair,
-//   shade_of_ambient, to_world
-
-// A surface that the camera sees.
-struct Seen {
-    vertex: Vertex,
-    material: Material,
-    start: Start,
-    excluded: Excluded,
-    // Unit vector towards the camera.
-    out: vec3f,
-    // The colour times the weight.
-    albedo: vec3f,
-    // How much of the surface is seen behind depth cueing.
-    weight: f32,
-    // Whether only shadows are seen of it, and the luminance of all lights on it then.
-    is_caught: bool,
-    light: f32,
-}
+// provides: ambient_light
+// needs: Seen, axes_around, cosine_direction, is_hidden, lighting, sample_pair, shade_of_ambient, to_world
 
 // The light from the directions that nothing occludes.
 fn ambient_light(seen: Seen, seed: u32, number: u32) -> vec4f {

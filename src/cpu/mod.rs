@@ -15,6 +15,7 @@ use crate::render::{PrimarySettings, RenderSettings, SettingsError};
 
 mod denoise;
 mod light;
+pub(crate) mod live;
 mod search;
 #[cfg(test)]
 mod search_tests;

@@ -143,6 +143,12 @@ pub enum GpuError {
          settings"
     )]
     NoOccluders,
+    /// A live picture was requested of something that it cannot show.
+    #[error("a live picture needs {needs}; show a `LitPicture` instead")]
+    NotLive {
+        /// What is missing.
+        needs: &'static str,
+    },
     /// A host allowed fewer rays than the smallest part of a lit picture has.
     #[error(
         "a recording may trace {given} rays, too few for any part of the picture; allow {needed} or more"

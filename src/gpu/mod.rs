@@ -40,6 +40,7 @@ pub use host::depth_test::{DepthTest, HostDepth};
 pub use host::lit::picture::LitPicture;
 pub use host::lit::progress::{LitProgress, LitState, LitSums};
 pub use host::lit::renderer::LitRenderer;
+pub use host::live::picture::{LivePicture, LiveProgress};
 pub use host::pick::{PickError, Picked, PickedHit, Picker};
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};

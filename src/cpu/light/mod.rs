@@ -22,6 +22,7 @@ use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
 mod bsdf;
 mod context;
 mod lamp;
+pub(super) mod live;
 mod maps;
 mod path;
 mod sample;

@@ -7,6 +7,7 @@ pub(in crate::gpu) mod composite_options;
 pub(in crate::gpu) mod depth_test;
 pub(in crate::gpu) mod host_view;
 pub(in crate::gpu) mod lit;
+pub(in crate::gpu) mod live;
 pub(in crate::gpu) mod pick;
 
 /// The kernels of everything here.

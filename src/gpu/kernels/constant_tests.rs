@@ -101,6 +101,8 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",
     "SHADING_TRANSPARENT",
+    "NOTHING",
+    "SAME_VIEW",
     "SMALLEST_SPOT",
     // The reference has it in f64.
     "NO_NOISE",

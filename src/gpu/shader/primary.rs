@@ -99,6 +99,15 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
     }
 }
 
+/// The part that writes data layers, if there are any.
+pub(in crate::gpu) fn data_layers(are_written: bool) -> Part {
+    if are_written {
+        part!("primary/data_layers.wgsl", "all")
+    } else {
+        part!("primary/data_layers.wgsl", "none")
+    }
+}
+
 /// The part that writes colours.
 pub(in crate::gpu) fn color_target(color: ColorTarget) -> Part {
     match color {
@@ -122,11 +131,7 @@ pub(in crate::gpu) fn shade_kernel(
         part!("primary/shade.wgsl"),
         part!("primary/shading.wgsl"),
         color_target(color),
-        if data_layers {
-            part!("primary/data_layers.wgsl", "all")
-        } else {
-            part!("primary/data_layers.wgsl", "none")
-        },
+        self::data_layers(data_layers),
     ]);
     Kernel { entry_point: "shade", parts }
 }

@@ -6,6 +6,7 @@ use pinhole::gpu::{
     Recolor, Renderer, RendererOptions, SceneBuffers, Targets, wgpu,
 };
 use pinhole::image::Layer;
+use pinhole::internals::ShaderEdit;
 use pinhole::scene::{NewColors, SceneUpdate};
 use pinhole::{Appearance, Colors, Image, LayerSet, RenderSettings, Scene};
 
@@ -29,25 +30,31 @@ pub(super) fn trials() -> Vec<Trial> {
 const LAYERS: LayerSet =
     LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Normal).with(Layer::Id);
 
-fn named(name: &str, samples: u32) -> LitView {
+pub(super) fn named(name: &str, samples: u32) -> LitView {
     let found = scenes::all().into_iter().find(|(found, _)| *found == name);
     let mut view = found.unwrap_or_else(|| panic!("there is no scene {name}")).1;
     view.settings.sampling.samples = samples;
     view
 }
 
-struct Show {
-    host: Host,
-    renderer: LitRenderer,
-    layers: [wgpu::Texture; 4],
+pub(super) struct Show {
+    pub(super) host: Host,
+    pub(super) renderer: LitRenderer,
+    /// Colour, depth, normal and id.
+    pub(super) layers: [wgpu::Texture; 4],
 }
 
 impl Show {
     fn new(size: [u32; 2]) -> Self {
+        Self::edited(size, Vec::new())
+    }
+
+    pub(super) fn edited(size: [u32; 2], edits: Vec<ShaderEdit>) -> Self {
         let host = Host::new();
         let options = RendererOptions {
             color: ColorTarget::Linear32,
             data_layers: true,
+            edits,
             ..RendererOptions::default()
         };
         let renderer = LitRenderer::new(Renderer::new(&host.device, &options).unwrap());
@@ -61,7 +68,7 @@ impl Show {
         Self::new([view.film.width(), view.film.height()])
     }
 
-    fn scene(&self, scene: &Scene) -> SceneBuffers {
+    pub(super) fn scene(&self, scene: &Scene) -> SceneBuffers {
         SceneBuffers::for_studio(
             self.renderer.renderer(),
             &self.host.device,
@@ -71,14 +78,18 @@ impl Show {
         .unwrap()
     }
 
-    fn picture(&self, scene: &SceneBuffers, view: &LitView) -> Result<LitPicture, GpuError> {
-        let [color, depth, normal, id] =
-            self.layers.each_ref().map(|layer| layer.create_view(&Default::default()));
+    pub(super) fn with_targets<T>(&self, work: impl FnOnce(&Targets<'_>) -> T) -> T {
+        let [color, depth, normal, id] = self.layers.each_ref().map(crate::embedding::view_of);
         let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        let targets = Targets { color: &color, data: Some(data) };
+        work(&Targets { color: &color, data: Some(data) })
+    }
+
+    fn picture(&self, scene: &SceneBuffers, view: &LitView) -> Result<LitPicture, GpuError> {
         let Host { device, queue } = &self.host;
         let (seen, settings) = (view.seen(), &view.settings);
-        LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, &targets)
+        self.with_targets(|targets| {
+            LitPicture::new(&self.renderer, device, queue, scene, &seen, settings, targets)
+        })
     }
 
     fn set(
@@ -137,7 +148,7 @@ impl Show {
         assert!(id == wanted.id().unwrap(), "{what}: id");
     }
 
-    fn words(&self, texture: &wgpu::Texture) -> Vec<u32> {
+    pub(super) fn words(&self, texture: &wgpu::Texture) -> Vec<u32> {
         let bytes = self.host.submit_and_read(self.host.encoder(), texture);
         bytes.chunks(4).map(|word| u32::from_ne_bytes(word.try_into().unwrap())).collect()
     }

@@ -4,6 +4,7 @@
 mod depth_in;
 mod depth_out;
 mod lit;
+mod live;
 mod pick;
 mod same_picture;
 mod stage;
@@ -19,6 +20,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         depth_in::trials(),
         pick::trials(),
         lit::trials(),
+        live::trials(),
     ]
     .into_iter()
     .flatten()

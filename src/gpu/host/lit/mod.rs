@@ -5,4 +5,4 @@ pub(in crate::gpu) mod picture;
 pub(in crate::gpu) mod progress;
 pub(in crate::gpu) mod renderer;
 pub(in crate::gpu) mod resolve;
-mod tickets;
+pub(in crate::gpu::host) mod tickets;

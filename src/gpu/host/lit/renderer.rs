@@ -8,7 +8,7 @@ use wgpu::{ComputePipeline, Device};
 use super::resolve::resolve_pipeline;
 use crate::camera::View;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene};
+use crate::gpu::passes::lit::{LightingData, LitKey, LitPasses, LitScene, LiveKey, LivePasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 #[cfg(not(target_arch = "wasm32"))]
@@ -21,13 +21,19 @@ pub struct LitRenderer {
     renderer: Renderer,
     passes: Mutex<HashMap<LitKey, Arc<LitPasses>>>,
     resolve: Mutex<Option<ComputePipeline>>,
+    live: Mutex<HashMap<LiveKey, Arc<LivePasses>>>,
 }
 
 impl LitRenderer {
     /// Adds lit pictures to a renderer. Nothing is built yet.
     #[must_use]
     pub fn new(renderer: Renderer) -> Self {
-        Self { renderer, passes: Mutex::default(), resolve: Mutex::default() }
+        Self {
+            renderer,
+            passes: Mutex::default(),
+            resolve: Mutex::default(),
+            live: Mutex::default(),
+        }
     }
 
     /// Returns the renderer of primary rays, for scenes, frames and depth tests.
@@ -118,6 +124,22 @@ impl LitRenderer {
         Ok(Arc::clone(passes.entry(key).or_insert(built)))
     }
 
+    pub(in crate::gpu::host) async fn live_passes(
+        &self,
+        device: &Device,
+        key: LiveKey,
+    ) -> Result<Arc<LivePasses>, GpuError> {
+        let built = self.live.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+        if let Some(passes) = built {
+            return Ok(passes);
+        }
+        let Renderer { color, data_layers, layouts, .. } = &self.renderer;
+        let targets = (*color, *data_layers, &layouts.targets);
+        let built = LivePasses::new(device, key, targets, self.renderer.edits()).await?;
+        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(live.entry(key).or_insert(Arc::new(built))))
+    }
+
     pub(super) async fn resolve(&self, device: &Device) -> Result<ComputePipeline, GpuError> {
         if let Some(pipeline) = self.built_resolve() {
             return Ok(pipeline);
@@ -131,7 +153,7 @@ impl LitRenderer {
 }
 
 /// The light of a picture, and the key of the passes that it needs.
-pub(super) fn lit_key(
+pub(in crate::gpu::host) fn lit_key(
     device: &Device,
     scene: &SceneBuffers,
     view: &View<'_>,

@@ -1,21 +1,19 @@
 //! Buffers of a lit picture: those that all tiles share, and the sums of each tile.
 
-use wgpu::{
-    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device, Queue, TextureView,
-};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Device, Queue};
 
 use super::lighting::LightingData;
+use super::lighting_buffers::LightingBuffers;
+use super::make::{Entry, Make, bind_group, whole};
 use super::passes::LitPasses;
 use super::records::{DispatchParameters, QUEUE_HEAD};
 use super::sizes::LitSizes;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::readback::ReadableBuffer;
-use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::part;
 use crate::gpu::shader::records::FrameParameters;
-use crate::light::environment::Environment;
 
 /// Maximum number of dispatches in a submission.
 pub(in crate::gpu) const MAX_DISPATCHES: usize = 1024;
@@ -75,16 +73,6 @@ impl RecordedBy {
     }
 }
 
-/// The light of a picture on the device.
-#[derive(Debug)]
-struct LightingBuffers {
-    record: Buffer,
-    tables: Buffer,
-    emitters: TextureView,
-    group: BindGroup,
-    sky: Option<BindGroup>,
-}
-
 /// A tile, and the sums of its pixels.
 #[derive(Debug)]
 pub(in crate::gpu) struct LitTile {
@@ -124,7 +112,7 @@ impl LitFrame {
         check_storage_size(device, "the paths of a tile", sizes.path_bytes())?;
         check_storage_size(device, "the lists of paths", sizes.queue_bytes())?;
         check_storage_size(device, "the sums of a tile", sizes.film_bytes())?;
-        check_lighting(device, lighting)?;
+        let lit = LightingBuffers::new((device, queue), &passes.layouts, lighting).await?;
         let make = Make { device, queue };
         scoped(device, || {
             let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
@@ -158,7 +146,7 @@ impl LitFrame {
             };
             Self {
                 sizes,
-                lit: make.lighting(passes, lighting, None),
+                lit,
                 tiles,
                 spent_back: back("pinhole spent read-back", 4),
                 film_back: back("pinhole sums read-back", sizes.film_bytes()),
@@ -198,12 +186,12 @@ impl LitFrame {
 
     /// Bind group of lights and materials.
     pub(super) fn lighting(&self) -> &BindGroup {
-        &self.lit.group
+        self.lit.group()
     }
 
     /// Bind group of the image of the sky.
     pub(super) fn sky(&self) -> Option<&BindGroup> {
-        self.lit.sky.as_ref()
+        self.lit.sky()
     }
 
     /// Queues other records for the tiles, in order, and returns whether any differs from what was there.
@@ -223,26 +211,15 @@ impl LitFrame {
         differs
     }
 
-    /// Queues other light. Buffers are created only if there are tables of another size; the emitters and the image of
-    /// the sky are uploaded if `is_new` says that they may be others.
+    /// Queues other light, as [`LightingBuffers::set`] does.
     pub(in crate::gpu) async fn set_lighting(
         &mut self,
-        (device, queue): (&Device, &Queue),
+        queues: (&Device, &Queue),
         passes: &LitPasses,
         lighting: &LightingData,
         is_new: bool,
     ) -> Result<(), GpuError> {
-        if is_new || self.lit.tables.size() != lighting.table_bytes() {
-            check_lighting(device, lighting)?;
-            let make = Make { device, queue };
-            let kept = (!is_new).then_some(&self.lit);
-            self.lit = scoped(device, || make.lighting(passes, lighting, kept)).await?;
-        } else {
-            let record = bytemuck::bytes_of(&lighting.parameters);
-            queue.write_buffer(&self.lit.record, 0, record);
-            queue.write_buffer(&self.lit.tables, 0, bytemuck::cast_slice(&lighting.tables));
-        }
-        Ok(())
+        self.lit.set(queues, &passes.layouts, lighting, is_new).await
     }
 
     /// The buffer that begins with the status word, which becomes nonzero if the search of a ray is abandoned.
@@ -284,13 +261,6 @@ impl LitFrame {
     }
 }
 
-/// Creates buffers and bind groups.
-#[derive(Clone, Copy)]
-struct Make<'a> {
-    device: &'a Device,
-    queue: &'a Queue,
-}
-
 /// The passes and buffers that all tiles share.
 struct Shared<'a> {
     passes: &'a LitPasses,
@@ -302,39 +272,7 @@ struct Shared<'a> {
     variations: &'a Buffer,
 }
 
-type Entry<'a> = (u32, wgpu::BindingResource<'a>);
-
 impl Make<'_> {
-    fn buffer(&self, label: &'static str, bytes: usize, usage: BufferUsages) -> Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes as u64,
-            usage: usage | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    }
-
-    fn filled(&self, label: &'static str, bytes: &[u8], usage: BufferUsages) -> Buffer {
-        let buffer = self.buffer(label, bytes.len(), usage);
-        self.queue.write_buffer(&buffer, 0, bytes);
-        buffer
-    }
-
-    fn group(&self, label: &str, layout: &BindGroupLayout, entries: &[Entry<'_>]) -> BindGroup {
-        let entries: Vec<_> = entries
-            .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry {
-                binding: *binding,
-                resource: resource.clone(),
-            })
-            .collect();
-        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(label),
-            layout,
-            entries: &entries,
-        })
-    }
-
     fn tile(&self, shared: &Shared<'_>, sizes: LitSizes, tile: Tile, frames: Frames) -> LitTile {
         let stride = shared.frame_stride;
         let bytes = strided(&frames, stride);
@@ -358,9 +296,11 @@ impl Make<'_> {
         LitTile {
             tile,
             frames,
-            groups: [0, 1, 2]
-                .map(|area| self.group("pinhole frame", &layouts.frame, &common(area))),
-            samples: self.group(
+            groups: [0, 1, 2].map(|area| {
+                bind_group(self.device, "pinhole frame", &layouts.frame, &common(area))
+            }),
+            samples: bind_group(
+                self.device,
                 "pinhole samples",
                 &layouts.samples,
                 &[
@@ -370,66 +310,12 @@ impl Make<'_> {
                     whole(5, &film),
                 ],
             ),
-            advance: self.group("pinhole advance", &layouts.advance, &advance),
-            sums: self.group("pinhole film", &layouts.film, &sums),
+            advance: bind_group(self.device, "pinhole advance", &layouts.advance, &advance),
+            sums: bind_group(self.device, "pinhole film", &layouts.film, &sums),
             records,
             film,
         }
     }
-
-    /// The light of a picture, with the emitters and the sky that are kept.
-    fn lighting(
-        &self,
-        passes: &LitPasses,
-        lighting: &LightingData,
-        kept: Option<&LightingBuffers>,
-    ) -> LightingBuffers {
-        let layouts = &passes.layouts;
-        let record = bytemuck::bytes_of(&lighting.parameters);
-        let record = self.filled("pinhole lighting", record, BufferUsages::UNIFORM);
-        let tables = bytemuck::cast_slice(&lighting.tables);
-        let tables = self.filled("pinhole tables", tables, BufferUsages::STORAGE);
-        let sky = || lighting.sky.as_deref().map(|sky| self.sky(&layouts.sky, sky));
-        let (emitters, sky) = match kept {
-            Some(kept) => (kept.emitters.clone(), kept.sky.clone()),
-            None => (emitter_table::upload(self.device, self.queue, &lighting.emitters), sky()),
-        };
-        let texture = (2, wgpu::BindingResource::TextureView(&emitters));
-        let entries = [whole(0, &record), whole(1, &tables), texture];
-        let group = self.group("pinhole lighting", &layouts.lighting, &entries);
-        LightingBuffers { record, tables, emitters, group, sky }
-    }
-
-    fn sky(&self, layout: &BindGroupLayout, environment: &Environment) -> BindGroup {
-        let texels: Vec<[f32; 4]> =
-            environment.texels().iter().map(|[r, g, b]| [*r, *g, *b, 0.0]).collect();
-        let shares: Vec<f32> =
-            environment.rows().iter().chain(environment.columns()).copied().collect();
-        let storage = BufferUsages::STORAGE;
-        let texels = self.filled("pinhole sky", bytemuck::cast_slice(&texels), storage);
-        let shares = self.filled("pinhole sky shares", bytemuck::cast_slice(&shares), storage);
-        self.group("pinhole sky", layout, &[whole(0, &texels), whole(1, &shares)])
-    }
-}
-
-fn whole(binding: u32, buffer: &Buffer) -> Entry<'_> {
-    (binding, buffer.as_entire_binding())
-}
-
-/// Returns an error if the device has no room for the tables of a lighting.
-fn check_lighting(device: &Device, lighting: &LightingData) -> Result<(), GpuError> {
-    check_storage_size(device, "the tables of lights and materials", lighting.table_bytes())?;
-    let (limit_name, limit) = emitter_table::limit(&device.limits());
-    let needed = emitter_table::planned(lighting.emitters.len()).map_or(0, |table| table.bytes);
-    if needed > limit {
-        let what = emitter_table::WHAT;
-        return Err(GpuError::Limit { what, needed, limit_name, limit });
-    }
-    if let Some(environment) = &lighting.sky {
-        let bytes = 16 * environment.texels().len() as u64;
-        check_storage_size(device, "the image of the sky", bytes)?;
-    }
-    Ok(())
 }
 
 /// The bytes of records that lie so many bytes apart.

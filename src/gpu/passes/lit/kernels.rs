@@ -187,7 +187,7 @@ fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
 }
 
 /// The parts that find whether a light is hidden from a surface.
-fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
+pub(super) fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
     let mut parts = excluded_parts(exclude_by);
     parts.extend([
         part!("accel/spend.wgsl"),
@@ -225,6 +225,7 @@ pub(super) fn one_pass_kernel(
         part!("path/film_sums.wgsl"),
         part!("scene/lamp.wgsl"),
         part!("studio/faded.wgsl"),
+        part!("studio/seen.wgsl"),
         part!("studio/ambient_light.wgsl"),
         part!("studio/one_surface.wgsl"),
         part!("studio/one_pass.wgsl"),
@@ -367,7 +368,7 @@ fn sky_image() -> Vec<Part> {
     ]
 }
 
-fn base(schedule: Schedule) -> Vec<Part> {
+pub(super) fn base(schedule: Schedule) -> Vec<Part> {
     vec![
         part!("scene/records.wgsl"),
         part!("scene/lighting_records.wgsl"),
@@ -441,6 +442,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
         kernels.extend(searches.map(|of| of(structure, exclude_by)));
     }
+    kernels.extend(super::live::live_kernels());
     kernels.extend(SCHEDULES.map(surface_kernel));
     kernels
 }

@@ -119,6 +119,16 @@ impl LightingData {
             && self.tables == other.tables
     }
 
+    /// Whether other light is hidden than with another light, apart from where lamps are.
+    pub(in crate::gpu) fn rays_differ(&self, other: &Self) -> bool {
+        let hidden =
+            |of: &Self| (of.parameters.flags, of.parameters.occlusion_samples, of.has_shadows);
+        let radius = |of: &Self| of.parameters.occlusion_radius.to_bits();
+        hidden(self) != hidden(other)
+            || radius(self) != radius(other)
+            || self.casts_shadow != other.casts_shadow
+    }
+
     /// Whether the image of the sky and the table of emitters are the same as for another light, of the same scene.
     pub(in crate::gpu) fn has_same_images(&self, other: &Self) -> bool {
         let is_same_sky = match (&self.sky, &other.sky) {

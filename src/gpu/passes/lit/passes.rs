@@ -56,7 +56,7 @@ pub(in crate::gpu) struct LitLayouts {
     pub(super) advance: BindGroupLayout,
     pub(in crate::gpu) film: BindGroupLayout,
     /// Layout of bind group 0 of the pass that takes whole samples.
-    pub(super) samples: BindGroupLayout,
+    pub(in crate::gpu) samples: BindGroupLayout,
     pub(super) lighting: BindGroupLayout,
     pub(super) sky: BindGroupLayout,
 }

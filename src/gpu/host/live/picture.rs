@@ -1,0 +1,402 @@
+//! Live pictures in the encoders of a host.
+
+use std::sync::Arc;
+
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Queue};
+
+use super::view::{SeenFrom, record};
+use crate::camera::View;
+use crate::camera::film::Film;
+use crate::gpu::checks::scoped;
+use crate::gpu::error::{GpuError, check_storage_size};
+use crate::gpu::host::lit::progress::LitState;
+use crate::gpu::host::lit::renderer::{LitRenderer, lit_key};
+use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
+use crate::gpu::passes::frame::{Frame, Targets, iteration_limit};
+use crate::gpu::passes::lit::records::DispatchParameters;
+use crate::gpu::passes::lit::{
+    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView, bind_group, whole,
+};
+use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
+use crate::gpu::shader::records::FrameParameters;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::waiting::block_on;
+use crate::render::{Integrator, RenderSettings};
+
+/// Number of rays of ambient light for each pixel and frame.
+const OCCLUSION_RAYS: u32 = 2;
+/// Maximum number of frames over which visible shares of light are averaged.
+const MOST: u32 = 64;
+/// The same for lamps that move with the camera, whose shadows change from frame to frame.
+const MOST_MOVING: u32 = 4;
+
+/// A studio that looks finished while the camera, the light or the spheres move.
+///
+/// Each frame traces one ray of the camera through the centre of each pixel, one shadow ray and a few rays of ambient
+/// occlusion. How much of the light is hidden is averaged over the frames before, wherever they show the same sphere,
+/// and over neighbouring pixels, the less the more frames there are. The colours of surfaces and lamps are never mixed.
+#[derive(Debug)]
+pub struct LivePicture {
+    passes: Arc<LivePasses>,
+    key: LiveKey,
+    lighting: LightingData,
+    lit: LightingBuffers,
+    buffers: Buffers,
+    /// Holds the targets.
+    targets: Frame,
+    frames: [FrameParameters; 2],
+    scene: SceneId,
+    /// The camera, and the camera and the scene of the frame before.
+    seen_from: SeenFrom,
+    film: Film,
+    before: Option<(SeenFrom, SceneId)>,
+    has_moving_lamps: bool,
+    /// Number of frames that were recorded.
+    count: u32,
+    tickets: Tickets,
+}
+
+#[derive(Debug)]
+struct Buffers {
+    frame: Buffer,
+    dispatches: Buffer,
+    views: Buffer,
+    /// Distance in bytes of the records of recordings.
+    strides: [usize; 2],
+    /// The status word, and what the lists of paths would be.
+    status: Buffer,
+    group: BindGroup,
+    /// Bind groups of the passes after the first, for even and for odd frames.
+    known: [BindGroup; 2],
+}
+
+/// What a recording has done for a live picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LiveProgress {
+    /// Number of rays that the recorded commands trace at most.
+    pub rays: u64,
+    /// [`LitState::Refining`], or [`LitState::Waiting`] if the device has not finished the recordings before, so that
+    /// nothing was recorded.
+    pub state: LitState,
+    /// Whether commands of an earlier recording were not executed, or not in order, so that the averages begin again.
+    pub was_lost: bool,
+}
+
+impl LivePicture {
+    /// Creates the buffers of a picture in the targets, which must be those of the renderer's options, as large as the
+    /// film, and with the usage `STORAGE_BINDING`. Missing pipelines are built.
+    ///
+    /// # Errors
+    /// [`GpuError::NotLive`] unless the settings are a studio, all spheres are opaque and the scene is not divided into
+    /// bricks; the errors of [`RenderSettings::check`]; [`GpuError::Target`] if a target is not as described;
+    /// [`GpuError::Limit`] if the picture is too large; an error if the device has no memory left.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        block_on(Self::new_async(renderer, device, queue, scene, view, settings, targets))
+    }
+
+    /// Creates the buffers like [`LivePicture::new`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`LivePicture::new`].
+    pub async fn new_async(
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        targets: &Targets<'_>,
+    ) -> Result<Self, GpuError> {
+        let (lighting, key) = live_key(device, scene, view, settings)?;
+        let targets = Frame::new_async(renderer.renderer(), device, targets).await?;
+        targets.check_film(view)?;
+        let passes = renderer.live_passes(device, key).await?;
+        let lit = LightingBuffers::new((device, queue), &passes.lit, &lighting).await?;
+        let buffers = Buffers::new(device, &passes, targets.size()).await?;
+        let tickets = scoped(device, || Tickets::new(device)).await?;
+        let frames = frames_of(device, scene, view, settings)?;
+        buffers.write_frame(queue, &frames);
+        Ok(Self {
+            passes,
+            key,
+            lighting,
+            lit,
+            buffers,
+            targets,
+            frames,
+            scene: scene.id(),
+            seen_from: SeenFrom::new(view.camera),
+            film: view.film,
+            before: None,
+            has_moving_lamps: false,
+            count: 0,
+            tickets,
+        })
+    }
+
+    /// Sets the scene, the view and the light of the next frame.
+    ///
+    /// The new values are queued on `queue` and take effect with its next submission. Buffers are created only for
+    /// another number of lights or materials.
+    ///
+    /// # Errors
+    /// The errors of [`LivePicture::new`]; the picture stays as it was.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn set(
+        &mut self,
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Result<(), GpuError> {
+        block_on(self.set_async(renderer, device, queue, scene, view, settings))
+    }
+
+    /// Sets scene, view and light like [`LivePicture::set`], without blocking the thread while a browser answers.
+    ///
+    /// # Errors
+    /// The same as for [`LivePicture::set`].
+    pub async fn set_async(
+        &mut self,
+        renderer: &LitRenderer,
+        device: &Device,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+    ) -> Result<(), GpuError> {
+        self.targets.check_renderer(renderer.renderer())?;
+        self.targets.check_film(view)?;
+        let (lighting, key) = live_key(device, scene, view, settings)?;
+        if key != self.key {
+            let passes = renderer.live_passes(device, key).await?;
+            self.lit = LightingBuffers::new((device, queue), &passes.lit, &lighting).await?;
+            self.buffers = Buffers::new(device, &passes, self.targets.size()).await?;
+            (self.passes, self.key, self.before) = (passes, key, None);
+        } else if !lighting.is_same(&self.lighting) {
+            self.lit.set((device, queue), &self.passes.lit, &lighting, false).await?;
+        }
+        // Lamps move with the camera, or because the host moves them. Whatever else changes, changes what is hidden.
+        let has_other_rays = lighting.rays_differ(&self.lighting);
+        self.has_moving_lamps = !has_other_rays && lighting.tables != self.lighting.tables;
+        if has_other_rays {
+            self.before = None;
+        }
+        self.frames = frames_of(device, scene, view, settings)?;
+        self.buffers.write_frame(queue, &self.frames);
+        (self.lighting, self.scene) = (lighting, scene.id());
+        (self.seen_from, self.film) = (SeenFrom::new(view.camera), view.film);
+        Ok(())
+    }
+
+    /// Records a frame into the host's encoder: colours, and depth, normals and ids if the renderer has data layers. The
+    /// depth is that of the ground where it is seen. Nothing is submitted, awaited or created.
+    ///
+    /// The encoder must be submitted to `queue` before the next frame is set.
+    ///
+    /// # Errors
+    /// [`GpuError::OtherScene`] if the scene is not the one that was set, or its spheres have moved since;
+    /// [`GpuError::OtherRenderer`]. Nothing is recorded then. [`GpuError::Steps`] if searches of an earlier frame were
+    /// abandoned.
+    pub fn record(
+        &mut self,
+        renderer: &LitRenderer,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+    ) -> Result<LiveProgress, GpuError> {
+        self.targets.check_renderer(renderer.renderer())?;
+        if scene.id() != self.scene {
+            return Err(GpuError::OtherScene);
+        }
+        let news = self.tickets.news();
+        if news.is_lost {
+            self.tickets.begin_again();
+            self.before = None;
+        }
+        let [_, visible] = &self.frames;
+        let rays = Groups { first: [0, 0], size: visible.traced_size }.pixels()
+            * u64::from(self.rays_of_pixel());
+        let Some(place) = self.tickets.free() else {
+            let state = LitState::Waiting;
+            return Ok(LiveProgress { rays: 0, state, was_lost: news.is_lost });
+        };
+        if self.count == 0 || news.is_spent {
+            encoder.clear_buffer(&self.buffers.status, 0, Some(4));
+        }
+        if news.is_spent {
+            return Err(GpuError::Steps);
+        }
+        self.record_passes(queue, encoder, scene, place);
+        self.before = Some((self.seen_from, self.scene));
+        self.has_moving_lamps = false;
+        self.count = self.count.wrapping_add(1);
+        self.tickets.record(encoder, place, [&self.buffers.status; 2]);
+        Ok(LiveProgress { rays, state: LitState::Refining, was_lost: news.is_lost })
+    }
+
+    /// Number of rays of a pixel: to the surface, to a lamp and for ambient light.
+    fn rays_of_pixel(&self) -> u32 {
+        2 + self.lighting.parameters.occlusion_samples
+    }
+
+    fn record_passes(
+        &self,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        scene: &SceneBuffers,
+        place: usize,
+    ) {
+        let Self { passes, buffers, .. } = self;
+        let [all, visible] = &self.frames;
+        let dispatch = DispatchParameters {
+            sample: self.count,
+            count: 1,
+            visible_first: visible.traced_first,
+            visible_size: visible.traced_size,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let offsets = buffers.strides.map(|stride| (place * stride) as u32);
+        let bytes = bytemuck::bytes_of(&dispatch);
+        queue.write_buffer(&buffers.dispatches, offsets[0].into(), bytes);
+        let before = self.before.filter(|(_, shown)| *shown == self.scene).map(|(seen, _)| seen);
+        let most_lamps = if self.has_moving_lamps { MOST_MOVING } else { MOST };
+        let view = record(self.seen_from, &self.film, before, [most_lamps, MOST]);
+        queue.write_buffer(&buffers.views, offsets[1].into(), bytemuck::bytes_of(&view));
+        let descriptor =
+            ComputePassDescriptor { label: Some("pinhole live"), timestamp_writes: None };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        let brick = &scene.bricks()[0];
+        pass.set_pipeline(&passes.live);
+        pass.set_bind_group(0, &buffers.group, &[offsets[0]]);
+        pass.set_bind_group(1, &brick.trace_group, &[]);
+        pass.set_bind_group(2, self.lit.group(), &[]);
+        pass.set_bind_group(3, &brick.appearance_group, &[]);
+        pass.dispatch_workgroups(all.traced_size[0], all.traced_size[1], 1);
+        let [width, height] = Groups::of_size(self.targets.size()).size;
+        let number = (self.count % 2) as usize;
+        pass.set_pipeline(&passes.reproject);
+        pass.set_bind_group(0, &buffers.known[number], &[offsets[1]]);
+        pass.dispatch_workgroups(width, height, 1);
+        pass.set_pipeline(&passes.show);
+        // What this frame knows is what the next one finds before.
+        pass.set_bind_group(0, &buffers.known[1 - number], &[offsets[1]]);
+        pass.set_bind_group(2, self.targets.target_group(), &[]);
+        pass.dispatch_workgroups(width, height, 1);
+    }
+}
+
+impl Buffers {
+    async fn new(
+        device: &Device,
+        passes: &LivePasses,
+        [width, height]: [u32; 2],
+    ) -> Result<Self, GpuError> {
+        let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let strides = [size_of::<DispatchParameters>(), size_of::<LiveView>()]
+            .map(|bytes| bytes.next_multiple_of(alignment));
+        let pixels = u64::from(width) * u64::from(height);
+        check_storage_size(device, "the surfaces of a live picture", 64 * pixels)?;
+        scoped(device, || {
+            let uniform = |label, bytes: usize| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size: bytes as u64,
+                    usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            };
+            let storage = |label, bytes| {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size: bytes,
+                    usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            };
+            let frame = uniform("pinhole live frame", size_of::<FrameParameters>());
+            let dispatches = uniform("pinhole live dispatches", AT_ONCE * strides[0]);
+            let views = uniform("pinhole live views", AT_ONCE * strides[1]);
+            let status = storage("pinhole live status", 64);
+            let surfaces = storage("pinhole live surfaces", 64 * pixels);
+            let known = [(); 2].map(|()| storage("pinhole live visibility", 16 * pixels));
+            let samples = [
+                whole(0, &frame),
+                whole(2, &status),
+                (4, part(&dispatches, 0, size_of::<DispatchParameters>())),
+                whole(5, &surfaces),
+            ];
+            let group = bind_group(device, "pinhole live", &passes.lit.samples, &samples);
+            let of_frame = |before: usize| {
+                let entries = [
+                    (0, part(&views, 0, size_of::<LiveView>())),
+                    whole(1, &surfaces),
+                    whole(2, &known[before]),
+                    whole(3, &known[1 - before]),
+                ];
+                bind_group(device, "pinhole live visibility", &passes.known, &entries)
+            };
+            let known = [of_frame(0), of_frame(1)];
+            Self { frame, dispatches, views, strides, status, group, known }
+        })
+        .await
+    }
+
+    fn write_frame(&self, queue: &Queue, [all, _]: &[FrameParameters; 2]) {
+        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(all));
+    }
+}
+
+/// The light of a picture with few rays, and the key of its passes.
+fn live_key(
+    device: &Device,
+    scene: &SceneBuffers,
+    view: &View<'_>,
+    settings: &RenderSettings,
+) -> Result<(LightingData, LiveKey), GpuError> {
+    let mut settings = settings.clone();
+    match &mut settings.integrator {
+        Integrator::Studio(studio) => {
+            if let Some(occlusion) = &mut studio.occlusion {
+                occlusion.samples = OCCLUSION_RAYS;
+            }
+        }
+        Integrator::Primary(_) | Integrator::Path(_) => {
+            return Err(GpuError::NotLive { needs: "the integrator `studio`" });
+        }
+    }
+    if !scene.appearance().is_opaque() {
+        return Err(GpuError::NotLive { needs: "opaque spheres" });
+    }
+    let (lighting, key) = lit_key(device, scene, view, &settings)?;
+    let needs = "a scene in one brick, a structure that fits into one pass, and at most 32 lights";
+    Ok((lighting, LiveKey::new(&key).ok_or(GpuError::NotLive { needs })?))
+}
+
+/// The records of the whole picture, for all its workgroups and for those in which the scene may be visible.
+fn frames_of(
+    device: &Device,
+    scene: &SceneBuffers,
+    view: &View<'_>,
+    settings: &RenderSettings,
+) -> Result<[FrameParameters; 2], GpuError> {
+    let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+    let region = scenes.visible_region(view, settings);
+    let size = [view.film.width(), view.film.height()];
+    let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
+    let [all, visible, _] = scenes.frames(view, region, tile, iteration_limit(device));
+    Ok([all, visible])
+}

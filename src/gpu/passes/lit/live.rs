@@ -1,0 +1,179 @@
+//! The passes of live pictures: one ray of the camera and a few towards light for each pixel, averaged over frames and
+//! neighbours.
+
+use std::num::NonZeroU64;
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{BindGroupLayout, BindingType, ComputePipeline, Device};
+
+use super::kernels::{OnePass, Schedule, base, light_search};
+use super::passes::LitLayouts;
+use crate::accel::Structure;
+use crate::camera::CameraKind;
+use crate::gpu::checks::Checks;
+use crate::gpu::edit::ShaderEdit;
+use crate::gpu::error::GpuError;
+use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::shader::formats::ColorTarget;
+use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
+use crate::gpu::shader::{
+    Kernel, camera_parts, color_target, data_layers, part, pipeline, pipeline_with,
+};
+
+/// The properties in which sets of passes differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) struct LiveKey {
+    pub(in crate::gpu) camera: CameraKind,
+    pub(in crate::gpu) structure: Structure,
+    pub(in crate::gpu) exclude_by: ExcludeBy,
+    pub(in crate::gpu) has_ground: bool,
+}
+
+/// The cameras of a frame and of the one before. Twin: `LiveView` in `shaders/live/view.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(in crate::gpu) struct LiveView {
+    pub(in crate::gpu) right: [f32; 3],
+    pub(in crate::gpu) is_parallel: u32,
+    pub(in crate::gpu) up: [f32; 3],
+    pub(in crate::gpu) footprint: f32,
+    pub(in crate::gpu) forward: [f32; 3],
+    pub(in crate::gpu) y_sign: f32,
+    pub(in crate::gpu) shift: [f32; 3],
+    pub(in crate::gpu) has_before: u32,
+    pub(in crate::gpu) across: [f32; 3],
+    pub(in crate::gpu) most_lamps: u32,
+    pub(in crate::gpu) down: [f32; 3],
+    pub(in crate::gpu) most_open: u32,
+    pub(in crate::gpu) along: [f32; 3],
+    pub(in crate::gpu) zero: u32,
+    pub(in crate::gpu) size: [u32; 2],
+    pub(in crate::gpu) pad: [u32; 2],
+}
+
+/// The pipelines, and the layouts of their bind groups.
+#[derive(Debug)]
+pub(in crate::gpu) struct LivePasses {
+    pub(in crate::gpu) lit: LitLayouts,
+    /// Layout of bind group 0 of the passes after the first.
+    pub(in crate::gpu) known: BindGroupLayout,
+    pub(in crate::gpu) live: ComputePipeline,
+    pub(in crate::gpu) reproject: ComputePipeline,
+    pub(in crate::gpu) show: ComputePipeline,
+}
+
+/// The kernel that traces the rays of a frame.
+pub(in crate::gpu) fn live_kernel(key: LiveKey) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend(light_search(key.structure, key.exclude_by));
+    // What cameras share is among the parts of lights.
+    let [_, _, camera] = camera_parts(key.camera);
+    parts.extend([
+        camera,
+        part!("camera/film.wgsl"),
+        part!("scene/appearance_words.wgsl", "beside-structure"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("path/microfacet.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("studio/faded.wgsl"),
+        part!("studio/seen.wgsl"),
+        part!("studio/reflected.wgsl"),
+        part!("live/records.wgsl"),
+        part!("live/light.wgsl"),
+        part!("live/trace.wgsl"),
+    ]);
+    parts.extend(match key.has_ground {
+        false => vec![part!("studio/one_ground.wgsl", "none")],
+        true => vec![part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")],
+    });
+    Kernel { entry_point: "live", parts }
+}
+
+/// The kernel that averages over frames.
+pub(in crate::gpu) fn reproject_kernel() -> Kernel {
+    let parts =
+        vec![part!("live/records.wgsl"), part!("live/view.wgsl"), part!("live/reproject.wgsl")];
+    Kernel { entry_point: "reproject", parts }
+}
+
+/// The kernel that averages over neighbours and writes the picture.
+pub(in crate::gpu) fn show_kernel(color: ColorTarget, has_data: bool) -> Kernel {
+    let parts = vec![
+        part!("live/records.wgsl"),
+        part!("live/view.wgsl"),
+        part!("live/show.wgsl"),
+        color_target(color),
+        data_layers(has_data),
+    ];
+    Kernel { entry_point: "show", parts }
+}
+
+/// All kernels of live pictures.
+pub(in crate::gpu) fn live_kernels() -> Vec<Kernel> {
+    let mut kernels = vec![reproject_kernel()];
+    for &color in ColorTarget::ALL {
+        kernels.extend([false, true].map(|has_data| show_kernel(color, has_data)));
+    }
+    for &structure in Structure::ALL {
+        for exclude_by in ExcludeBy::ALL {
+            for &camera in CameraKind::ALL {
+                kernels.extend([false, true].map(|has_ground| {
+                    live_kernel(LiveKey { camera, structure, exclude_by, has_ground })
+                }));
+            }
+        }
+    }
+    kernels
+}
+
+impl LiveKey {
+    /// The key for a lighting that one pass can take whole samples of.
+    pub(in crate::gpu) fn new(of: &super::LitKey) -> Option<Self> {
+        let super::LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
+        one_pass.map(|studio| Self {
+            camera,
+            structure,
+            exclude_by,
+            has_ground: studio == OnePass::Ground,
+        })
+    }
+}
+
+impl LivePasses {
+    /// Builds the pipelines. `targets` is the layout of the host's textures, in a renderer with these formats.
+    pub(in crate::gpu) async fn new(
+        device: &Device,
+        key: LiveKey,
+        (color, has_data, targets): (ColorTarget, bool, &BindGroupLayout),
+        edits: &[ShaderEdit],
+    ) -> Result<Self, GpuError> {
+        let checks = Checks::default();
+        let options = RendererOptions {
+            cameras: Vec::new(),
+            structures: vec![key.structure],
+            ..RendererOptions::default()
+        };
+        let scene = checks.create(device, || Layouts::new(device, &options));
+        let lit = checks.create(device, || LitLayouts::new(device));
+        let view = BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: true,
+            min_binding_size: NonZeroU64::new(size_of::<LiveView>() as u64),
+        };
+        let pixels = |is_read| storage::<[u32; 4]>(is_read);
+        let known = [(0, view), (1, pixels(true)), (2, pixels(true)), (3, pixels(false))];
+        let known = checks.create(device, || layout_of(device, "pinhole live", &known));
+        let brick = &scene.brick[0].1;
+        let groups = [&lit.samples, brick, &lit.lighting, &scene.appearance];
+        let live = pipeline(device, &live_kernel(key).edited(edits)?, &groups, &checks);
+        let reproject = pipeline(device, &reproject_kernel().edited(edits)?, &[&known], &checks);
+        let show = show_kernel(color, has_data).edited(edits)?;
+        let show = pipeline_with(device, &show, &[Some(&known), None, Some(targets)], &checks);
+        checks.passed().await?;
+        Ok(Self { lit, known, live, reproject, show })
+    }
+}

@@ -1,0 +1,263 @@
+//! Live pictures: each frame is that of the CPU reference, which knows the same frames before.
+
+use libtest_mimic::Trial;
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::cpu::Search;
+use pinhole::gpu::{GpuError, Headless, LitState, LivePicture, LiveProgress, SceneBuffers, wgpu};
+use pinhole::internals::{LiveReference, ShaderEdit};
+use pinhole::{Film, View};
+
+use super::lit::{Show, named};
+use crate::embedding::Host;
+use crate::light::scenes::LitView;
+use crate::trial;
+
+pub(super) fn trials() -> Vec<Trial> {
+    vec![
+        trial("host::live::moving_frames_are_those_of_the_reference", moving),
+        trial("host::live::a_picture_at_rest_becomes_that_of_many_rays", at_rest),
+        trial("host::live::faults_in_the_kernels_are_found", faults),
+        trial("host::live::frames_that_are_lost_are_noticed", lost),
+        trial("host::live::what_cannot_be_shown_is_refused", refused),
+    ]
+}
+
+const STUDIOS: [&str; 7] = [
+    "studio_key_and_fill",
+    "studio_ambient_occlusion",
+    "studio_near_occlusion",
+    "studio_sphere_light",
+    "studio_shadow_catcher",
+    "studio_depth_cue",
+    "studio_without_light",
+];
+
+/// Cameras around the scene of a view. The kind is that of the first ones of `kinds`.
+fn camera(kind: usize, angle: f64, film: Film) -> Box<dyn Camera> {
+    let eye = [7.0 * angle.sin() + 0.4, 1.5 + 0.3 * angle, 7.0 * angle.cos()];
+    let pose = Pose::looking_at(eye, [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
+    let pinhole = PinholeCamera::with_vertical_fov(pose, 0.6, film.aspect()).unwrap();
+    match kind {
+        0 => Box::new(pinhole),
+        1 => Box::new(OrthographicCamera::new(pose, [2.6, 2.6 / film.aspect()]).unwrap()),
+        _ => Box::new(ThinLensCamera::new(pinhole, 0.02, 7.0).unwrap()),
+    }
+}
+
+struct Stage {
+    show: Show,
+    scene: SceneBuffers,
+    view: LitView,
+    reference: LiveReference,
+}
+
+impl Stage {
+    fn new(name: &str, edits: Vec<ShaderEdit>) -> Self {
+        let view = named(name, 1);
+        let show = Show::edited([view.film.width(), view.film.height()], edits);
+        let scene = show.scene(&view.scene);
+        Self { show, scene, view, reference: LiveReference::default() }
+    }
+
+    fn picture(&self) -> Result<LivePicture, GpuError> {
+        let Host { device, queue } = &self.show.host;
+        let (seen, settings) = (self.view.seen(), &self.view.settings);
+        self.show.with_targets(|targets| {
+            let renderer = &self.show.renderer;
+            LivePicture::new(renderer, device, queue, &self.scene, &seen, settings, targets)
+        })
+    }
+
+    fn record(
+        &self,
+        picture: &mut LivePicture,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> LiveProgress {
+        let (renderer, queue) = (&self.show.renderer, &self.show.host.queue);
+        picture.record(renderer, queue, encoder, &self.scene).unwrap()
+    }
+
+    /// Renders a frame with both, and returns the fraction of pixels whose colours differ by more than rounding, or that
+    /// show another sphere.
+    fn compare(&mut self, picture: &mut LivePicture, camera: &dyn Camera) -> f64 {
+        let Host { device, queue } = &self.show.host;
+        let view = View::new(camera, self.view.film);
+        let settings = &self.view.settings;
+        picture.set(&self.show.renderer, device, queue, &self.scene, &view, settings).unwrap();
+        let mut encoder = self.show.host.encoder();
+        let progress = self.record(picture, &mut encoder);
+        assert!(progress.rays > 0 && !progress.was_lost, "{progress:?}");
+        queue.submit([encoder.finish()]);
+        device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let search = Search::from(&self.view.scene);
+        let wanted = self.reference.frame(search, &view, settings).unwrap();
+        let [color, depth, _, id] = self.show.layers.each_ref().map(|layer| self.show.words(layer));
+        let color: Vec<f32> = color.into_iter().map(f32::from_bits).collect();
+        let pixels = color.chunks(4).zip(depth).zip(id).enumerate();
+        let differs = |(i, ((color, depth), id)): &(usize, ((&[f32], u32), u32))| {
+            let colors = wanted.color[*i].iter().chain([&wanted.alpha[*i]]);
+            let is_far = colors.zip(*color).any(|(a, b)| (a - f64::from(*b)).abs() > 0.004);
+            let depth = f64::from(f32::from_bits(*depth));
+            let wanted_depth = wanted.depth[*i].min(1e30);
+            is_far || (depth - wanted_depth).abs() > 1e-4 * wanted_depth || *id != wanted.id[*i]
+        };
+        let count = color.len() / 4;
+        pixels.filter(differs).count() as f64 / count as f64
+    }
+
+    /// The largest fraction of pixels that differ in frames around the scene.
+    fn worst(&mut self, kind: usize) -> f64 {
+        let mut picture = self.picture().unwrap();
+        let film = self.view.film;
+        // It moves, rests, and moves again.
+        let angles = [0.0, 0.03, 0.06, 0.09, 0.09, 0.09, 0.12, 0.4];
+        let fractions = angles.map(|angle| self.compare(&mut picture, &*camera(kind, angle, film)));
+        fractions.into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// The fraction of pixels that may differ: rays along edges, where f32 and f64 hit different things, and their
+/// neighbours.
+const FEW: f64 = 0.03;
+
+fn moving(_: &'static Headless) {
+    for name in STUDIOS {
+        for kind in 0..3 {
+            let worst = Stage::new(name, Vec::new()).worst(kind);
+            println!("{name} {kind}: {worst:.4}");
+            assert!(worst <= FEW, "{name}, camera {kind}: {worst}");
+        }
+    }
+}
+
+/// The average over frames is what a headless studio finds with as many rays through the same points.
+fn at_rest(headless: &'static Headless) {
+    let stage = Stage::new("studio_near_occlusion", Vec::new());
+    let mut picture = stage.picture().unwrap();
+    for _ in 0..200 {
+        let mut encoder = stage.show.host.encoder();
+        stage.record(&mut picture, &mut encoder);
+        stage.show.host.queue.submit([encoder.finish()]);
+        stage.show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    }
+    let color = stage.show.words(&stage.show.layers[0]);
+    let mut view = named("studio_near_occlusion", 256);
+    view.settings.sampling.filter = pinhole::PixelFilter::Box;
+    let wanted = headless
+        .render(&view.scene, &view.seen(), &view.settings, pinhole::LayerSet::COLOR)
+        .unwrap();
+    // Within a pixel of an edge the two are not the same: one is smooth there, and the other not.
+    let close = color.chunks(4).zip(wanted.color()).filter(|(found, wanted)| {
+        (0..3).all(|c| (f32::from_bits(found[c]) - wanted[c]).abs() < 0.06)
+    });
+    let part = close.count() as f64 / wanted.color().len() as f64;
+    assert!(part > 0.8, "{part}");
+}
+
+/// Each of these would go unseen in a still picture, or look plausible.
+fn faults(_: &'static Headless) {
+    let edit = |file: &str, find: &str, replace: &str| ShaderEdit {
+        file: file.to_owned(),
+        find: find.to_owned(),
+        replace: replace.to_owned(),
+    };
+    for (name, edit) in [
+        ("points are not moved", edit("live/reproject.wgsl", "+ view.shift", "")),
+        (
+            "stale: other surfaces are taken for the same",
+            edit("live/reproject.wgsl", "old.w == id && is_near", "true"),
+        ),
+        (
+            "frames are not counted",
+            edit("live/reproject.wgsl", "known.counts + 1u", "known.counts"),
+        ),
+        (
+            "old frames never fade",
+            edit("live/reproject.wgsl", "vec2u(view.most_lamps, view.most_open)", "vec2u(200u)"),
+        ),
+        (
+            "smooth beyond edges",
+            edit(
+                "live/show.wgsl",
+                "return select(0.0, clamp(4.0 * dot(normal, other_normal) - 3.0, 0.0, 1.0), is_near)",
+                "return 1.0",
+            ),
+        ),
+        (
+            "a row too far",
+            edit(
+                "live/view.wgsl",
+                "* 0.5 * vec2f(view.size)",
+                "* 0.5 * vec2f(view.size) + vec2f(0.0, 1.0)",
+            ),
+        ),
+        (
+            "shares are exchanged",
+            edit("live/show.wgsl", "shares.x * lamps + shares.y", "shares.y * lamps + shares.x"),
+        ),
+        (
+            "lamps are chosen equally",
+            edit("live/light.wgsl", "let share = weight / max(total, 1e-30)", "let share = 1.0"),
+        ),
+        (
+            "the last lamp is tested",
+            edit(
+                "live/light.wgsl",
+                "let takes = weight > 0.0 && choice.u < share",
+                "let takes = true",
+            ),
+        ),
+    ] {
+        let of = |studio: &str| Stage::new(studio, vec![edit.clone()]).worst(0);
+        let worst = ["studio_near_occlusion", "studio_key_and_fill"].map(of);
+        println!("{name}: {worst:?}");
+        assert!(worst.iter().any(|worst| *worst > FEW), "{name}: {worst:?}");
+    }
+}
+
+fn lost(_: &'static Headless) {
+    let stage = Stage::new("studio_key_and_fill", Vec::new());
+    let mut picture = stage.picture().unwrap();
+    let submit = |encoder: wgpu::CommandEncoder| {
+        stage.show.host.queue.submit([encoder.finish()]);
+        stage.show.host.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    };
+    let mut encoder = stage.show.host.encoder();
+    stage.record(&mut picture, &mut encoder);
+    submit(encoder);
+    let mut dropped = stage.show.host.encoder();
+    assert!(!stage.record(&mut picture, &mut dropped).was_lost);
+    drop(dropped);
+    let mut encoder = stage.show.host.encoder();
+    assert!(stage.record(&mut picture, &mut encoder).was_lost);
+    submit(encoder);
+    let mut encoder = stage.show.host.encoder();
+    assert!(!stage.record(&mut picture, &mut encoder).was_lost);
+    // The device is not asked whether it is done, so there is no place for a fourth recording.
+    let mut encoders = vec![encoder];
+    for _ in 0..2 {
+        let mut encoder = stage.show.host.encoder();
+        assert_eq!(stage.record(&mut picture, &mut encoder).state, LitState::Refining);
+        encoders.push(encoder);
+    }
+    let mut encoder = stage.show.host.encoder();
+    let waiting = stage.record(&mut picture, &mut encoder);
+    assert_eq!((waiting.state, waiting.rays), (LitState::Waiting, 0));
+}
+
+fn refused(_: &'static Headless) {
+    for (name, what) in [("path_matt_under_a_sky", "studio"), ("studio_opacity", "opaque")] {
+        let refused = Stage::new(name, Vec::new()).picture().unwrap_err();
+        assert!(
+            matches!(refused, GpuError::NotLive { needs } if needs.contains(what)),
+            "{refused}"
+        );
+    }
+    let mut stage = Stage::new("studio_key_and_fill", Vec::new());
+    let mut picture = stage.picture().unwrap();
+    stage.scene = stage.show.scene(&stage.view.scene);
+    let mut encoder = stage.show.host.encoder();
+    let (renderer, queue) = (&stage.show.renderer, &stage.show.host.queue);
+    let refused = picture.record(renderer, queue, &mut encoder, &stage.scene).unwrap_err();
+    assert_eq!(refused, GpuError::OtherScene);
+}
