@@ -3,6 +3,8 @@
 
 mod depth_in;
 mod depth_out;
+mod limit;
+mod lit;
 mod pick;
 mod same_picture;
 mod stage;
@@ -16,6 +18,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         depth_out::trials(),
         triangle::trials(),
         depth_in::trials(),
+        limit::trials(),
+        lit::trials(),
         pick::trials(),
     ]
     .into_iter()
