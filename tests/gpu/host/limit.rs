@@ -2,7 +2,7 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::{AccelChoice, AccelPlan};
-use pinhole::camera::{Camera, CameraKind};
+use pinhole::camera::Camera;
 use pinhole::glam::DVec3;
 use pinhole::gpu::{
     DepthTest, Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, wgpu,
@@ -30,7 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn renderer(stage: &Stage, is_limited: bool, edits: &[(&str, &str, &str)]) -> Renderer {
     let options = RendererOptions {
         data_layers: true,
-        cameras: vec![CameraKind::Pinhole, CameraKind::Orthographic],
+        cameras: vec![stage.camera.kind()],
         several_bricks: is_limited,
         edits: edits
             .iter()
@@ -236,7 +236,6 @@ fn near(_: &'static Headless) {
             let planes = [-1.0, 1.0].map(|side| (DVec3::splat(side) - ray.origin) / ray.direction);
             let enters = planes[0].min(planes[1]).max_element();
             let leaves = planes[0].max(planes[1]).min_element();
-            let is_near_silhouette = pixel_is_near_a_silhouette(&stage, pixel);
             // Hits are beside the point, also those that `hide` removes because they are a little too far.
             let is_hit = ids[at] != u32::MAX || limits[at] == 0.0;
             if is_hit || pixel_is_near_a_silhouette(&stage, pixel) || enters + 0.01 > leaves {
