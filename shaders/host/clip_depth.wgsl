@@ -1,37 +1,29 @@
 // The depth of a host program for a distance along a pixel's ray. Twin: `clip_depth` in src/camera/host.rs.
-// provides: HostView, clip_depth, is_behind
+// provides: center_of, clip_depth, depth_aside, is_behind, perspective_slope
+// needs: HostView
 
-struct HostView {
-    // Vectors of the camera, as in camera/pinhole.wgsl.
-    right: vec3f,
-    // 1 if rays are parallel.
-    is_parallel: u32,
-    up: vec3f,
-    slope: f32,
-    forward: vec3f,
-    // Depth of the far end of the range: 1, or 0 if depth is reversed.
-    far: f32,
-    // How depth starts at a place on the film, for (x, y, 1).
-    film_depth: vec3f,
-    zero: u32,
-    // Size of the picture in pixels, and its first pixel in the host's targets.
-    size: vec2u,
-    first_pixel: vec2u,
+// The centre of a pixel, counted in half pixels from the middle of the film. This is exact.
+fn center_of(view: HostView, pixel: vec2f) -> vec2f {
+    return 2.0 * pixel + (1.0 - view.size);
+}
+
+// Zero unless the near plane is oblique.
+fn depth_aside(view: HostView, center: vec2f) -> f32 {
+    return center.x * view.film_depth.x + center.y * view.film_depth.y;
+}
+
+// The factor of 1/distance, for a perspective camera.
+fn perspective_slope(view: HostView, center: vec2f) -> f32 {
+    return view.slope * length(center.x * view.column + center.y * view.row + view.forward);
 }
 
 // The depth before it is clamped to the range from 0 to 1. It is finite for any distance from 0 on.
-fn clip_depth(view: HostView, pixel: vec2u, distance: f32) -> f32 {
-    // As in camera/film.wgsl.
-    let doubled = vec2i(pixel) * 2 + 1 - vec2i(view.size);
-    let location = vec2f(doubled) / vec2f(view.size) * vec2f(1.0, -1.0);
-    // Zero unless the near plane is oblique.
-    let aside = location.x * view.film_depth.x + location.y * view.film_depth.y;
-    let toward = location.x * view.right + location.y * view.up + view.forward;
-    let scaled = view.slope * length(toward);
+fn clip_depth(view: HostView, center: vec2f, distance: f32) -> f32 {
+    let scaled = perspective_slope(view, center);
     let least = max(abs(scaled) * 1e-30, 1e-37);
-    let change = select(scaled / max(distance, least), view.slope * distance, view.is_parallel != 0u);
+    let change = select(scaled / max(distance, least), view.slope * distance, view.is_parallel != 0.0);
     // The two numbers of opposite sign first, so that later roundings are those of a depth from 0 to 1.
-    return (view.film_depth.z + change) + aside;
+    return (view.film_depth.z + change) + depth_aside(view, center);
 }
 
 // Whether a depth is behind another one.

@@ -1,15 +1,10 @@
-// Draws a picture into a host's render pass, with the host's depth. Misses, and hits behind the far plane, are not
-// drawn.
+// Draws a picture into a host's render pass, with the host's depth. Hits behind the far plane are not drawn.
 // dispatched: for all pixels of the host's viewport, in the host's render pass.
 // provides: composite
-// needs: HostView, clip_depth, color_for_host, is_behind
+// needs: Cover, center_of, color_for_host, depth_of_picture, host_view_of, is_behind
 
-// The host's camera.
-@group(0) @binding(0) var<uniform> view: HostView;
-// Colour layer of the picture.
+// Colour layer of the picture, with alpha multiplied in.
 @group(0) @binding(1) var color_layer: texture_2d<f32>;
-// Depth layer of the picture: distances along the rays, 1e30 for a miss.
-@group(0) @binding(2) var depth_layer: texture_2d<f32>;
 
 struct Fragment {
     @location(0) color: vec4f,
@@ -17,17 +12,16 @@ struct Fragment {
 }
 
 @fragment
-fn composite(@builtin(position) place: vec4f) -> Fragment {
-    // The subtraction wraps around, so pixels before the first one have large numbers.
-    let pixel = vec2u(place.xy) - view.first_pixel;
-    if (any(pixel >= view.size)) {
+fn composite(covered: Cover) -> Fragment {
+    let view = host_view_of(covered);
+    // Pixels before the first one have negative numbers.
+    let pixel = floor(covered.place.xy) - view.first_pixel;
+    let is_outside = any(abs(center_of(view, pixel)) >= view.size);
+    let color = textureLoad(color_layer, vec2i(pixel), 0);
+    let drawn = depth_of_picture(view, pixel, color.a);
+    // Without `||`, whose branches take a software device longer than what they avoid.
+    if (is_outside | !drawn.is_drawn | is_behind(view, drawn.depth, view.far)) {
         discard;
     }
-    let distance = textureLoad(depth_layer, pixel, 0).r;
-    let depth = clip_depth(view, pixel, distance);
-    if (distance >= 1e30 || is_behind(view, depth, view.far)) {
-        discard;
-    }
-    let color = textureLoad(color_layer, pixel, 0);
-    return Fragment(vec4f(color_for_host(color.rgb), color.a), clamp(depth, 0.0, 1.0));
+    return Fragment(vec4f(color_for_host(color.rgb), color.a), clamp(drawn.depth, 0.0, 1.0));
 }

@@ -93,7 +93,8 @@ fn lit_surface(made: CameraRay, vertex: Vertex, shown: vec3f, seed: u32, number:
         let out = -made.ray.direction;
         let seen = Seen(vertex, material, start, excluded, out, albedo, weight, caught, light_at(vertex));
         lit = lit_by_lamps(seen, lit.shades, seed, number);
-        if (has_occlusion) {
+        // A branch must not depend on this uniform alone; see docs/drivers.md.
+        if ((number >> 31u) + lighting.occlusion_samples > 0u) {
             lit.shares.y = open_share(seen, seed, number);
             let open = vec4f(albedo * lighting.ambient, 0.0);
             let shade = select(vec4f(0.0), shade_of_ambient(1.0, seen), caught);

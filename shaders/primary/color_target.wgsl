@@ -2,7 +2,7 @@
 
 //// rgba8unorm
 // Writing colour as sRGB with eight bits. Storage textures have no sRGB formats, so the shader encodes the colour.
-// provides: write_color, write_with_alpha
+// provides: write_with_alpha
 
 // The caller's colour texture.
 @group(2) @binding(0) var color_target: texture_storage_2d<rgba8unorm, write>;
@@ -25,7 +25,7 @@ fn write_color(pixel: vec2u, linear: vec3f) {
 
 //// rgba16float
 // Writing colour as linear light in 16-bit floats.
-// provides: write_color, write_with_alpha
+// provides: write_with_alpha
 
 // The caller's colour texture.
 @group(2) @binding(0) var color_target: texture_storage_2d<rgba16float, write>;
@@ -40,7 +40,7 @@ fn write_color(pixel: vec2u, linear: vec3f) {
 
 //// rgba32float
 // Writing colour as linear light in 32-bit floats.
-// provides: write_color, write_with_alpha
+// provides: write_with_alpha
 
 // The caller's colour texture.
 @group(2) @binding(0) var color_target: texture_storage_2d<rgba32float, write>;

@@ -35,7 +35,7 @@ pub use headless::plan::{DeviceLimits, HostPeak, PictureRequest, RenderPlan, Str
 pub use headless::progress::{Decision, Picture, Progress, Watch};
 pub use headless::timer::TraceTime;
 pub use host::composite::{Composite, CompositePicture};
-pub use host::composite_options::{CompositeDepth, CompositeOptions, TargetEncoding};
+pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
 pub use host::depth_test::{DepthTest, HostDepth};
 pub use host::lit::picture::LitPicture;
 pub use host::lit::progress::{LitProgress, LitState, LitSums};

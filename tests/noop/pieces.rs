@@ -2,13 +2,14 @@
 
 use std::thread;
 
-use pinhole::camera::CameraKind;
+use pinhole::camera::{CameraKind, DepthOrder, HostCamera};
 use pinhole::gpu::{
-    Frame, GpuError, Headless, LitPicture, Recolor, Renderer, RendererOptions, SceneBuffers,
+    DepthTest, Frame, GpuError, Headless, HostDepth, LitPicture, Recolor, Renderer,
+    RendererOptions, SceneBuffers, wgpu,
 };
 
 use crate::async_forms::broken;
-use crate::{Host, ready};
+use crate::{Host, SIZE, ready};
 
 #[test]
 fn everything_may_be_shared_between_threads() {
@@ -54,6 +55,58 @@ fn a_renderer_is_built_piece_by_piece() {
         }
     }
     assert_eq!(renderer.build_next(&host.device), Ok(0));
+}
+
+/// The pipelines of a frame are built before the others, whatever the order of the options.
+#[test]
+fn the_pipelines_of_a_frame_are_built_first() {
+    let host = Host::new();
+    let cameras = vec![CameraKind::Orthographic, CameraKind::Pinhole];
+    let options = RendererOptions { cameras, data_layers: true, ..RendererOptions::default() };
+    let mut renderer = Renderer::begin(&host.device, &options);
+    let (scene, frame) = ready(&host, &renderer, &options);
+    let all = renderer.build_next(&host.device).unwrap();
+    assert_eq!(renderer.build_first(&scene, &frame), Ok(2), "the search, and the shading");
+    for built in 1..=2 {
+        let recorded = renderer.record(&mut host.encoder(), &scene, &frame);
+        assert!(matches!(recorded, Err(GpuError::NotReady { .. })), "{recorded:?}");
+        assert_eq!(renderer.build_next(&host.device), Ok(all - built));
+    }
+    assert_eq!(renderer.build_first(&scene, &frame), Ok(0));
+    renderer.record(&mut host.encoder(), &scene, &frame).unwrap();
+
+    // With the depth of a host, other pipelines are needed, and nothing is recorded until they are built.
+    let (test, depth) = host_depth(&host, &renderer, &frame);
+    let mut encoder = host.encoder();
+    let (calls, refused) = crate::calls::of(|| {
+        renderer.record_with_depth(&mut encoder, &scene, &frame, &test, &depth).unwrap_err()
+    });
+    assert!(matches!(refused, GpuError::NotReady { .. }), "{refused}");
+    assert_eq!(calls, crate::calls::Calls::default());
+    while renderer.build_next(&host.device).unwrap() > 0 {}
+    renderer.record_with_depth(&mut encoder, &scene, &frame, &test, &depth).unwrap();
+}
+
+/// The depth of a host whose targets have the size of the frame.
+fn host_depth(host: &Host, renderer: &Renderer, frame: &Frame) -> (DepthTest, HostDepth) {
+    let texture = host.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("depth"),
+        size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let test = DepthTest::new(renderer, &host.device).unwrap();
+    let mut depth = HostDepth::new(&test, &host.device, &view).unwrap();
+    let identity = [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.], [0., 0., 0., 1.]];
+    let projection = [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 0., -1.], [0., 0., 0.1, 0.]];
+    let camera = HostCamera::new(identity, projection, DepthOrder::NearIsOne).unwrap();
+    depth.set_camera(&host.queue, &camera, frame, [0, 0]).unwrap();
+    (test, depth)
 }
 
 /// Nothing is recorded of a frame that is not ready.

@@ -5,12 +5,12 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, RenderPass, Render
 use crate::camera::HostCamera;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
-use crate::gpu::host::composite_options::{CompositeOptions, TargetEncoding};
+use crate::gpu::host::composite_options::{CompositeOptions, Coverage, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
 use crate::gpu::passes::frame::Targets;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
-use crate::gpu::shader::{Kernel, part};
+use crate::gpu::shader::{Kernel, Part, part};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 
@@ -31,13 +31,23 @@ pub struct CompositePicture {
     has_camera: bool,
 }
 
+fn shared_parts() -> Vec<Part> {
+    vec![part!("host/host_view.wgsl"), part!("host/covered.wgsl")]
+}
+
 /// The kernel of the vertices.
 pub(in crate::gpu) fn cover_kernel() -> Kernel {
-    Kernel { entry_point: "cover", parts: vec![part!("host/cover.wgsl")] }
+    let mut parts = shared_parts();
+    parts.push(part!("host/cover.wgsl"));
+    Kernel { entry_point: "cover", parts }
 }
 
 /// The kernel of the pixels, for colours stored as `source`.
-pub(in crate::gpu) fn composite_kernel(source: ColorTarget, encoding: TargetEncoding) -> Kernel {
+pub(in crate::gpu) fn composite_kernel(
+    source: ColorTarget,
+    encoding: TargetEncoding,
+    coverage: Coverage,
+) -> Kernel {
     let stored = match source {
         ColorTarget::Srgb8 => TargetEncoding::Srgb,
         ColorTarget::Linear16 | ColorTarget::Linear32 => TargetEncoding::Linear,
@@ -49,7 +59,12 @@ pub(in crate::gpu) fn composite_kernel(source: ColorTarget, encoding: TargetEnco
         (TargetEncoding::Linear, TargetEncoding::Srgb) => part!("host/host_color.wgsl", "to-srgb"),
         _ => part!("host/host_color.wgsl", "as-stored"),
     };
-    let parts = vec![part!("host/clip_depth.wgsl"), color, part!("host/composite.wgsl")];
+    let depth = match coverage {
+        Coverage::Hits => part!("host/picture_depth.wgsl", "primary"),
+        Coverage::Alpha => part!("host/picture_depth.wgsl", "lit"),
+    };
+    let mut parts = shared_parts();
+    parts.extend([part!("host/clip_depth.wgsl"), color, depth, part!("host/composite.wgsl")]);
     Kernel { entry_point: "composite", parts }
 }
 
@@ -68,7 +83,8 @@ impl Composite {
     /// # Errors
     /// The same as for [`Composite::new`].
     pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
-        let kernels = [cover_kernel(), composite_kernel(options.source, options.encoding)];
+        let CompositeOptions { source, encoding, coverage, .. } = *options;
+        let kernels = [cover_kernel(), composite_kernel(source, encoding, coverage)];
         let texture = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -79,7 +95,11 @@ impl Composite {
             },
             count: None,
         };
-        let view = wgpu::BindGroupLayoutEntry { ty: uniform::<HostView>(), ..texture(0) };
+        let view = wgpu::BindGroupLayoutEntry {
+            visibility: wgpu::ShaderStages::VERTEX,
+            ty: uniform::<HostView>(),
+            ..texture(0)
+        };
         let (layout, pipeline) = scoped(device, || {
             let label = Some("pinhole composite");
             let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

@@ -19,6 +19,8 @@ pub struct CompositeOptions {
     /// How colours are joined with what the attachment contains. Colours have alpha multiplied in. Pictures of primary
     /// rays are opaque where spheres are, so `None` gives the same for them.
     pub blend: Option<BlendState>,
+    /// Which pixels are drawn.
+    pub coverage: Coverage,
     /// The depth attachment.
     pub depth: CompositeDepth,
     /// Number of samples of each pixel of the attachments: 1 or 4. All samples of a pixel get the same colour and depth.
@@ -35,6 +37,19 @@ pub struct CompositeDepth {
     pub compare: CompareFunction,
     /// Whether the depth of spheres is written.
     pub write: bool,
+}
+
+/// Which pixels of a picture are drawn, and with which depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Coverage {
+    /// Those whose ray through the centre hits a sphere, with the depth of the hit.
+    #[default]
+    Hits,
+    /// Those whose alpha is greater than 0. Their depth is that of the hit of the ray through their centre. If it misses,
+    /// the depth is the nearest one of the hits of the eight pixels around, as beside a silhouette; and if these miss as
+    /// well, it is the far end of the range, as in the shadow on a ground that is not itself seen.
+    Alpha,
 }
 
 /// How numbers in a colour attachment stand for light.
@@ -57,8 +72,20 @@ impl CompositeOptions {
             format,
             encoding: if is_encoded { TargetEncoding::Srgb } else { TargetEncoding::Linear },
             blend: None,
+            coverage: Coverage::Hits,
             depth,
             sample_count: 1,
+        }
+    }
+
+    /// A render pass like that of [`CompositeOptions::new`] for lit pictures, which are transparent in parts: beside
+    /// silhouettes, which are smooth, and where a shadow falls. They are blended with what the attachment contains.
+    #[must_use]
+    pub fn lit(format: TextureFormat, depth: CompositeDepth) -> Self {
+        Self {
+            blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            coverage: Coverage::Alpha,
+            ..Self::new(format, depth)
         }
     }
 }

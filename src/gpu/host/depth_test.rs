@@ -1,27 +1,31 @@
-//! The depth of a host ends primary rays, so that pixels hidden by the host's geometry are not shaded.
+//! The depth of a host ends primary rays, so that what is hidden by the host's geometry is neither searched nor shaded.
 
 use wgpu::{BindGroup, BindGroupLayout, Buffer, ComputePass, ComputePipeline, Device, Queue};
 
-use crate::camera::HostCamera;
+use crate::camera::{CameraKind, HostCamera};
 use crate::gpu::checks::{Checks, scoped};
 use crate::gpu::error::GpuError;
 use crate::gpu::host::host_view::HostView;
-use crate::gpu::passes::frame::Frame;
+use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::pipeline;
-use crate::gpu::shader::{Kernel, part};
+use crate::gpu::shader::{Kernel, Part, camera_parts, part};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 
-/// The pass that removes hits behind the depth of a host. One is enough for a renderer.
+/// The passes that end rays at the depth of a host, and remove hits behind it. One is enough for a renderer.
 #[derive(Debug)]
 pub struct DepthTest {
     layout: BindGroupLayout,
-    pipeline: ComputePipeline,
+    /// The pipelines that end rays, for the cameras of the renderer.
+    limit: Vec<(CameraKind, ComputePipeline)>,
+    hide: ComputePipeline,
 }
+
+/// The kinds of camera that a host has.
+pub(in crate::gpu) const LIMITED: [CameraKind; 2] = [CameraKind::Pinhole, CameraKind::Orthographic];
 
 /// A depth texture of the host, and the camera that it was rendered with.
 #[derive(Debug)]
@@ -33,23 +37,44 @@ pub struct HostDepth {
     size: Option<[u32; 2]>,
 }
 
-pub(in crate::gpu) fn hide_kernel() -> Kernel {
-    let parts = vec![
+fn shared_parts() -> Vec<Part> {
+    vec![
         part!("scene/records.wgsl"),
         part!("scene/frame.wgsl"),
         part!("math/fence.wgsl"),
         part!("primary/hits.wgsl"),
+        part!("host/host_view.wgsl"),
         part!("host/clip_depth.wgsl"),
-        part!("host/hide.wgsl"),
-    ];
+        part!("host/host_depth.wgsl"),
+    ]
+}
+
+/// The kernel that ends rays, for a kind of camera.
+pub(in crate::gpu) fn limit_kernel(camera: CameraKind) -> Kernel {
+    let mut parts = shared_parts();
+    parts.extend([
+        part!("camera/film.wgsl"),
+        part!("camera/ray.wgsl"),
+        part!("scene/enter.wgsl"),
+        part!("camera/entry.wgsl"),
+    ]);
+    parts.extend(camera_parts(camera));
+    parts.extend([part!("host/farthest.wgsl"), part!("host/limit.wgsl")]);
+    Kernel { entry_point: "limit", parts }
+}
+
+/// The kernel that removes hits.
+pub(in crate::gpu) fn hide_kernel() -> Kernel {
+    let mut parts = shared_parts();
+    parts.push(part!("host/hide.wgsl"));
     Kernel { entry_point: "hide", parts }
 }
 
 impl DepthTest {
-    /// Builds the pipeline for the frames of a renderer.
+    /// Builds the pipelines for the frames of a renderer.
     ///
     /// # Errors
-    /// If the device rejects the kernel, which is a defect of this crate or of the driver.
+    /// If the device rejects a kernel, which is a defect of this crate or of the driver.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new(renderer: &Renderer, device: &Device) -> Result<Self, GpuError> {
         block_on(Self::new_async(renderer, device))
@@ -79,22 +104,39 @@ impl DepthTest {
             })
         });
         let groups = [&renderer.layouts.frame, &layout];
-        let pipeline = pipeline(device, &hide_kernel(), &groups, &checks);
+        let create = |kernel: Kernel| -> Result<ComputePipeline, GpuError> {
+            Ok(pipeline(device, &kernel.edited(&renderer.edits)?, &groups, &checks))
+        };
+        let limit = LIMITED
+            .into_iter()
+            .filter(|camera| renderer.continues_hits(*camera))
+            .map(|camera| Ok((camera, create(limit_kernel(camera))?)))
+            .collect::<Result<_, GpuError>>()?;
+        let hide = create(hide_kernel())?;
         checks.passed().await?;
-        Ok(Self { layout, pipeline })
+        Ok(Self { layout, limit, hide })
     }
 
+    /// The pipeline that ends the rays of a camera, if the renderer can trace them then.
+    fn limit(&self, renderer: &Renderer, camera: CameraKind) -> Option<&ComputePipeline> {
+        let found = self.limit.iter().find(|(of, _)| *of == camera);
+        found.filter(|_| renderer.continues_hits(camera)).map(|(_, pipeline)| pipeline)
+    }
+
+    /// Records a pass over the traced pixels of a band.
     fn record(
-        &self,
+        pipeline: &ComputePipeline,
         pass: &mut ComputePass<'_>,
         frame: &Frame,
-        band: usize,
-        size: [u32; 2],
+        part: BandBrick,
         depth: &HostDepth,
     ) {
-        let [width, height] = Groups::of_size(size).size;
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        let [width, height] = part.groups.size;
+        if part.groups.count() == 0 {
+            return;
+        }
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
         pass.set_bind_group(1, &depth.group, &[]);
         pass.dispatch_workgroups(width, height, 1);
     }
@@ -180,10 +222,18 @@ impl HostDepth {
     }
 }
 
+/// The part, traced with the kernel that continues from the hits that are there.
+fn continued(part: BandBrick) -> BandBrick {
+    BandBrick { is_first_of_band: false, ..part }
+}
+
 impl Renderer {
     /// Records the frame's view of the scene like [`Renderer::record`], except that hits behind the host's depth become
     /// misses before they are shaded: they have the background's colour, and neither depth nor id. A hit at the very
     /// depth of the host stays.
+    ///
+    /// Rays end a little behind the host's depth, so what is hidden takes little time. This needs the pipelines of
+    /// `several_bricks`; without them, or with `keeps_rays`, rays are traced to their ends, and the picture is the same.
     ///
     /// The comparison is that of a depth test, between depths that are computed in f32; it may be wrong only where the
     /// two differ by less than rounding, a few units of 2⁻²⁴ of the numbers that are subtracted.
@@ -202,15 +252,20 @@ impl Renderer {
         if depth.size != Some(frame.size()) {
             return Err(GpuError::NoView);
         }
-        let bands = &frame.view(self, scene)?.bands;
+        let limit = test.limit(self, frame.view(self, scene)?.camera);
+        let traced = |part| if limit.is_some() { continued(part) } else { part };
+        self.check_pipelines(scene, frame, traced)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
         });
         for part in frame.parts() {
-            self.record_trace(&mut pass, scene, frame, part)?;
+            if let Some(limit) = limit.filter(|_| part.is_first_of_band) {
+                DepthTest::record(limit, &mut pass, frame, part, depth);
+            }
+            self.record_trace(&mut pass, scene, frame, traced(part))?;
             if part.is_last_of_band {
-                test.record(&mut pass, frame, part.band, bands[part.band], depth);
+                DepthTest::record(&test.hide, &mut pass, frame, part, depth);
                 self.record_shade(&mut pass, scene, frame, part.band)?;
             }
         }

@@ -5,40 +5,43 @@ use glam::DVec3;
 
 use crate::camera::{Camera, CameraKind, DepthOrder, HostCamera};
 
-/// Uniform record. Twin: `HostView` in `shaders/host/clip_depth.wgsl`.
+/// Uniform record. Twin: `HostView` in `shaders/host/host_view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(in crate::gpu) struct HostView {
-    pub(in crate::gpu) right: [f32; 3],
-    pub(in crate::gpu) is_parallel: u32,
-    pub(in crate::gpu) up: [f32; 3],
+    pub(in crate::gpu) column: [f32; 3],
+    pub(in crate::gpu) is_parallel: f32,
+    pub(in crate::gpu) row: [f32; 3],
     pub(in crate::gpu) slope: f32,
     pub(in crate::gpu) forward: [f32; 3],
     pub(in crate::gpu) far: f32,
     pub(in crate::gpu) film_depth: [f32; 3],
-    pub(in crate::gpu) zero: u32,
-    pub(in crate::gpu) size: [u32; 2],
-    pub(in crate::gpu) first_pixel: [u32; 2],
+    pub(in crate::gpu) zero: f32,
+    pub(in crate::gpu) size: [f32; 2],
+    pub(in crate::gpu) first_pixel: [f32; 2],
 }
 
 impl HostView {
     pub(in crate::gpu) fn new(camera: &HostCamera, size: [u32; 2], first_pixel: [u32; 2]) -> Self {
         let narrow = |v: DVec3| v.as_vec3().to_array();
         let (vectors, depth) = (camera.vectors(), camera.depth());
+        // Half a pixel is 1/size of the way from the middle of the film to its edge, and y is up.
+        let [columns, rows] = size.map(f64::from);
         Self {
-            right: narrow(vectors.right),
-            is_parallel: u32::from(camera.kind() == CameraKind::Orthographic),
-            up: narrow(vectors.up),
+            column: narrow(vectors.right / columns),
+            is_parallel: f32::from(u8::from(camera.kind() == CameraKind::Orthographic)),
+            row: narrow(vectors.up / -rows),
             slope: depth.slope as f32,
             forward: narrow(vectors.forward),
             far: match camera.depth_order() {
                 DepthOrder::NearIsZero => 1.0,
                 DepthOrder::NearIsOne => 0.0,
             },
-            film_depth: narrow(depth.film),
-            zero: 0,
-            size,
-            first_pixel,
+            film_depth: narrow(depth.film / DVec3::new(columns, -rows, 1.0)),
+            zero: 0.0,
+            // Textures are not so large that these are rounded.
+            size: size.map(|n| n as f32),
+            first_pixel: first_pixel.map(|n| n as f32),
         }
     }
 

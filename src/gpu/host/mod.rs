@@ -13,13 +13,16 @@ pub(in crate::gpu) mod pick;
 /// The kernels of everything here.
 pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     use crate::gpu::shader::formats::ColorTarget;
-    use composite_options::TargetEncoding;
+    use composite_options::{Coverage, TargetEncoding};
 
     let mut kernels = vec![composite::cover_kernel(), depth_test::hide_kernel()];
     kernels.extend(ColorTarget::ALL.iter().map(|color| lit::resolve::resolve_kernel(*color)));
+    kernels.extend(depth_test::LIMITED.map(depth_test::limit_kernel));
     for source in [ColorTarget::Srgb8, ColorTarget::Linear16] {
         for encoding in [TargetEncoding::Linear, TargetEncoding::Srgb] {
-            kernels.push(composite::composite_kernel(source, encoding));
+            for coverage in [Coverage::Hits, Coverage::Alpha] {
+                kernels.push(composite::composite_kernel(source, encoding, coverage));
+            }
         }
     }
     kernels

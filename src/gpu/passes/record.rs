@@ -11,6 +11,10 @@ use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::BrickPass;
 
+fn brick_pass(part: BandBrick) -> BrickPass {
+    if part.is_first_of_band { BrickPass::First } else { BrickPass::Later }
+}
+
 impl Renderer {
     /// Records the frame's view of the scene into the caller's encoder, as one compute pass.
     ///
@@ -26,7 +30,7 @@ impl Renderer {
         scene: &SceneBuffers,
         frame: &Frame,
     ) -> Result<(), GpuError> {
-        self.check_pipelines(scene, frame)?;
+        self.check_pipelines(scene, frame, |part| part)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("pinhole"),
             timestamp_writes: None,
@@ -40,14 +44,32 @@ impl Renderer {
         Ok(())
     }
 
-    /// Returns an error if a pipeline that the frame needs is missing.
+    /// Moves the pipelines with which [`Renderer::record`] records the frame to the front of those that
+    /// [`Renderer::build_next`] builds, and returns how many of them are not ready. On a native device, the frame can be
+    /// recorded after as many calls.
+    ///
+    /// # Errors
+    /// If the frame has no view of this scene, or was made for other targets.
+    pub fn build_first(&mut self, scene: &SceneBuffers, frame: &Frame) -> Result<usize, GpuError> {
+        let camera = frame.view(self, scene)?.camera;
+        let shades = scene.bricks().iter().map(|brick| brick.kind.primitive);
+        let mut needed: Vec<_> = shades.map(|of| PassKey::Shade(camera, of)).collect();
+        needed.extend(frame.parts().map(|part| {
+            let kind = scene.bricks()[part.brick].kind;
+            PassKey::Trace(camera, kind, brick_pass(part))
+        }));
+        Ok(self.put_first(&needed))
+    }
+
+    /// Returns an error if a pipeline that the frame needs is missing, for the tracing of its parts after a change.
     pub(in crate::gpu) fn check_pipelines(
         &self,
         scene: &SceneBuffers,
         frame: &Frame,
+        traced: impl Fn(BandBrick) -> BandBrick,
     ) -> Result<(), GpuError> {
         let camera = frame.view(self, scene)?.camera;
-        for part in frame.parts().filter(|part| part.groups.count() > 0) {
+        for part in frame.parts().filter(|part| part.groups.count() > 0).map(traced) {
             self.trace_pipeline(camera, scene.bricks()[part.brick].kind, part)?;
         }
         for brick in scene.bricks() {
@@ -62,8 +84,7 @@ impl Renderer {
         kind: BrickKind,
         part: BandBrick,
     ) -> Result<&ComputePipeline, GpuError> {
-        let brick_pass = if part.is_first_of_band { BrickPass::First } else { BrickPass::Later };
-        self.pipeline(PassKey::Trace(camera, kind, brick_pass), kind)
+        self.pipeline(PassKey::Trace(camera, kind, brick_pass(part)), kind)
     }
 
     /// Records the tracing of a brick for a band or for a slice of one. The record of the band must contain the first

@@ -26,7 +26,7 @@ pub struct Renderer {
     pub(in crate::gpu) keeps_rays: bool,
     pub(in crate::gpu) is_indirect: bool,
     query: Query,
-    edits: Vec<ShaderEdit>,
+    pub(in crate::gpu) edits: Vec<ShaderEdit>,
     /// Pipelines that can be recorded.
     built: Vec<(PassKey, ComputePipeline)>,
     /// Pipelines that the device has not yet accepted, and what is known of them. The mutex makes a renderer `Sync`,
@@ -170,6 +170,27 @@ impl Renderer {
     /// The edits of the shader source.
     pub(in crate::gpu) fn edits(&self) -> &[ShaderEdit] {
         &self.edits
+    }
+
+    /// Whether there are pipelines that continue tracing from hits that another pass has written, for a camera.
+    pub(in crate::gpu) fn continues_hits(&self, camera: CameraKind) -> bool {
+        let built = self.built.iter().map(|(key, _)| key);
+        let mut keys = built.chain(&self.remaining);
+        // Rays that are kept are those of the first brick's pass, and a search for any hit has no distances.
+        !self.keeps_rays
+            && self.query == Query::Nearest
+            && keys
+                .any(|key| matches!(key, PassKey::Trace(of, _, BrickPass::Later) if *of == camera))
+    }
+
+    /// Moves some pipelines to the front of those that are still to be built, and returns how many of them are not ready.
+    pub(in crate::gpu) fn put_first(&mut self, needed: &[PassKey]) -> usize {
+        // Those that are being built keep their places.
+        let begun = self.in_building().len();
+        let (first, others): (Vec<_>, Vec<_>) =
+            self.remaining.drain(begun..).partition(|key| needed.contains(key));
+        self.remaining.extend(first.into_iter().chain(others));
+        self.remaining.iter().filter(|key| needed.contains(key)).count()
     }
 
     fn kernel(&self, key: PassKey) -> Kernel {

@@ -19,7 +19,8 @@ pub struct RendererOptions {
     pub structures: Vec<Structure>,
     /// The primitives that scenes will consist of.
     pub primitives: Vec<Primitive>,
-    /// Whether scenes may be too large for one binding, so that they consist of several bricks.
+    /// Whether scenes may be too large for one binding, so that they consist of several bricks. Rays end at a host's
+    /// depth by the same pipelines, see [`Renderer::record_with_depth`](crate::gpu::Renderer::record_with_depth).
     pub several_bricks: bool,
     /// What the search for a ray returns. A renderer with [`Query::Any`] is useful for measurements only.
     pub query: Query,

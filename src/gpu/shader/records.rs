@@ -323,9 +323,9 @@ mod tests {
             layout!(Looped { count, state }),
             layout!(Denoise { size, step, zero }),
             layout!(HostView {
-                right,
+                column,
                 is_parallel,
-                up,
+                row,
                 slope,
                 forward,
                 far,

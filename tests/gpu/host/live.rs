@@ -117,14 +117,13 @@ impl Stage {
 }
 
 /// The fraction of pixels that may differ: rays along edges, where f32 and f64 hit different things, and their
-/// neighbours.
-const FEW: f64 = 0.03;
+/// neighbours. One pixel in 1,728 was found to.
+const FEW: f64 = 0.005;
 
 fn moving(_: &'static Headless) {
     for name in STUDIOS {
         for kind in 0..3 {
             let worst = Stage::new(name, Vec::new()).worst(kind);
-            println!("{name} {kind}: {worst:.4}");
             assert!(worst <= FEW, "{name}, camera {kind}: {worst}");
         }
     }
@@ -210,7 +209,6 @@ fn faults(_: &'static Headless) {
     ] {
         let of = |studio: &str| Stage::new(studio, vec![edit.clone()]).worst(0);
         let worst = ["studio_near_occlusion", "studio_key_and_fill"].map(of);
-        println!("{name}: {worst:?}");
         assert!(worst.iter().any(|worst| *worst > FEW), "{name}: {worst:?}");
     }
 }

@@ -1,8 +1,10 @@
 //! Tests of spheres among the triangles of a host program.
 #![allow(clippy::float_cmp, reason = "depths to which a host clears are exact")]
 
+mod blended;
 mod depth_in;
 mod depth_out;
+mod limit;
 mod lit;
 mod live;
 mod pick;
@@ -18,6 +20,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         depth_out::trials(),
         triangle::trials(),
         depth_in::trials(),
+        limit::trials(),
+        blended::trials(),
         pick::trials(),
         lit::trials(),
         live::trials(),

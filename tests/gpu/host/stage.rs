@@ -29,7 +29,7 @@ pub(super) struct Stage {
     pub(super) spheres: Vec<Sphere>,
     renderer: Renderer,
     scene: SceneBuffers,
-    frame: Frame,
+    pub(super) frame: Frame,
     pub(super) layers: Layers,
 }
 
@@ -98,26 +98,7 @@ impl Stage {
         let renderer = Renderer::new(&host.device, &options).unwrap();
         let scene = Scene::new(&spheres).unwrap();
         let scene = SceneBuffers::new(&renderer, &host.device, &host.queue, &scene).unwrap();
-        let layer = |format| {
-            host.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("layer"),
-                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        let layers = Layers {
-            color: layer(TextureFormat::Rgba8Unorm),
-            depth: layer(TextureFormat::R32Float),
-            normal: layer(TextureFormat::Rgba32Float),
-            id: layer(TextureFormat::R32Uint),
-        };
+        let layers = Layers::new(&host);
         let frame = layers.with(|targets| Frame::new(&renderer, &host.device, targets).unwrap());
         let mut stage = Self {
             host,
@@ -242,6 +223,30 @@ impl Stage {
 }
 
 impl Layers {
+    pub(super) fn new(host: &Host) -> Self {
+        let layer = |format| {
+            host.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("layer"),
+                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        };
+        Self {
+            color: layer(TextureFormat::Rgba8Unorm),
+            depth: layer(TextureFormat::R32Float),
+            normal: layer(TextureFormat::Rgba32Float),
+            id: layer(TextureFormat::R32Uint),
+        }
+    }
+
     pub(super) fn with<T>(&self, then: impl FnOnce(&Targets<'_>) -> T) -> T {
         let [color, depth, normal, id] =
             [&self.color, &self.depth, &self.normal, &self.id].map(view_of);

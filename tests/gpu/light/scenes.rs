@@ -1,6 +1,6 @@
 //! Small lit scenes that together use every material, light, sky and kernel.
 
-use pinhole::camera::{Camera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{
@@ -39,6 +39,7 @@ pub(crate) fn studios() -> Vec<(&'static str, LitView)> {
         ("studio_key_and_fill", view(&matt(), studio(Studio::default()))),
         ("studio_ambient_occlusion", view(&matt(), studio(occluded(None)))),
         ("studio_near_occlusion", view(&shiny(), on_ground(studio(occluded(Some(0.7)))))),
+        ("studio_parallel_rays", parallel(&shiny(), on_ground(studio(occluded(Some(0.7)))))),
         ("studio_sphere_light", view(&shiny(), on_ground(soft_light()))),
         ("studio_opacity", view(&clear(), on_ground(studio(occluded(Some(1.0)))))),
         ("studio_opacity_of_equals", view(&equals(), on_ground(studio(occluded(Some(1.0)))))),
@@ -158,6 +159,13 @@ fn view(spheres: &[Sphere], settings: RenderSettings) -> LitView {
     let pose = Pose::looking_at([1.0, 1.5, 7.0], [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
     let camera = PinholeCamera::with_vertical_fov(pose, 0.6, film.aspect()).unwrap();
     LitView { scene: Scene::new(spheres).unwrap(), camera: Box::new(camera), film, settings }
+}
+
+/// The same view with parallel rays.
+fn parallel(spheres: &[Sphere], settings: RenderSettings) -> LitView {
+    let pose = Pose::looking_at([1.0, 1.5, 7.0], [0.0, -0.2, 0.3], [0.05, 1.0, 0.0]).unwrap();
+    let camera = OrthographicCamera::new(pose, [2.8, 2.1]).unwrap();
+    LitView { camera: Box::new(camera), ..view(spheres, settings) }
 }
 
 /// The same scene, scaled and moved.

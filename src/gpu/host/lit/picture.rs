@@ -294,7 +294,7 @@ impl LitPicture {
     ) -> Result<(), GpuError> {
         let (data, cursor) = (&mut self.data, &mut self.data_cursor);
         let parts: Vec<BandBrick> = data.parts().collect();
-        renderer.check_pipelines(scene, data)?;
+        renderer.check_pipelines(scene, data, |part| part)?;
         let groups = parts.iter().map(|part| part.groups.count()).sum();
         if cursor.parts == 0 && cursor.left.is_empty() && groups <= budget.groups(1) {
             for part in &parts {

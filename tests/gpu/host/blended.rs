@@ -1,0 +1,177 @@
+//! Pictures that are transparent in parts, among what the host has drawn.
+
+use libtest_mimic::Trial;
+use pinhole::gpu::{Composite, CompositeOptions, Headless, wgpu};
+use wgpu::TextureFormat;
+
+use super::stage::{FIRST, RANGE, SIZE, Stage, TARGET, begin, pixels};
+use crate::embedding::view_of;
+use crate::support::hosts::Convention;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("host::blended::blends_and_has_the_depth_of_its_surroundings", right),
+        trial("host::blended::faults_are_found", faults),
+    ]
+}
+
+/// Colours of a picture, with alpha multiplied in, and distances, 1e30 for a miss.
+struct Picture {
+    colors: Vec<[u8; 4]>,
+    distances: Vec<f32>,
+}
+
+/// What the host has drawn before: the black of `begin`.
+const UNDER: [u8; 4] = [0, 0, 0, 255];
+
+/// What is planted into the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    /// Pixels whose own ray misses have the far depth.
+    NoNeighbors,
+    /// Only the four neighbours that share a side count.
+    FourNeighbors,
+    /// The farthest neighbour counts.
+    Farthest,
+    /// Pixels are drawn where their ray hits.
+    Hits,
+    /// The host's colour is not kept below.
+    NoBlend,
+}
+
+fn at(pixel: [u32; 2]) -> usize {
+    (pixel[1] * SIZE[0] + pixel[0]) as usize
+}
+
+/// Hits are sparse, so that some pixels have no hit around. Some are behind the far plane.
+fn random_picture(seed: u64) -> Picture {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let colors = pixels().map(|_| {
+        let alpha = [0, 0, 1, 128, 255, random.u8(..)][random.usize(0..6)];
+        let mut part = || random.u8(0..=alpha);
+        [part(), part(), part(), alpha]
+    });
+    let colors = colors.collect();
+    let distances = pixels().map(|_| match random.u32(0..8) {
+        0 => 2.0 + 12.0 * random.f32(),
+        1 if random.u32(0..4) == 0 => 3.0 * RANGE[1] as f32,
+        _ => 1e30,
+    });
+    Picture { colors, distances: distances.collect() }
+}
+
+/// The host's depth that a pixel must get, in f64; `None` if it is not drawn.
+fn expected_depth(stage: &Stage, picture: &Picture, pixel: [u32; 2], fault: Fault) -> Option<f64> {
+    let far = f64::from(stage.far());
+    let depth_of = |pixel: [u32; 2]| {
+        let distance = picture.distances[at(pixel)];
+        (distance < 1e30)
+            .then(|| stage.camera.clip_depth(Stage::location(pixel), f64::from(distance)))
+    };
+    let own = depth_of(pixel);
+    let is_drawn = match fault {
+        Fault::Hits => own.is_some(),
+        _ => picture.colors[at(pixel)][3] > 0,
+    };
+    if !is_drawn {
+        return None;
+    }
+    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y)));
+    let around = around
+        .filter(|(x, y)| match fault {
+            Fault::NoNeighbors => false,
+            Fault::FourNeighbors => x * y == 0,
+            _ => true,
+        })
+        .filter_map(|(x, y)| {
+            let near = [pixel[0].checked_add_signed(x)?, pixel[1].checked_add_signed(y)?];
+            (near[0] < SIZE[0] && near[1] < SIZE[1]).then(|| depth_of(near)).flatten()
+        });
+    let is_largest = (far == 0.0) != (fault == Fault::Farthest);
+    let nearest = around.reduce(|a, b| if is_largest { a.max(b) } else { a.min(b) });
+    let depth = own.or(nearest).unwrap_or(far);
+    let is_behind = if far == 1.0 { depth > far } else { depth < far };
+    (!is_behind).then(|| depth.clamp(0.0, 1.0))
+}
+
+/// Number of pixels whose colour or depth is not what it must be.
+fn wrong(stage: &Stage, fault: Fault) -> usize {
+    let picture = random_picture(5);
+    let queue = &stage.host.queue;
+    for (texture, bytes) in [
+        (&stage.layers.color, bytemuck::cast_slice::<_, u8>(&picture.colors)),
+        (&stage.layers.depth, bytemuck::cast_slice(&picture.distances)),
+    ] {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * SIZE[0]),
+            rows_per_image: None,
+        };
+        queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+    }
+    let format = TextureFormat::Rgba8Unorm;
+    let color = stage.attachment(format, 1);
+    let depth = stage.attachment(TextureFormat::Depth32Float, 1);
+    let options = CompositeOptions::lit(format, stage.composite_depth(depth.format()));
+    let composite = Composite::new(&stage.host.device, &options).unwrap();
+    let mut drawn = stage.picture(&composite);
+    drawn.set_camera(queue, &stage.camera, FIRST);
+    let mut encoder = stage.host.encoder();
+    {
+        let (color, depth) = (view_of(&color), view_of(&depth));
+        let mut pass = begin(&mut encoder, &color, None, &depth, Some(stage.far()));
+        composite.draw(&mut pass, &drawn).unwrap();
+    }
+    let colors = stage.host.submit_and_read(encoder, &color);
+    let depths = stage.host.submit_and_read(stage.host.encoder(), &depth);
+    let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&depths);
+    let (mut wrong, mut seen) = (0, [0; 4]);
+    for row in 0..TARGET[1] {
+        for column in 0..TARGET[0] {
+            let texel = (row * TARGET[0] + column) as usize;
+            let found = &colors[4 * texel..][..4];
+            let pixel = [column.wrapping_sub(FIRST[0]), row.wrapping_sub(FIRST[1])];
+            let is_in = (0..2).all(|axis| pixel[axis] < SIZE[axis]);
+            let expected = is_in.then(|| expected_depth(stage, &picture, pixel, fault)).flatten();
+            let Some(expected) = expected else {
+                seen[0] += 1;
+                wrong += usize::from(depths[texel] != stage.far() || found != UNDER);
+                continue;
+            };
+            let is_far = expected == f64::from(stage.far());
+            seen[if picture.distances[at(pixel)] < 1e30 { 1 } else { 2 + usize::from(is_far) }] +=
+                1;
+            let over = picture.colors[at(pixel)].map(f64::from);
+            let kept = if fault == Fault::NoBlend { 0.0 } else { 1.0 - over[3] / 255.0 };
+            let is_color = (0..4).all(|i| {
+                let mixed = over[i] + kept * f64::from(UNDER[i]);
+                (f64::from(found[i]) - mixed).abs() < 1.01
+            });
+            let is_depth = (f64::from(depths[texel]) - expected).abs() < 1e-6;
+            wrong += usize::from(!is_color || !is_depth);
+        }
+    }
+    assert!(fault != Fault::None || seen.iter().all(|count| *count > 100), "{seen:?}");
+    wrong
+}
+
+fn right(_: &'static Headless) {
+    for convention in Convention::ALL {
+        for stage in [Stage::new(convention), Stage::oblique(convention)] {
+            assert_eq!(wrong(&stage, Fault::None), 0, "{convention:?}");
+        }
+    }
+}
+
+fn faults(_: &'static Headless) {
+    for convention in [Convention::Perspective, Convention::InfiniteReversed] {
+        let stage = Stage::new(convention);
+        for fault in
+            [Fault::NoNeighbors, Fault::FourNeighbors, Fault::Farthest, Fault::Hits, Fault::NoBlend]
+        {
+            assert!(wrong(&stage, fault) > 0, "{convention:?}: {fault:?}");
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Rays that end at the host's depth give the pictures of those that do not, to the bit.
+
+use libtest_mimic::Trial;
+use pinhole::accel::{AccelChoice, AccelPlan};
+use pinhole::camera::Camera;
+use pinhole::glam::DVec3;
+use pinhole::gpu::{
+    DepthTest, Frame, Headless, HostDepth, Renderer, RendererOptions, SceneBuffers, wgpu,
+};
+use pinhole::internals::ShaderEdit;
+use pinhole::{LinearRgb, Scene};
+use wgpu::TextureFormat;
+
+use super::depth_out::pixel_is_near_a_silhouette;
+use super::stage::{FIRST, Layers, SIZE, Stage, begin, settings};
+use crate::embedding::{Host, view_of};
+use crate::support::hosts::Convention;
+use crate::support::spheres::{self, Spheres};
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("host::limit::gives_the_same_bits", same),
+        trial("host::limit::faults_are_found", faults),
+        trial("host::limit::is_near_the_hosts_depth", near),
+    ]
+}
+
+/// A renderer whose rays end at the host's depth, or do not.
+fn renderer(stage: &Stage, is_limited: bool, edits: &[(&str, &str, &str)]) -> Renderer {
+    let options = RendererOptions {
+        data_layers: true,
+        cameras: vec![stage.camera.kind()],
+        several_bricks: is_limited,
+        edits: edits
+            .iter()
+            .map(|(file, find, replace)| ShaderEdit {
+                file: (*file).to_owned(),
+                find: (*find).to_owned(),
+                replace: (*replace).to_owned(),
+            })
+            .collect(),
+        ..RendererOptions::default()
+    };
+    Renderer::new(&stage.host.device, &options).unwrap()
+}
+
+/// The host's depth, at the first pixel of a picture.
+struct HostPicture {
+    texture: wgpu::Texture,
+    first_pixel: [u32; 2],
+}
+
+/// A different depth in every pixel, from the near plane to the far one. Some pixels are at these planes.
+fn random_depth(stage: &Stage, random: &mut fastrand::Rng) -> HostPicture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = stage.host.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Depth16Unorm,
+        usage,
+        view_formats: &[],
+    });
+    // Depths of points among the spheres; the whole range would be in front of them or behind them nearly everywhere.
+    let words: Vec<u16> = super::stage::pixels()
+        .map(|pixel| match random.u32(0..10) {
+            0 => 0,
+            1 => u16::MAX,
+            _ => {
+                let distance = 3.0 + 8.0 * random.f64();
+                let depth = stage.camera.clip_depth(Stage::location(pixel), distance);
+                (depth.clamp(0.0, 1.0) * 65535.0) as u16
+            }
+        })
+        .collect();
+    stage.host.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&words),
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(2 * SIZE[0]),
+            rows_per_image: None,
+        },
+        texture.size(),
+    );
+    HostPicture { texture, first_pixel: [0, 0] }
+}
+
+/// The depth of the spheres of the stage, which are those of the scene or others.
+fn own_depth(stage: &Stage) -> HostPicture {
+    let color = stage.attachment(TextureFormat::Rgba8Unorm, 1);
+    let texture = stage.attachment(TextureFormat::Depth32Float, 1);
+    let composite = stage.composite(color.format(), texture.format(), 1);
+    let mut picture = stage.picture(&composite);
+    picture.set_camera(&stage.host.queue, &stage.camera, FIRST);
+    let mut encoder = stage.host.encoder();
+    stage.trace(&mut encoder);
+    {
+        let (color, depth) = (view_of(&color), view_of(&texture));
+        let mut pass = begin(&mut encoder, &color, None, &depth, Some(stage.far()));
+        composite.draw(&mut pass, &picture).unwrap();
+    }
+    stage.host.queue.submit([encoder.finish()]);
+    HostPicture { texture, first_pixel: FIRST }
+}
+
+/// The bytes of all layers of a picture with the host's depth.
+fn picture(
+    stage: &Stage,
+    renderer: &Renderer,
+    scene: &SceneBuffers,
+    depth: &HostPicture,
+) -> [Vec<u8>; 4] {
+    let Host { device, queue } = &stage.host;
+    let layers = Layers::new(&stage.host);
+    let mut frame = layers.with(|targets| Frame::new(renderer, device, targets).unwrap());
+    frame.set_view(queue, scene, &stage.view(), &settings()).unwrap();
+    let test = DepthTest::new(renderer, device).unwrap();
+    let mut host_depth = HostDepth::new(&test, device, &view_of(&depth.texture)).unwrap();
+    host_depth.set_camera(queue, &stage.camera, &frame, depth.first_pixel).unwrap();
+    let mut encoder = stage.host.encoder();
+    renderer.record_with_depth(&mut encoder, scene, &frame, &test, &host_depth).unwrap();
+    queue.submit([encoder.finish()]);
+    [&layers.color, &layers.depth, &layers.normal, &layers.id]
+        .map(|layer| stage.host.submit_and_read(stage.host.encoder(), layer))
+}
+
+fn scene(
+    stage: &Stage,
+    renderer: &Renderer,
+    spheres: Spheres,
+    choice: AccelChoice,
+) -> SceneBuffers {
+    let Host { device, queue } = &stage.host;
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let bytes = device.limits().max_storage_buffer_binding_size;
+    let accel = AccelPlan::new(scene.spheres(), choice, bytes).build(scene.spheres());
+    SceneBuffers::with_accel(renderer, device, queue, &scene, &accel).unwrap()
+}
+
+fn stages() -> impl Iterator<Item = Stage> {
+    Convention::ALL.into_iter().flat_map(|of| [Stage::new(of), Stage::oblique(of)])
+}
+
+/// Spheres in the middle of the stage.
+fn random_spheres(count: usize, seed: u64) -> Spheres {
+    let radius = 1.5 / (count as f32).cbrt();
+    let spheres = spheres::random(count, seed, |random| radius * (0.2 + 0.2 * random.f32()));
+    let moved = |[x, y, z, r]: [f32; 4]| {
+        let [x, y, z] = [x, y, z].map(|at| 4.0 * at - 2.0);
+        [x, y, z, 2.0 * r]
+    };
+    spheres.into_iter().map(moved).collect()
+}
+
+/// The number of bytes that differ between the pictures with and without a limit, for one stage.
+fn different(stage: &Stage, seed: u64, edits: &[(&str, &str, &str)]) -> usize {
+    let [without, with] = [false, true]
+        .map(|is_limited| renderer(stage, is_limited, if is_limited { edits } else { &[] }));
+    let mut random = fastrand::Rng::with_seed(seed);
+    let depths = [random_depth(stage, &mut random), own_depth(stage)];
+    let of_the_stage: Spheres = stage
+        .spheres
+        .iter()
+        .map(|sphere| [sphere.center[0], sphere.center[1], sphere.center[2], sphere.radius])
+        .map(|sphere| sphere.map(|number| number as f32))
+        .collect();
+    let mut count = 0;
+    for (spheres, choice) in [
+        (of_the_stage, AccelChoice::List),
+        (random_spheres(500, seed), AccelChoice::Grid),
+        (random_spheres(500, seed), AccelChoice::Tree),
+        (random_spheres(30_000, seed), AccelChoice::Auto),
+    ] {
+        let [a, b] =
+            [&without, &with].map(|renderer| scene(stage, renderer, spheres.clone(), choice));
+        for depth in &depths {
+            let (a, b) = (picture(stage, &without, &a, depth), picture(stage, &with, &b, depth));
+            let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&a[3]);
+            let hits = ids.iter().filter(|id| **id != u32::MAX).count();
+            assert!(hits > 100 && hits < ids.len() - 100, "{hits}");
+            let pairs = a.iter().flatten().zip(b.iter().flatten());
+            count += pairs.filter(|(a, b)| a != b).count();
+        }
+    }
+    count
+}
+
+fn same(_: &'static Headless) {
+    for (seed, stage) in (0..).zip(stages()) {
+        assert_eq!(different(&stage, seed, &[]), 0, "{:?}", stage.convention);
+    }
+}
+
+fn faults(_: &'static Headless) {
+    let farthest = "host/farthest.wgsl";
+    let planted: [(&str, &str, &str, &[Convention]); 5] = [
+        (farthest, "(1.0 + 0x1p-16)", "0.999", &Convention::ALL),
+        (
+            "host/limit.wgsl",
+            "farthest - entry.distance",
+            "farthest - entry.distance * 1.001",
+            &[Convention::Perspective, Convention::OrthographicReversed],
+        ),
+        // Rays of perspective cameras do not end then.
+        (farthest, "sign(view.slope)", "1.0", &[Convention::OrthographicReversed]),
+        (farthest, "sign(view.slope)", "-1.0", &[Convention::Orthographic]),
+        ("host/hide.wgsl", "hit.id == NO_ID || ", "", &[Convention::Reversed]),
+    ];
+    for (file, find, replace, conventions) in planted {
+        for convention in conventions {
+            let found = different(&Stage::new(*convention), 1, &[(file, find, replace)]);
+            assert!(found > 0, "{convention:?}: {replace} in place of {find}");
+        }
+    }
+    let oblique = Stage::oblique(Convention::Infinite);
+    assert!(different(&oblique, 1, &[(farthest, " - aside", "")]) > 0);
+}
+
+/// If `hide` leaves misses as they are, the depth layer shows where rays end, counted from the box of the scene.
+fn near(_: &'static Headless) {
+    for stage in stages() {
+        let edits = [("host/hide.wgsl", "hit.id == NO_ID || ", "")];
+        let renderer = renderer(&stage, true, &edits);
+        let scene = scene(&stage, &renderer, vec![[0.0, 0.0, 0.0, 1.0]], AccelChoice::Auto);
+        let [_, limits, _, ids] = picture(&stage, &renderer, &scene, &own_depth(&stage));
+        let limits: Vec<f32> = bytemuck::pod_collect_to_vec(&limits);
+        let ids: Vec<u32> = bytemuck::pod_collect_to_vec(&ids);
+        let (mut judged, mut removed) = (0, 0);
+        for (at, pixel) in super::stage::pixels().enumerate() {
+            let Some(truth) = stage.truth(pixel) else { continue };
+            let ray = stage.camera.ray_in_world(Stage::location(pixel));
+            let planes = [-1.0, 1.0].map(|side| (DVec3::splat(side) - ray.origin) / ray.direction);
+            let enters = planes[0].min(planes[1]).max_element();
+            let leaves = planes[0].max(planes[1]).min_element();
+            // Hits are beside the point, also those that `hide` removes because they are a little too far.
+            let is_hit = ids[at] != u32::MAX || limits[at] == 0.0;
+            if is_hit || pixel_is_near_a_silhouette(&stage, pixel) || enters + 0.01 > leaves {
+                continue;
+            }
+            if limits[at] >= 1e30 {
+                removed += 1;
+                continue;
+            }
+            let ahead = f64::from(limits[at]) + enters - truth.distance;
+            // The box is a little larger than the sphere.
+            assert!((-1e-4..0.01).contains(&ahead), "{:?} {pixel:?}: {ahead}", stage.convention);
+            judged += 1;
+        }
+        assert!(judged > 100 && removed < 10, "{:?}: {judged}, {removed}", stage.convention);
+    }
+}
