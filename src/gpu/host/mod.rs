@@ -9,6 +9,7 @@ pub(in crate::gpu) mod host_view;
 pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod live;
 pub(in crate::gpu) mod pick;
+pub(in crate::gpu) mod target_textures;
 
 /// The kernels of everything here.
 pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
@@ -19,7 +20,9 @@ pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     kernels.extend(ColorTarget::ALL.iter().map(|color| lit::resolve::resolve_kernel(*color)));
     for source in [ColorTarget::Srgb8, ColorTarget::Linear16] {
         for encoding in [TargetEncoding::Linear, TargetEncoding::Srgb] {
-            kernels.push(composite::composite_kernel(source, encoding));
+            for has_depth in [true, false] {
+                kernels.push(composite::composite_kernel(source, encoding, has_depth));
+            }
         }
     }
     kernels
