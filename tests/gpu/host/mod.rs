@@ -5,6 +5,7 @@ mod depth_in;
 mod depth_out;
 mod lit;
 mod live;
+mod overlay;
 mod pick;
 mod same_picture;
 mod stage;
@@ -16,6 +17,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     [
         same_picture::trials(),
         depth_out::trials(),
+        overlay::trials(),
         triangle::trials(),
         depth_in::trials(),
         pick::trials(),

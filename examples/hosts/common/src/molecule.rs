@@ -28,8 +28,8 @@ pub fn molecule() -> Outcome<Scene> {
     let mut spheres = Vec::new();
     for rung in 0..RUNGS {
         let t = TAU * f64::from(rung) / f64::from(RUNGS);
-        let along = (knot(t + 1e-4) - knot(t - 1e-4)).normalize();
-        let side = along.cross(DVec3::Z).normalize();
+        let along = (knot(t + 1e-4) - knot(t - 1e-4)).normalize_or(DVec3::X);
+        let side = along.cross(DVec3::Z).normalize_or(DVec3::X);
         let (sine, cosine) = (TWISTS * t).sin_cos();
         let across = cosine * side + sine * side.cross(along);
         for step in -5..=5_i32 {

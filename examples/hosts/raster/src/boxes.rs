@@ -112,7 +112,8 @@ impl Boxes {
             color: [r, g, b, 1.0],
         };
         let still = DQuat::IDENTITY;
-        let turning = DQuat::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize(), angle);
+        let turning =
+            DQuat::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize_or(DVec3::Y), angle);
         let frame = Frame {
             clip_from_world: (projection * view).as_mat4().to_cols_array_2d(),
             boxes: [

@@ -123,7 +123,7 @@ impl Host for Raster {
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if self.tests_early && self.draws_boxes {
-            let mut pass = begin(&mut encoder, None, &pictures.early_depth);
+            let mut pass = begin(&mut encoder, &[], &pictures.early_depth);
             self.boxes.draw_depth(&mut pass);
             drop(pass);
             let (test, depth) = (&self.depth_test, &mut pictures.host_depth);
@@ -145,7 +145,7 @@ impl Host for Raster {
                 store: wgpu::StoreOp::Discard,
             },
         };
-        let mut pass = begin(&mut encoder, Some(color), &pictures.depth);
+        let mut pass = begin(&mut encoder, &[Some(color)], &pictures.depth);
         if self.draws_boxes {
             self.boxes.draw(&mut pass);
         }
@@ -223,13 +223,12 @@ fn attachment(
 /// Begins a pass over cleared depth.
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    color: Option<wgpu::RenderPassColorAttachment<'_>>,
+    color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
     depth: &wgpu::TextureView,
 ) -> wgpu::RenderPass<'a> {
-    let colors = color.as_ref().map(|color| Some(color.clone()));
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("triangles"),
-        color_attachments: colors.as_slice(),
+        color_attachments,
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
             depth_ops: Some(wgpu::Operations {
