@@ -82,14 +82,15 @@ locate() {
     x=$X y=$Y width=$WIDTH height=$HEIGHT
 }
 
-# Takes a screenshot once two in a row are the same.
+# Takes a screenshot once two in a row are the same, and no samples remain where the host has a lit picture.
 settle() {
     shot "$1"
-    for _ in $(seq 60); do
+    for _ in $(seq 200); do
         sleep 0.7
         kill -0 "$host" 2>/dev/null || give_up "it ended by itself"
         mv "$dir/$1.png" "$dir/before.png"
         shot "$1"
+        [ "$(grep -E '^(done|refining)$' "$log" | tail -1)" != refining ] || continue
         [ "$(differ "$1" before)" = 0.000 ] && return
     done
     give_up "its picture does not come to rest"
@@ -239,11 +240,21 @@ drive_egui() {
     done
     check "picks with a sphere" "$(grep -c '^picked Some' "$log" || true)" ">=" 1
     settle picked
-    # The second style is below the first.
-    move 20 60
+    # The styles are below each other: light of a studio, paths, flat colours.
+    move 20 59
     xdotool click 1
-    settle style
-    check "percent that the style changes" "$(differ picked style)" ">" 1
+    settle paths
+    check "percent that path tracing changes" "$(differ picked paths)" ">" 1
+    compare paths
+    move 20 83
+    xdotool click 1
+    settle flat
+    check "percent that flat colours change" "$(differ paths flat)" ">" 1
+    # What was picked has the colour of that pixel.
+    IFS='x+' read -r _ _ x0 y0 <<<"$(sed -n 's/^panel //p' "$log" | tail -1)"
+    read -r id column row color <<<"$(sed -nE 's/^picked Some\(([0-9]+)\) at \[([0-9]+), ([0-9]+)\], Some\((.*)\)$/\1 \2 \3 \4/p' "$log" | tail -1)"
+    found=$(python3 "$pixels" color "$dir/flat.png" $((x0 + column)) $((y0 + row)))
+    check "colour of the picked sphere $id and of its pixel" "$color" "==" "$found"
 }
 
 for name in "${hosts[@]}"; do

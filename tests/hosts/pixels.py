@@ -3,6 +3,7 @@
 
     pixels.py shot SCREEN.xwd WIDTHxHEIGHT+X+Y OUT.png   writes a part of the screen
     pixels.py colors A.png                               prints the number of different colours
+    pixels.py color A.png X Y                            prints the colour of a pixel as [R, G, B]
     pixels.py differ A.png B.png                         prints the share of pixels that differ, in percent
     pixels.py seen SPHERES.png SCREEN.png X Y            of the pixels of SPHERES.png that differ from its pixel (X, Y):
                                                          prints the share that SCREEN.png has as well, in percent
@@ -114,6 +115,9 @@ def main(command, *arguments):
         write_png(out, [row[3 * x : 3 * (x + width)] for row in rows[y : y + height]])
     elif command == "colors":
         print(len(set(pixels(read_png(arguments[0])))))
+    elif command == "color":
+        path, x, y = arguments[0], int(arguments[1]), int(arguments[2])
+        print(list(read_png(path)[y][3 * x : 3 * x + 3]))
     elif command == "differ":
         print(f"{differ(*map(read_png, arguments)):.3f}")
     elif command == "seen":

@@ -1,6 +1,8 @@
-//! What the host programs share: a window with wgpu in it, a camera that orbits, a molecule to look at, and a picture by
-//! `Headless` to compare with.
+//! What the host programs share: a window with wgpu in it, a camera that orbits, a molecule and light to look at it, a
+//! budget of rays, and a picture by `Headless` to compare with.
 
+mod budget;
+mod light;
 mod molecule;
 mod orbit;
 mod still;
@@ -9,6 +11,8 @@ mod window;
 
 use std::error::Error;
 
+pub use budget::Budget;
+pub use light::{background, paths, studio};
 pub use molecule::molecule;
 pub use orbit::Orbit;
 pub use still::save_still;

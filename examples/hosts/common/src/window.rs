@@ -25,13 +25,13 @@ pub trait Host: Sized {
     ///
     /// # Errors
     /// Whatever ends the program.
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Outcome<Self>;
+    fn new(gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<Self>;
 
     /// Makes what belongs to the size of the window.
     ///
     /// # Errors
     /// Whatever ends the program.
-    fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Outcome<()>;
+    fn resize(&mut self, gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<()>;
 
     /// Draws the window, and says whether it wants to draw again without an event.
     ///
@@ -95,14 +95,14 @@ struct Open<H> {
 }
 
 impl<H: Host> Open<H> {
-    fn new(events: &ActiveEventLoop, display: OwnedDisplayHandle) -> Outcome<Self> {
+    fn new(events: &ActiveEventLoop, display: OwnedDisplayHandle, orbit: &Orbit) -> Outcome<Self> {
         let attributes = Window::default_attributes()
             .with_title(H::TITLE)
             .with_inner_size(PhysicalSize::new(800, 600));
         let window = Arc::new(events.create_window(attributes)?);
         let (surface, gpu) =
             pollster::block_on(WindowSurface::open(Arc::clone(&window), display, H::IS_SRGB))?;
-        let host = H::new(&gpu, surface.size())?;
+        let host = H::new(&gpu, surface.size(), orbit)?;
         Ok(Self { host, gpu, surface, window })
     }
 
@@ -126,7 +126,7 @@ impl<H: Host> Program<H> {
             WindowEvent::RedrawRequested => return open.draw(&self.orbit),
             WindowEvent::Resized(size) => {
                 open.surface.resize(&open.gpu, [size.width, size.height]);
-                open.host.resize(&open.gpu, open.surface.size())?;
+                open.host.resize(&open.gpu, open.surface.size(), &self.orbit)?;
             }
             WindowEvent::Occluded(is_occluded) if !is_occluded => {}
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } => {
@@ -164,7 +164,7 @@ impl<H: Host> ApplicationHandler for Program<H> {
         if self.open.is_some() {
             return;
         }
-        match Open::new(events, self.display.clone()) {
+        match Open::new(events, self.display.clone(), &self.orbit) {
             Ok(open) => self.open = Some(open),
             Err(error) => self.fail(events, error),
         }

@@ -1,4 +1,4 @@
-//! Spheres in a panel of egui, between its widgets.
+//! Spheres in a panel of egui, beside its widgets.
 //!
 //! Drag in the panel to turn the camera, turn the wheel to come nearer, click to pick a sphere. `s` writes the panel as
 //! `Headless` renders it; Escape quits.
@@ -12,9 +12,12 @@ mod spheres;
 
 use eframe::egui;
 use eframe::egui_wgpu;
-use pinhole::gpu::Picked;
-use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, Shading, View};
-use pinhole_host_common::{Orbit, Outcome, molecule, save_still, start_log};
+use pinhole::gpu::{LitState, Picked};
+use pinhole::render::Studio;
+use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, View};
+use pinhole_host_common::{
+    Orbit, Outcome, background, molecule, paths, save_still, start_log, studio,
+};
 use spheres::{Draw, Spheres};
 
 fn main() -> Outcome<()> {
@@ -35,11 +38,24 @@ fn main() -> Outcome<()> {
     Ok(())
 }
 
+/// How the spheres are lit.
+#[derive(Clone, Copy, PartialEq)]
+enum Style {
+    Studio,
+    Paths,
+    /// The colours of the spheres alone.
+    Flat,
+}
+
 struct Panels {
     scene: Scene,
     orbit: Orbit,
-    shading: Shading,
+    style: Style,
+    /// Where the light is, about the camera, in radians.
+    angle: f64,
+    samples: u32,
     background: [f32; 3],
+    is_done: bool,
     /// Whether a pick has no result yet.
     is_picking: bool,
     picked: Option<Picked>,
@@ -55,8 +71,11 @@ impl Panels {
         Ok(Self {
             scene,
             orbit: Orbit::default(),
-            shading: Shading::Headlight,
-            background: [0.85, 0.88, 0.9],
+            style: Style::Studio,
+            angle: -0.7,
+            samples: 16,
+            background: background().to_array(),
+            is_done: false,
             is_picking: false,
             picked: None,
             message: None,
@@ -64,17 +83,29 @@ impl Panels {
     }
 
     fn settings(&self) -> RenderSettings {
-        RenderSettings {
-            integrator: Integrator::Primary(self.shading),
-            background: LinearRgb::new(self.background).unwrap_or(LinearRgb::WHITE),
-            ..RenderSettings::default()
-        }
+        let mut settings = match self.style {
+            Style::Studio => studio(self.angle, self.samples),
+            Style::Paths => paths(self.angle, self.samples),
+            Style::Flat => {
+                let ambient = Studio { ambient: LinearRgb::WHITE, ..Studio::default() };
+                RenderSettings {
+                    integrator: Integrator::Studio(ambient),
+                    lights: Vec::new(),
+                    ..studio(self.angle, self.samples)
+                }
+            }
+        };
+        settings.background = LinearRgb::new(self.background).unwrap_or(LinearRgb::WHITE);
+        settings
     }
 
     fn widgets(&mut self, ui: &mut egui::Ui) {
         ui.heading("Style");
-        ui.radio_value(&mut self.shading, Shading::Headlight, "Light at the eye");
-        ui.radio_value(&mut self.shading, Shading::Flat, "Flat colours");
+        ui.radio_value(&mut self.style, Style::Studio, "Studio");
+        ui.radio_value(&mut self.style, Style::Paths, "Path tracing");
+        ui.radio_value(&mut self.style, Style::Flat, "Flat colours");
+        ui.add(egui::Slider::new(&mut self.angle, -3.1..=3.1).text("Light"));
+        ui.add(egui::Slider::new(&mut self.samples, 1..=256).logarithmic(true).text("Samples"));
         ui.horizontal(|ui| {
             ui.color_edit_button_rgb(&mut self.background);
             ui.label("Background");
@@ -85,8 +116,11 @@ impl Panels {
             None => ui.label("Click a sphere."),
             Some(Picked { hit: None, .. }) => ui.label("No sphere."),
             Some(Picked { hit: Some(hit), .. }) => {
+                let [r, g, b] = self.scene.color(hit.id).to_srgb8();
+                let color = egui::Color32::from_rgb(r, g, b);
+                ui.colored_label(color, format!("Sphere {}", hit.id));
                 let place = hit.place.to_array().map(|x| format!("{x:.2}")).join(", ");
-                ui.label(format!("Sphere {} at {place}", hit.id))
+                ui.label(format!("at {place}"))
             }
         };
         if let Some(message) = &self.message {
@@ -119,8 +153,14 @@ impl Panels {
         }
         while let Some(picked) = spheres.take_pick()? {
             self.is_picking = false;
-            println!("picked {:?} at {:?}", picked.hit.map(|hit| hit.id), picked.pixel);
+            let color = picked.hit.map(|hit| self.scene.color(hit.id).to_srgb8());
+            println!("picked {:?} at {:?}, {color:?}", picked.hit.map(|hit| hit.id), picked.pixel);
             self.picked = Some(picked);
+        }
+        let state = spheres.progress().map(|progress| progress.state);
+        let is_done = state == Some(LitState::Done);
+        if std::mem::replace(&mut self.is_done, is_done) != is_done {
+            println!("{}", if is_done { "done" } else { "refining" });
         }
         if let Some((film, [x, y])) = spheres.panel().filter(|_| saves) {
             let camera = self.orbit.camera(film.aspect())?;
@@ -147,7 +187,7 @@ impl eframe::App for Panels {
         }
         egui::Panel::left("widgets").show(ui, |ui| self.widgets(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.spheres(ui));
-        if self.is_picking {
+        if self.is_picking || !self.is_done {
             ui.ctx().request_repaint();
         }
     }

@@ -1,22 +1,26 @@
 //! What lives on egui's device, and the callback that draws it in a panel.
 
+use std::time::Duration;
+
 use eframe::egui;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, Frame, Picked, Picker, Renderer,
-    RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, Picked,
+    Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
-use pinhole_host_common::{Orbit, Outcome};
+use pinhole_host_common::{Budget, Orbit, Outcome};
 
 /// What egui keeps for the panel, in `CallbackResources`.
 pub(crate) struct Spheres {
-    renderer: Renderer,
+    renderer: LitRenderer,
     composite: Composite,
     buffers: SceneBuffers,
     picker: Picker,
     panel: Option<Panel>,
+    budget: Budget,
+    progress: Option<LitProgress>,
     failed: Option<String>,
 }
 
@@ -25,31 +29,43 @@ struct Panel {
     film: Film,
     first_pixel: [u32; 2],
     textures: TargetTextures,
-    frame: Frame,
-    picture: CompositePicture,
+    lit: LitPicture,
+    shown: CompositePicture,
 }
 
 impl Spheres {
     pub(crate) fn new(egui: &RenderState, scene: &Scene) -> Outcome<Self> {
         let device = &egui.device;
-        // The data layers are for picking.
         let options = RendererOptions {
             cameras: vec![CameraKind::Pinhole],
             data_layers: true,
             ..RendererOptions::default()
         };
-        let renderer = Renderer::new(device, &options)?;
+        let renderer = LitRenderer::new(Renderer::new(device, &options)?);
         // The render pass of egui has no depth.
         let options = CompositeOptions::without_depth(egui.target_format);
         let composite = Composite::new(device, &options)?;
-        let buffers = SceneBuffers::new(&renderer, device, &egui.queue, scene)?;
-        let picker = Picker::new(device, 3)?;
-        Ok(Self { renderer, composite, buffers, picker, panel: None, failed: None })
+        let buffers = SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene)?;
+        Ok(Self {
+            renderer,
+            composite,
+            buffers,
+            picker: Picker::new(device, 3)?,
+            panel: None,
+            budget: Budget::new(Duration::from_millis(40)),
+            progress: None,
+            failed: None,
+        })
     }
 
     /// The film of the panel and its first pixel in the window, once it was drawn.
     pub(crate) fn panel(&self) -> Option<(Film, [u32; 2])> {
         self.panel.as_ref().map(|panel| (panel.film, panel.first_pixel))
+    }
+
+    /// How far the last drawing has come.
+    pub(crate) fn progress(&self) -> Option<LitProgress> {
+        self.progress
     }
 
     /// What was picked, if the device has told.
@@ -100,7 +116,7 @@ impl CallbackTrait for Draw {
     ) {
         if let Some(spheres) = resources.get::<Spheres>()
             && let Some(panel) = &spheres.panel
-            && let Err(error) = spheres.composite.draw(pass, &panel.picture)
+            && let Err(error) = spheres.composite.draw(pass, &panel.shown)
         {
             log::error!("{error}");
         }
@@ -126,44 +142,38 @@ impl Draw {
         if width == 0 || height == 0 {
             return Ok(());
         }
-        let Spheres { renderer, composite, buffers, picker, panel, .. } = spheres;
+        let Spheres { renderer, composite, buffers, picker, panel, budget, progress, .. } = spheres;
+        let film = Film::new(width, height)?;
+        let camera = self.orbit.camera(film.aspect())?;
+        let view = View::new(&camera, film);
         if panel.as_ref().is_none_or(|panel| panel.textures.size() != [width, height]) {
             *panel = None;
         }
         let panel = match panel {
             Some(panel) => panel,
-            None => panel.insert(Panel::new(device, renderer, composite, [width, height])?),
+            None => {
+                let textures = TargetTextures::new(renderer.renderer(), device, [width, height])?;
+                let (targets, settings) = (textures.targets(), &self.settings);
+                panel.insert(Panel {
+                    film,
+                    first_pixel: [0, 0],
+                    lit: LitPicture::new(
+                        renderer, device, queue, buffers, &view, settings, &targets,
+                    )?,
+                    shown: CompositePicture::new(composite, device, &targets)?,
+                    textures,
+                })
+            }
         };
         panel.first_pixel = [left, top];
-        panel.picture.set_place(queue, panel.first_pixel);
-        let camera = self.orbit.camera(panel.film.aspect())?;
-        let view = View::new(&camera, panel.film);
-        panel.frame.set_view(queue, buffers, &view, &self.settings)?;
-        renderer.record(encoder, buffers, &panel.frame)?;
+        panel.shown.set_place(queue, panel.first_pixel);
+        panel.lit.set(renderer, device, queue, buffers, &view, &self.settings)?;
+        *progress = budget.record(&mut panel.lit, renderer, queue, encoder, buffers)?;
         if let Some(clicked) = self.clicked {
             let pixel = [clicked.x * scale, clicked.y * scale].map(|place| place as u32);
             let pixel = [pixel[0].saturating_sub(left), pixel[1].saturating_sub(top)];
             picker.record(encoder, &panel.textures.targets(), &view, pixel)?;
         }
         Ok(())
-    }
-}
-
-impl Panel {
-    fn new(
-        device: &wgpu::Device,
-        renderer: &Renderer,
-        composite: &Composite,
-        size: [u32; 2],
-    ) -> Outcome<Self> {
-        let textures = TargetTextures::new(renderer, device, size)?;
-        let targets = textures.targets();
-        Ok(Self {
-            film: Film::new(size[0], size[1])?,
-            first_pixel: [0, 0],
-            frame: Frame::new(renderer, device, &targets)?,
-            picture: CompositePicture::new(composite, device, &targets)?,
-            textures,
-        })
     }
 }

@@ -63,7 +63,7 @@ struct Pictures {
 impl Host for Raster {
     const TITLE: &'static str = "pinhole among triangles";
 
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Outcome<Self> {
+    fn new(gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<Self> {
         // Depth of the host is computed from the data layers.
         let options = RendererOptions {
             cameras: vec![CameraKind::Pinhole],
@@ -98,7 +98,7 @@ impl Host for Raster {
         })
     }
 
-    fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Outcome<()> {
+    fn resize(&mut self, gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<()> {
         let (renderer, composite) = (&self.renderer, &self.composite);
         self.pictures = Pictures::new(gpu, renderer, composite, &self.depth_test, size)?;
         Ok(())

@@ -48,7 +48,7 @@ impl Host for Drawing {
     // The canvas of vello has encoded colours, which are copied as they are.
     const IS_SRGB: bool = false;
 
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Outcome<Self> {
+    fn new(gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<Self> {
         let options =
             RendererOptions { cameras: vec![CameraKind::Pinhole], ..RendererOptions::default() };
         let renderer = Renderer::new(&gpu.device, &options)?;
@@ -65,7 +65,7 @@ impl Host for Drawing {
         Ok(Self { scene, settings, renderer, buffers, vello, blitter, pictures })
     }
 
-    fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Outcome<()> {
+    fn resize(&mut self, gpu: &Gpu, size: [u32; 2], _: &Orbit) -> Outcome<()> {
         self.vello.unregister_texture(self.pictures.image.clone());
         self.pictures = Pictures::new(gpu, &self.renderer, &mut self.vello, size)?;
         Ok(())

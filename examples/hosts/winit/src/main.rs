@@ -1,19 +1,24 @@
-//! Spheres in a bare window, on a device that the program owns.
+//! Spheres in a bare window, in the light of a studio, on a device that the program owns.
 //!
-//! Drag to turn the camera, turn the wheel to come nearer. `s` writes the same picture as `Headless` renders it; Escape
-//! quits.
+//! Drag to turn the camera, turn the wheel to come nearer. While nothing moves, samples accumulate. `s` writes the same
+//! picture as `Headless` renders it; Escape quits.
 //!
 //! ```sh
 //! cargo run --release -p pinhole-host-winit
 //! ```
+#![allow(clippy::print_stdout, reason = "a host tells when its picture is complete")]
+
+use std::time::Duration;
 
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, Frame, Renderer, RendererOptions, SceneBuffers,
-    TargetTextures, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitRenderer, LitState, Renderer,
+    RendererOptions, SceneBuffers, TargetTextures, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
-use pinhole_host_common::{Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still};
+use pinhole_host_common::{
+    Budget, Gpu, Host, Next, Orbit, Outcome, molecule, run, save_still, studio,
+};
 
 fn main() -> Outcome<()> {
     run::<BareWindow>()
@@ -23,52 +28,56 @@ struct BareWindow {
     scene: Scene,
     settings: RenderSettings,
     // Once for the device, for the kind of render pass, and for the scene.
-    renderer: Renderer,
+    renderer: LitRenderer,
     composite: Composite,
     buffers: SceneBuffers,
     // Once for a size of the window.
     pictures: Pictures,
+    budget: Budget,
+    is_done: bool,
 }
 
 struct Pictures {
     film: Film,
-    frame: Frame,
-    picture: CompositePicture,
+    lit: LitPicture,
+    shown: CompositePicture,
 }
 
 impl Host for BareWindow {
     const TITLE: &'static str = "pinhole in a bare window";
 
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Outcome<Self> {
-        let options =
-            RendererOptions { cameras: vec![CameraKind::Pinhole], ..RendererOptions::default() };
-        let renderer = Renderer::new(&gpu.device, &options)?;
+    fn new(gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<Self> {
+        let options = RendererOptions {
+            cameras: vec![CameraKind::Pinhole],
+            data_layers: true,
+            ..RendererOptions::default()
+        };
+        let renderer = LitRenderer::new(Renderer::new(&gpu.device, &options)?);
+        // The pass over the window has no depth.
         let composite = Composite::new(&gpu.device, &CompositeOptions::without_depth(gpu.format))?;
-        let scene = molecule()?;
-        let buffers = SceneBuffers::new(&renderer, &gpu.device, &gpu.queue, &scene)?;
-        let pictures = Pictures::new(gpu, &renderer, &composite, size)?;
-        Ok(Self {
-            scene,
-            settings: RenderSettings::default(),
-            renderer,
-            composite,
-            buffers,
-            pictures,
-        })
+        let (scene, settings) = (molecule()?, studio(-0.7, 16));
+        let buffers =
+            SceneBuffers::for_studio(renderer.renderer(), &gpu.device, &gpu.queue, &scene)?;
+        let pictures = Pictures::new(gpu, &renderer, &composite, &buffers, &settings, size, orbit)?;
+        let budget = Budget::new(Duration::from_millis(40));
+        Ok(Self { scene, settings, renderer, composite, buffers, pictures, budget, is_done: false })
     }
 
-    fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Outcome<()> {
-        self.pictures = Pictures::new(gpu, &self.renderer, &self.composite, size)?;
+    fn resize(&mut self, gpu: &Gpu, size: [u32; 2], orbit: &Orbit) -> Outcome<()> {
+        let Self { renderer, composite, buffers, settings, .. } = self;
+        self.pictures = Pictures::new(gpu, renderer, composite, buffers, settings, size, orbit)?;
         Ok(())
     }
 
     fn draw(&mut self, gpu: &Gpu, orbit: &Orbit, window: &wgpu::Texture) -> Outcome<Next> {
-        let Pictures { film, frame, picture } = &mut self.pictures;
+        let Self { renderer, buffers, settings, budget, .. } = self;
+        let Gpu { device, queue, .. } = gpu;
+        let Pictures { film, lit, shown } = &mut self.pictures;
         let camera = orbit.camera(film.aspect())?;
-        frame.set_view(&gpu.queue, &self.buffers, &View::new(&camera, *film), &self.settings)?;
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.record(&mut encoder, &self.buffers, frame)?;
+        // The samples so far are kept unless the camera has moved.
+        lit.set(renderer, device, queue, buffers, &View::new(&camera, *film), settings)?;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let progress = budget.record(lit, renderer, queue, &mut encoder, buffers)?;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("window"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -79,10 +88,15 @@ impl Host for BareWindow {
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        self.composite.draw(&mut pass, picture)?;
+        self.composite.draw(&mut pass, shown)?;
         drop(pass);
-        gpu.queue.submit([encoder.finish()]);
-        Ok(Next::Wait)
+        queue.submit([encoder.finish()]);
+
+        let is_done = progress.is_some_and(|progress| progress.state == LitState::Done);
+        if std::mem::replace(&mut self.is_done, is_done) != is_done {
+            println!("{}", if is_done { "done" } else { "refining" });
+        }
+        Ok(if is_done { Next::Wait } else { Next::Draw })
     }
 
     fn key(&mut self, key: &str, orbit: &Orbit) -> Outcome<()> {
@@ -96,13 +110,25 @@ impl Host for BareWindow {
 }
 
 impl Pictures {
-    fn new(gpu: &Gpu, renderer: &Renderer, composite: &Composite, size: [u32; 2]) -> Outcome<Self> {
-        let textures = TargetTextures::new(renderer, &gpu.device, size)?;
+    fn new(
+        gpu: &Gpu,
+        renderer: &LitRenderer,
+        composite: &Composite,
+        buffers: &SceneBuffers,
+        settings: &RenderSettings,
+        size: [u32; 2],
+        orbit: &Orbit,
+    ) -> Outcome<Self> {
+        let Gpu { device, queue, .. } = gpu;
+        let textures = TargetTextures::new(renderer.renderer(), device, size)?;
         let targets = textures.targets();
+        let film = Film::new(size[0], size[1])?;
+        let camera = orbit.camera(film.aspect())?;
+        let view = View::new(&camera, film);
         Ok(Self {
-            film: Film::new(size[0], size[1])?,
-            frame: Frame::new(renderer, &gpu.device, &targets)?,
-            picture: CompositePicture::new(composite, &gpu.device, &targets)?,
+            film,
+            lit: LitPicture::new(renderer, device, queue, buffers, &view, settings, &targets)?,
+            shown: CompositePicture::new(composite, device, &targets)?,
         })
     }
 }
