@@ -3,7 +3,7 @@
 # picks and quits by xdotool, and compares screenshots with each other and with what `Headless` renders for the same
 # camera.
 #
-#   tests/hosts/drive.sh [HOST...]      all hosts, or some: winit raster egui vello
+#   tests/hosts/drive.sh [HOST...]      all hosts, or some: winit raster egui vello playground
 #
 # It needs Xvfb, xdotool, Python and a Vulkan driver that can draw to a window. If Xvfb or xdotool is missing and it runs
 # as root, it installs them with apt-get; otherwise it says what it skips and ends with exit code 77.
@@ -17,7 +17,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 hosts=("$@")
-[ ${#hosts[@]} -gt 0 ] || hosts=(winit raster egui vello)
+[ ${#hosts[@]} -gt 0 ] || hosts=(winit raster egui vello playground)
 
 missing=()
 for tool in Xvfb xdotool python3; do
@@ -82,8 +82,9 @@ locate() {
     x=$X y=$Y width=$WIDTH height=$HEIGHT
 }
 
-# Takes a screenshot once two in a row are the same, and no samples remain where the host has a lit picture.
+# Takes a screenshot once four in a row are the same, and no samples remain to be recorded where the host has a lit picture.
 settle() {
+    local same=0
     shot "$1"
     for _ in $(seq 200); do
         sleep 0.7
@@ -91,7 +92,8 @@ settle() {
         mv "$dir/$1.png" "$dir/before.png"
         shot "$1"
         [ "$(grep -E '^(done|refining)$' "$log" | tail -1)" != refining ] || continue
-        [ "$(differ "$1" before)" = 0.000 ] && return
+        if [ "$(differ "$1" before)" = 0.000 ]; then same=$((same + 1)); else same=0; fi
+        [ "$same" -ge 3 ] && return
     done
     give_up "its picture does not come to rest"
 }
@@ -201,6 +203,7 @@ common() {
 
 drive_winit() { common; }
 drive_vello() { common; }
+drive_playground() { common; }
 
 drive_raster() {
     shot turning

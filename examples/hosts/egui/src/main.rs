@@ -12,7 +12,7 @@ mod spheres;
 
 use eframe::egui;
 use eframe::egui_wgpu;
-use pinhole::gpu::{LitState, Picked};
+use pinhole::gpu::{LitProgress, LitState, Picked};
 use pinhole::render::Studio;
 use pinhole::{Integrator, LinearRgb, RenderSettings, Scene, View};
 use pinhole_host_common::{
@@ -55,7 +55,7 @@ struct Panels {
     angle: f64,
     samples: u32,
     background: [f32; 3],
-    is_done: bool,
+    progress: Option<LitProgress>,
     /// Whether a pick has no result yet.
     is_picking: bool,
     picked: Option<Picked>,
@@ -75,7 +75,7 @@ impl Panels {
             angle: -0.7,
             samples: 16,
             background: background().to_array(),
-            is_done: false,
+            progress: None,
             is_picking: false,
             picked: None,
             message: None,
@@ -123,6 +123,10 @@ impl Panels {
                 ui.label(format!("at {place}"))
             }
         };
+        if let Some(progress) = self.progress {
+            ui.separator();
+            ui.label(format!("{} of {} samples", progress.samples, progress.total));
+        }
         if let Some(message) = &self.message {
             ui.separator();
             ui.label(message);
@@ -142,7 +146,7 @@ impl Panels {
         let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
         self.is_picking |= clicked.is_some();
         let (orbit, settings) = (self.orbit, self.settings());
-        let draw = Draw { rect, orbit, settings, clicked };
+        let draw = Draw { context: ui.ctx().clone(), rect, orbit, settings, clicked };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, draw));
     }
 
@@ -157,11 +161,13 @@ impl Panels {
             println!("picked {:?} at {:?}, {color:?}", picked.hit.map(|hit| hit.id), picked.pixel);
             self.picked = Some(picked);
         }
-        let state = spheres.progress().map(|progress| progress.state);
-        let is_done = state == Some(LitState::Done);
-        if std::mem::replace(&mut self.is_done, is_done) != is_done {
-            println!("{}", if is_done { "done" } else { "refining" });
+        let progress = spheres.progress();
+        let [before, now] = [self.progress, progress]
+            .map(|progress| progress.is_some_and(|progress| progress.state == LitState::Done));
+        if now != before {
+            println!("{}", if now { "done" } else { "refining" });
         }
+        self.progress = progress;
         if let Some((film, [x, y])) = spheres.panel().filter(|_| saves) {
             let camera = self.orbit.camera(film.aspect())?;
             println!("panel {}x{}+{x}+{y}", film.width(), film.height());
@@ -187,7 +193,7 @@ impl eframe::App for Panels {
         }
         egui::Panel::left("widgets").show(ui, |ui| self.widgets(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.spheres(ui));
-        if self.is_picking || !self.is_done {
+        if self.is_picking {
             ui.ctx().request_repaint();
         }
     }

@@ -6,8 +6,8 @@ use eframe::egui;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, Picked,
-    Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState,
+    Picked, Picker, Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
@@ -81,6 +81,8 @@ impl Spheres {
 
 /// One drawing of the panel.
 pub(crate) struct Draw {
+    /// Asked for another frame while samples remain.
+    pub(crate) context: egui::Context,
     /// The panel, in points.
     pub(crate) rect: egui::Rect,
     pub(crate) orbit: Orbit,
@@ -168,7 +170,15 @@ impl Draw {
         panel.first_pixel = [left, top];
         panel.shown.set_place(queue, panel.first_pixel);
         panel.lit.set(renderer, device, queue, buffers, &view, &self.settings)?;
-        *progress = budget.record(&mut panel.lit, renderer, queue, encoder, buffers)?;
+        let next = budget.record(&mut panel.lit, renderer, queue, encoder, buffers)?;
+        let is_done = |progress: Option<LitProgress>| {
+            progress.is_some_and(|progress| progress.state == LitState::Done)
+        };
+        // The widgets show in the next frame how far this one has come.
+        if !(is_done(next) && is_done(*progress)) {
+            self.context.request_repaint();
+        }
+        *progress = next;
         if let Some(clicked) = self.clicked {
             let pixel = [clicked.x * scale, clicked.y * scale].map(|place| place as u32);
             let pixel = [pixel[0].saturating_sub(left), pixel[1].saturating_sub(top)];
