@@ -3,7 +3,7 @@
 // provides: overlay
 // needs: HostView, color_for_host
 
-// The host's camera, of which only the place of the picture is used.
+// The host's camera.
 @group(0) @binding(0) var<uniform> view: HostView;
 // Colour layer of the picture.
 @group(0) @binding(1) var color_layer: texture_2d<f32>;

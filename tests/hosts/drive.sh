@@ -86,7 +86,7 @@ locate() {
 settle() {
     local same=0
     shot "$1"
-    for _ in $(seq 200); do
+    for _ in $(seq 600); do
         sleep 0.7
         kill -0 "$host" 2>/dev/null || give_up "it ended by itself"
         mv "$dir/$1.png" "$dir/before.png"

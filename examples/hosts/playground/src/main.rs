@@ -54,7 +54,7 @@ impl Playground {
         let scene = molecule()?;
         let panels = Panels::new(egui, &scene, TIERS.len())?;
         egui.renderer.write().callback_resources.insert(panels);
-        let (orbit, angle, samples) = (Orbit::default(), -0.7, 16);
+        let (orbit, angle, samples) = (Orbit::default(), -0.7, 8);
         Ok(Self { scene, orbit, angle, samples, turn: 0, is_done: false, message: None })
     }
 

@@ -64,7 +64,7 @@ impl Panels {
         let composite = Composite::new(device, &options)?;
         let buffers = SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene)?;
         let panel = |_| Panel {
-            budget: Budget::new(Duration::from_millis(40)),
+            budget: Budget::new(Duration::from_millis(100)),
             shown: None,
             progress: None,
             spent: Duration::ZERO,
