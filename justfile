@@ -29,6 +29,10 @@ doc:
 demo:
     cargo run --release -- demo
 
+# Drives the host programs of examples/hosts in windows of Xvfb.
+hosts *ARGUMENTS:
+    tests/hosts/drive.sh {{ARGUMENTS}}
+
 # Compares structures on this machine's adapter.
 bench *ARGUMENTS:
     cargo run --release -- bench {{ARGUMENTS}}

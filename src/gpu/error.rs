@@ -171,6 +171,11 @@ pub enum GpuError {
     /// `Renderer::record` was called before `Frame::set_view`.
     #[error("the frame has no view yet; call Frame::set_view before Renderer::record")]
     NoView,
+    /// `Composite::draw` was called before `CompositePicture::set_camera`, in a pass with depth.
+    #[error(
+        "the picture has no camera yet; call CompositePicture::set_camera before Composite::draw"
+    )]
+    NoCamera,
     /// The frame was made for a renderer with other targets.
     #[error(
         "the frame was made for a renderer with other targets; create a frame for this renderer"

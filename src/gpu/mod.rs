@@ -42,6 +42,7 @@ pub use host::lit::progress::{LitProgress, LitState, LitSums};
 pub use host::lit::renderer::LitRenderer;
 pub use host::live::picture::{LivePicture, LiveProgress};
 pub use host::pick::{PickError, Picked, PickedHit, Picker};
+pub use host::target_textures::TargetTextures;
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::{DataTargets, Frame, Targets};

@@ -20,6 +20,7 @@ pub struct Composite {
     layout: BindGroupLayout,
     pipeline: RenderPipeline,
     source: ColorTarget,
+    has_depth: bool,
 }
 
 /// A picture to be drawn: the textures of a frame, and the host's camera.
@@ -42,11 +43,11 @@ pub(in crate::gpu) fn cover_kernel() -> Kernel {
     Kernel { entry_point: "cover", parts }
 }
 
-/// The kernel of the pixels, for colours stored as `source`.
+/// The kernel of the pixels, for colours stored as `source`; without a coverage, for a pass without depth.
 pub(in crate::gpu) fn composite_kernel(
     source: ColorTarget,
     encoding: TargetEncoding,
-    coverage: Coverage,
+    coverage: Option<Coverage>,
 ) -> Kernel {
     let stored = match source {
         ColorTarget::Srgb8 => TargetEncoding::Srgb,
@@ -59,12 +60,17 @@ pub(in crate::gpu) fn composite_kernel(
         (TargetEncoding::Linear, TargetEncoding::Srgb) => part!("host/host_color.wgsl", "to-srgb"),
         _ => part!("host/host_color.wgsl", "as-stored"),
     };
-    let depth = match coverage {
-        Coverage::Hits => part!("host/picture_depth.wgsl", "primary"),
-        Coverage::Alpha => part!("host/picture_depth.wgsl", "lit"),
-    };
     let mut parts = shared_parts();
-    parts.extend([part!("host/clip_depth.wgsl"), color, depth, part!("host/composite.wgsl")]);
+    parts.push(color);
+    let depth = match coverage {
+        None => {
+            parts.push(part!("host/overlay.wgsl"));
+            return Kernel { entry_point: "overlay", parts };
+        }
+        Some(Coverage::Hits) => part!("host/picture_depth.wgsl", "primary"),
+        Some(Coverage::Alpha) => part!("host/picture_depth.wgsl", "lit"),
+    };
+    parts.extend([part!("host/clip_depth.wgsl"), depth, part!("host/composite.wgsl")]);
     Kernel { entry_point: "composite", parts }
 }
 
@@ -83,7 +89,9 @@ impl Composite {
     /// # Errors
     /// The same as for [`Composite::new`].
     pub async fn new_async(device: &Device, options: &CompositeOptions) -> Result<Self, GpuError> {
-        let CompositeOptions { source, encoding, coverage, .. } = *options;
+        let CompositeOptions { source, encoding, .. } = *options;
+        let has_depth = options.depth.is_some();
+        let coverage = options.depth.map(|_| options.coverage);
         let kernels = [cover_kernel(), composite_kernel(source, encoding, coverage)];
         let texture = |binding| wgpu::BindGroupLayoutEntry {
             binding,
@@ -100,11 +108,12 @@ impl Composite {
             ty: uniform::<HostView>(),
             ..texture(0)
         };
+        let entries = [view, texture(1), texture(2)];
         let (layout, pipeline) = scoped(device, || {
             let label = Some("pinhole composite");
             let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label,
-                entries: &[view, texture(1), texture(2)],
+                entries: &entries[..if has_depth { 3 } else { 2 }],
             });
             let [vertex, fragment] = kernels.each_ref().map(|kernel| {
                 device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -126,10 +135,10 @@ impl Composite {
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: options.depth.format,
-                    depth_write_enabled: Some(options.depth.write),
-                    depth_compare: Some(options.depth.compare),
+                depth_stencil: options.depth.map(|depth| wgpu::DepthStencilState {
+                    format: depth.format,
+                    depth_write_enabled: Some(depth.write),
+                    depth_compare: Some(depth.compare),
                     stencil: wgpu::StencilState::default(),
                     bias: wgpu::DepthBiasState::default(),
                 }),
@@ -153,25 +162,26 @@ impl Composite {
             (layout, pipeline)
         })
         .await?;
-        Ok(Self { layout, pipeline, source: options.source })
+        Ok(Self { layout, pipeline, source: options.source, has_depth })
     }
 
     /// Draws the picture into the host's render pass, over the viewport that is set there. Spheres are drawn where the
     /// depth test lets them, with the depth that the host's camera gives their points; misses, and hits behind the far
-    /// plane, leave the pixel as it is. Hits in front of the near plane get its depth.
+    /// plane, leave the pixel as it is. Hits in front of the near plane get its depth. In a pass without depth, every
+    /// pixel of the picture is drawn.
     ///
     /// The pipeline and bind group 0 of the pass are then those of the picture. Its viewport, scissor rectangle and
     /// stencil reference stay as they are.
     ///
     /// # Errors
-    /// [`GpuError::NoView`] if the picture has no camera yet.
+    /// [`GpuError::NoCamera`] if the pass has depth and the picture no camera yet.
     pub fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         picture: &CompositePicture,
     ) -> Result<(), GpuError> {
-        if !picture.has_camera {
-            return Err(GpuError::NoView);
+        if self.has_depth && !picture.has_camera {
+            return Err(GpuError::NoCamera);
         }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &picture.group, &[]);
@@ -181,11 +191,11 @@ impl Composite {
 }
 
 impl CompositePicture {
-    /// A picture in the targets of a frame, which must have data layers. The textures of colour and depth must also
-    /// have the usage `TEXTURE_BINDING`.
+    /// A picture in the targets of a frame, which must have data layers if the pass has depth. The textures of colour
+    /// and depth must also have the usage `TEXTURE_BINDING`. Its top left pixel is that of the host's attachments.
     ///
     /// # Errors
-    /// If there are no data layers, or a texture has another format or usage.
+    /// If there are no data layers but the pass has depth, or a texture has another format or usage.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new(
         composite: &Composite,
@@ -204,17 +214,19 @@ impl CompositePicture {
         device: &Device,
         targets: &Targets<'_>,
     ) -> Result<Self, GpuError> {
-        let Some(data) = &targets.data else {
-            return Err(GpuError::Target {
-                layer: "data",
-                found: "absent".to_owned(),
-                expected: "present, with the depth of every pixel".to_owned(),
-            });
-        };
-        for (layer, view, format) in [
-            ("color", targets.color, composite.source.texture_format()),
-            ("depth", data.depth, DEPTH_FORMAT),
-        ] {
+        let mut layers = vec![("color", targets.color, composite.source.texture_format())];
+        match &targets.data {
+            _ if !composite.has_depth => {}
+            Some(data) => layers.push(("depth", data.depth, DEPTH_FORMAT)),
+            None => {
+                return Err(GpuError::Target {
+                    layer: "data",
+                    found: "absent".to_owned(),
+                    expected: "present, with the depth of every pixel".to_owned(),
+                });
+            }
+        }
+        for &(layer, view, format) in &layers {
             let texture = view.texture();
             let refused = |found, expected| Err(GpuError::Target { layer, found, expected });
             if texture.format() != format {
@@ -225,13 +237,13 @@ impl CompositePicture {
                 return refused(format!("{:?}", texture.usage()), expected);
             }
         }
+        let texture = targets.color.texture();
+        let size = [texture.width(), texture.height()];
         let (view, group) = scoped(device, || {
-            let view = HostView::buffer(device);
-            let resources = [
-                view.as_entire_binding(),
-                wgpu::BindingResource::TextureView(targets.color),
-                wgpu::BindingResource::TextureView(data.depth),
-            ];
+            let view = HostView::buffer(device, &HostView::without_camera(size, [0, 0]));
+            let textures =
+                layers.iter().map(|(_, view, _)| wgpu::BindingResource::TextureView(view));
+            let resources = std::iter::once(view.as_entire_binding()).chain(textures);
             let entries: Vec<_> = (0..)
                 .zip(resources)
                 .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
@@ -244,8 +256,6 @@ impl CompositePicture {
             (view, group)
         })
         .await?;
-        let texture = targets.color.texture();
-        let size = [texture.width(), texture.height()];
         Ok(Self { group, view, size, has_camera: false })
     }
 
@@ -257,5 +267,15 @@ impl CompositePicture {
         let view = HostView::new(camera, self.size, first_pixel);
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.has_camera = true;
+    }
+
+    /// Sets the pixel of the host's attachments at which the top left pixel of the picture is drawn, for a pass without
+    /// depth. A pass with depth needs a camera.
+    ///
+    /// The values are queued on `queue` and take effect with its next submission.
+    pub fn set_place(&mut self, queue: &Queue, first_pixel: [u32; 2]) {
+        let view = HostView::without_camera(self.size, first_pixel);
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        self.has_camera = false;
     }
 }

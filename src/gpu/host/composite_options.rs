@@ -19,10 +19,11 @@ pub struct CompositeOptions {
     /// How colours are joined with what the attachment contains. Colours have alpha multiplied in. Pictures of primary
     /// rays are opaque where spheres are, so `None` gives the same for them.
     pub blend: Option<BlendState>,
-    /// Which pixels are drawn.
+    /// Which pixels are drawn, if there is a depth attachment.
     pub coverage: Coverage,
-    /// The depth attachment.
-    pub depth: CompositeDepth,
+    /// The depth attachment, if there is one. Without it every pixel of the picture is drawn, also where there is no
+    /// sphere.
+    pub depth: Option<CompositeDepth>,
     /// Number of samples of each pixel of the attachments: 1 or 4. All samples of a pixel get the same colour and depth.
     pub sample_count: u32,
 }
@@ -66,6 +67,13 @@ impl CompositeOptions {
     /// without sRGB in their name are taken to hold encoded colours, as on most screens, and others linear light.
     #[must_use]
     pub fn new(format: TextureFormat, depth: CompositeDepth) -> Self {
+        Self { depth: Some(depth), ..Self::without_depth(format) }
+    }
+
+    /// A render pass like that of [`CompositeOptions::new`] without a depth attachment, such as that of a window or of a
+    /// toolkit.
+    #[must_use]
+    pub fn without_depth(format: TextureFormat) -> Self {
         let is_encoded = matches!(format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm);
         Self {
             source: ColorTarget::default(),
@@ -73,7 +81,7 @@ impl CompositeOptions {
             encoding: if is_encoded { TargetEncoding::Srgb } else { TargetEncoding::Linear },
             blend: None,
             coverage: Coverage::Hits,
-            depth,
+            depth: None,
             sample_count: 1,
         }
     }

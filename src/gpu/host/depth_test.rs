@@ -167,7 +167,7 @@ impl HostDepth {
         texture: &wgpu::TextureView,
     ) -> Result<Self, GpuError> {
         let (view, group) = scoped(device, || {
-            let view = HostView::buffer(device);
+            let view = HostView::buffer(device, &HostView::without_camera([0, 0], [0, 0]));
             let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("pinhole host depth"),
                 layout: &test.layout,

@@ -45,13 +45,25 @@ impl HostView {
         }
     }
 
-    /// A buffer for the record.
-    pub(in crate::gpu) fn buffer(device: &wgpu::Device) -> wgpu::Buffer {
-        device.create_buffer(&wgpu::BufferDescriptor {
+    /// The place of a picture in a pass without depth.
+    pub(in crate::gpu) fn without_camera(size: [u32; 2], first_pixel: [u32; 2]) -> Self {
+        let [size, first_pixel] = [size, first_pixel].map(|of| of.map(|n| n as f32));
+        Self { size, first_pixel, ..Self::zeroed() }
+    }
+
+    /// A buffer that contains a record.
+    pub(in crate::gpu) fn buffer(device: &wgpu::Device, record: &Self) -> wgpu::Buffer {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("pinhole host view"),
             size: size_of::<Self>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
+            mapped_at_creation: true,
+        });
+        // The device reports what goes wrong here in the caller's error scope.
+        if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
+            bytes.copy_from_slice(bytemuck::bytes_of(record));
+        }
+        buffer.unmap();
+        buffer
     }
 }

@@ -9,6 +9,7 @@ pub(in crate::gpu) mod host_view;
 pub(in crate::gpu) mod lit;
 pub(in crate::gpu) mod live;
 pub(in crate::gpu) mod pick;
+pub(in crate::gpu) mod target_textures;
 
 /// The kernels of everything here.
 pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
@@ -20,7 +21,7 @@ pub(in crate::gpu) fn kernels() -> Vec<crate::gpu::shader::Kernel> {
     kernels.extend(depth_test::LIMITED.map(depth_test::limit_kernel));
     for source in [ColorTarget::Srgb8, ColorTarget::Linear16] {
         for encoding in [TargetEncoding::Linear, TargetEncoding::Srgb] {
-            for coverage in [Coverage::Hits, Coverage::Alpha] {
+            for coverage in [None, Some(Coverage::Hits), Some(Coverage::Alpha)] {
                 kernels.push(composite::composite_kernel(source, encoding, coverage));
             }
         }

@@ -26,7 +26,7 @@ fn validate(kernel: &Kernel) -> Result<naga::Module, String> {
 }
 
 /// The parts with entry points of render passes.
-const RENDERED: [&str; 2] = ["host/composite.wgsl", "host/cover.wgsl"];
+const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];
 
 #[test]
 fn every_kernel_composes_and_validates() {

@@ -329,5 +329,5 @@ fn refused(_: &'static Headless) {
     let mut encoder = stage.host.encoder();
     let (color, depth) = (view_of(&color), view_of(&depth));
     let mut pass = begin(&mut encoder, &color, None, &depth, Some(1.0));
-    assert_eq!(composite.draw(&mut pass, &picture), Err(GpuError::NoView));
+    assert_eq!(composite.draw(&mut pass, &picture), Err(GpuError::NoCamera));
 }

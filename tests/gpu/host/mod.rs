@@ -7,6 +7,7 @@ mod depth_out;
 mod limit;
 mod lit;
 mod live;
+mod overlay;
 mod pick;
 mod same_picture;
 mod stage;
@@ -18,6 +19,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     [
         same_picture::trials(),
         depth_out::trials(),
+        overlay::trials(),
         triangle::trials(),
         depth_in::trials(),
         limit::trials(),

@@ -1,0 +1,115 @@
+//! Pictures in passes without depth, and textures that pinhole makes for a host.
+
+use libtest_mimic::Trial;
+use pinhole::camera::PanoramaCamera;
+use pinhole::gpu::{
+    Composite, CompositeOptions, CompositePicture, Frame, GpuError, Headless, Renderer,
+    RendererOptions, TargetTextures, Targets, wgpu,
+};
+use pinhole::{Film, Scene, View};
+use wgpu::{TextureFormat, TextureUsages};
+
+use super::stage::{FIRST, SIZE, Stage, TARGET, pixels, pose, settings};
+use crate::embedding::view_of;
+use crate::support::hosts::Convention;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("host::overlay::draws_every_pixel_of_any_camera", every_pixel),
+        trial("host::overlay::makes_textures_for_a_renderer", textures),
+    ]
+}
+
+/// Without depth and data layers, the bytes in the host's attachment are those of the picture, hits and misses alike, and
+/// nothing else is drawn to.
+fn every_pixel(headless: &'static Headless) {
+    let stage = Stage::new(Convention::Perspective);
+    let device = &stage.host.device;
+    let renderer = Renderer::new(device, &RendererOptions::default()).unwrap();
+    let textures = TargetTextures::new(&renderer, device, SIZE).unwrap();
+    let targets = textures.targets();
+    assert_eq!((textures.size(), targets.data.is_none()), (SIZE, true));
+    let mut frame = Frame::new(&renderer, device, &targets).unwrap();
+    // No host has matrices of this camera.
+    let camera = PanoramaCamera::new(pose());
+    let view = View::new(&camera, Film::new(SIZE[0], SIZE[1]).unwrap());
+    let scene = Scene::new(&stage.spheres).unwrap();
+    let uploaded =
+        pinhole::gpu::SceneBuffers::new(&renderer, device, &stage.host.queue, &scene).unwrap();
+    frame.set_view(&stage.host.queue, &uploaded, &view, &settings()).unwrap();
+    let expected = headless.render(&scene, &view, &settings(), pinhole::LayerSet::COLOR).unwrap();
+
+    for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba8UnormSrgb] {
+        let composite = Composite::new(device, &CompositeOptions::without_depth(format)).unwrap();
+        let mut picture = CompositePicture::new(&composite, device, &targets).unwrap();
+        for first in [[0, 0], FIRST] {
+            if first == FIRST {
+                picture.set_place(&stage.host.queue, first);
+            }
+            let color = stage.attachment(format, 1);
+            let mut encoder = stage.host.encoder();
+            renderer.record(&mut encoder, &uploaded, &frame).unwrap();
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view_of(&color),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations::default(),
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            composite.draw(&mut pass, &picture).unwrap();
+            drop(pass);
+            let bytes = stage.host.submit_and_read(encoder, &color);
+            let texel = |[x, y]: [u32; 2]| {
+                let at = 4 * (y * TARGET[0] + x) as usize;
+                [0, 1, 2, 3].map(|channel| bytes[at + channel])
+            };
+            let mut colors = std::collections::BTreeSet::new();
+            for pixel in pixels() {
+                let light = expected.color()[(pixel[1] * SIZE[0] + pixel[0]) as usize];
+                let [r, g, b] = pinhole::image::color::to_srgb8(light);
+                let found = texel([pixel[0] + first[0], pixel[1] + first[1]]);
+                assert_eq!(found, [r, g, b, 255], "{format:?} {first:?} {pixel:?}");
+                colors.insert(found);
+            }
+            assert!(colors.len() > 5, "{colors:?}");
+            let outside = [first[0] + SIZE[0], first[1] + SIZE[1]];
+            assert_eq!([texel([outside[0], 10]), texel([10, outside[1]])], [[0; 4]; 2]);
+        }
+    }
+}
+
+fn textures(_: &'static Headless) {
+    let stage = Stage::new(Convention::Perspective);
+    let device = &stage.host.device;
+    for data_layers in [false, true] {
+        let options = RendererOptions { data_layers, ..RendererOptions::default() };
+        let renderer = Renderer::new(device, &options).unwrap();
+        let textures = TargetTextures::new(&renderer, device, SIZE).unwrap();
+        let targets = textures.targets();
+        assert_eq!(targets.data.is_some(), data_layers);
+        Frame::new(&renderer, device, &targets).unwrap();
+        let views = targets.data.iter().flat_map(|data| [data.depth, data.normal, data.id]);
+        for view in std::iter::once(targets.color).chain(views) {
+            let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+            assert!(view.texture().usage().contains(usage));
+        }
+        // A pass with depth needs data layers.
+        let composite = stage.composite(TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float, 1);
+        let picture = CompositePicture::new(&composite, device, &targets);
+        assert_eq!(picture.is_ok(), data_layers, "{picture:?}");
+        for size in [[0, 5], [u32::MAX, 5]] {
+            let error = TargetTextures::new(&renderer, device, size).unwrap_err();
+            assert!(matches!(error, GpuError::Device { .. }), "{error}");
+        }
+    }
+    // A texture that cannot be drawn is refused without depth, too.
+    let composite =
+        Composite::new(device, &CompositeOptions::without_depth(TextureFormat::Rgba8Unorm))
+            .unwrap();
+    let wrong = view_of(&stage.layers.depth);
+    let error = CompositePicture::new(&composite, device, &Targets { color: &wrong, data: None });
+    assert!(matches!(error, Err(GpuError::Target { layer: "color", .. })), "{error:?}");
+}
