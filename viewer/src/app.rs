@@ -1,0 +1,593 @@
+//! The window: what is shown, and how pointer and keys change it.
+
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use pinhole::camera::Camera;
+use pinhole::glam::DVec3;
+use pinhole_cli::viewing::{RenderFlags, StillPicture, ViewCamera, ViewError};
+
+use crate::Ending;
+use crate::details::Details;
+use crate::orbit::Orbit;
+use crate::panels::Fields;
+use crate::quick::{Quick, Sight};
+use crate::save::Saving;
+use crate::state::State;
+use crate::worker::{Message, News, Window, Worker};
+
+/// How long nothing moves before still pictures are rendered.
+const STILL_AFTER: Duration = Duration::from_millis(120);
+
+/// The environment variable that lets the viewer say on standard error what happens.
+const LOG: &str = "PINHOLE_VIEWER_LOG";
+
+/// The window and all that it shows.
+pub(crate) struct App {
+    pub(crate) state: State,
+    pub(crate) worker: Worker,
+    pub(crate) quick: Quick,
+    pub(crate) news: Option<Box<News>>,
+    pub(crate) orbit: Option<Orbit>,
+    pub(crate) still: Option<Still>,
+    pub(crate) picked: Option<Details>,
+    pub(crate) fields: Fields,
+    pub(crate) player: Player,
+    pub(crate) saving: Option<Saving>,
+    /// What went wrong, until the user closes it or something else goes right.
+    pub(crate) error: Option<String>,
+    /// What the last action did.
+    pub(crate) said: String,
+    /// Since when a file is read.
+    pub(crate) busy: Option<Instant>,
+    pub(crate) rate: Rate,
+    /// When the state changed, until the worker is asked for it.
+    changed: Option<Instant>,
+    /// When the camera moved last.
+    moved: Option<Instant>,
+    /// The quick picture that is shown: its state, and whether it was a moving one.
+    seen: Option<(u64, bool)>,
+    /// Whether the next result of a pick becomes the point that the camera turns around.
+    centers: bool,
+    ending: Ending,
+    logs: bool,
+}
+
+/// A still picture in the window.
+pub(crate) struct Still {
+    state: u64,
+    texture: egui::TextureHandle,
+    pub(crate) samples: u32,
+    pub(crate) total: u32,
+}
+
+/// Plays the frames of a trajectory.
+pub(crate) struct Player {
+    pub(crate) plays: bool,
+    pub(crate) frames_per_second: f32,
+    last: Instant,
+}
+
+/// Counts quick pictures.
+pub(crate) struct Rate {
+    since: Instant,
+    before: u64,
+    /// Pictures a second, while the camera moves.
+    pub(crate) value: Option<f64>,
+}
+
+impl App {
+    pub(crate) fn new(
+        creation: &eframe::CreationContext<'_>,
+        state: State,
+        worker: Worker,
+        first: Option<Message>,
+        ending: Ending,
+    ) -> Result<Self, String> {
+        let render = creation.wgpu_render_state.clone().ok_or("the window has no device")?;
+        let context = creation.egui_ctx.clone();
+        crate::panels::dress(&context);
+        let (device, queue) = (render.device.clone(), render.queue.clone());
+        worker.attach(Window { context, device, queue });
+        let now = Instant::now();
+        let mut app = Self {
+            fields: Fields::of(&state),
+            state,
+            worker,
+            quick: Quick::new(render),
+            news: None,
+            orbit: None,
+            still: None,
+            picked: None,
+            player: Player { plays: false, frames_per_second: 10.0, last: now },
+            saving: None,
+            error: None,
+            said: String::new(),
+            busy: Some(now),
+            rate: Rate { since: now, before: 0, value: None },
+            changed: Some(now),
+            moved: None,
+            seen: None,
+            centers: false,
+            ending,
+            logs: std::env::var_os(LOG).is_some(),
+        };
+        if let Some(first) = first {
+            app.hear(first, &creation.egui_ctx);
+        }
+        Ok(app)
+    }
+
+    /// Says what happens, for tests and measurements.
+    pub(crate) fn log(&self, text: impl FnOnce() -> String) {
+        if self.logs {
+            pinhole_cli::viewing::print_note(&text());
+        }
+    }
+
+    /// Changes the flags, or shows why that is not possible.
+    pub(crate) fn change(&mut self, change: impl FnOnce(&mut RenderFlags)) {
+        match self.state.change(change) {
+            Ok(true) => {
+                self.error = None;
+                self.mark();
+            }
+            Ok(false) => {}
+            Err(error) => self.error = Some(error.to_string()),
+        }
+    }
+
+    /// Notes that the state changed.
+    fn mark(&mut self) {
+        self.worker.cancel();
+        self.changed = Some(Instant::now());
+    }
+
+    /// Moves the camera.
+    pub(crate) fn fly(&mut self, motion: impl FnOnce(&mut Orbit)) {
+        let Some(orbit) = &mut self.orbit else { return };
+        motion(orbit);
+        orbit.camera.write_to(&mut self.state.flags);
+        self.state.number += 1;
+        self.moved = Some(Instant::now());
+        self.mark();
+    }
+
+    /// Lets the camera frame everything from the side from which it looks.
+    pub(crate) fn fit(&mut self) {
+        let Some(camera) = self.orbit.as_ref().map(|orbit| orbit.camera.clone()) else { return };
+        self.change(|flags| camera.write_fit_to(flags));
+    }
+
+    /// Keeps the camera where it is, whatever the spheres do.
+    pub(crate) fn hold_camera(&mut self) {
+        if let Some(orbit) = self.orbit.as_ref().filter(|_| self.state.flags.get("eye").is_none()) {
+            let camera = orbit.camera.clone();
+            self.change(|flags| camera.write_to(flags));
+        }
+    }
+
+    /// Shows another frame.
+    pub(crate) fn go_to(&mut self, frame: usize) {
+        self.hold_camera();
+        self.change(|flags| flags.set("frame", &frame.to_string()));
+    }
+
+    /// Copies the command that renders what is seen.
+    pub(crate) fn copy(&mut self, context: &egui::Context) {
+        let command = self.state.command();
+        pinhole_cli::viewing::print_line(&command);
+        context.copy_text(command);
+        self.said = "copied the command line".to_owned();
+    }
+
+    /// Saves the picture.
+    pub(crate) fn save(&mut self, context: &egui::Context) {
+        let (flags, output) = (self.state.saved(), self.state.output.clone());
+        match Saving::start(flags, output, context.clone()) {
+            Ok(saving) => (self.saving, self.error) = (Some(saving), None),
+            Err(error) => self.error = Some(format!("a thread cannot be started: {error}")),
+        }
+    }
+
+    fn is_moving(&self) -> bool {
+        self.moved.is_some_and(|moved| moved.elapsed() < STILL_AFTER)
+    }
+
+    /// Whether the still picture in the window is that of the state.
+    pub(crate) fn current_still(&self) -> Option<&Still> {
+        self.still.as_ref().filter(|still| still.state == self.state.number)
+    }
+
+    fn hear(&mut self, message: Message, context: &egui::Context) {
+        match message {
+            Message::Shown(news) => self.learn(news),
+            Message::Still { state, picture } => self.take_still(state, picture, context),
+            Message::Note(note) => self.said = note,
+            Message::Failed { state, error } => self.fail(state, error, context),
+        }
+    }
+
+    fn learn(&mut self, news: Box<News>) {
+        if let Some(quick) = &news.quick {
+            self.quick.set_scene(quick.clone());
+            self.seen = None;
+        }
+        let is_new = |old: &News| !Arc::ptr_eq(&old.scene, &news.scene);
+        if self.news.as_deref().is_none_or(is_new) {
+            let (scene, columns) = (&news.scene, &news.columns);
+            let same = |old: &News| old.scene.len() == scene.len();
+            let keeps = self.news.as_deref().is_some_and(same);
+            let picked = self.picked.take().filter(|_| keeps);
+            self.picked = picked.and_then(|old| Details::of(scene, columns, old.id));
+            self.log(|| format!("shown: {} spheres", scene.len()));
+        }
+        if news.state == self.state.number {
+            let bounds = news.scene.bounds_to_frame();
+            let camera = ViewCamera::new(&news.camera);
+            let length = bounds.size().length();
+            self.orbit = camera.map(|camera| Orbit::new(camera, bounds.center(), length));
+            self.busy = None;
+        }
+        self.news = Some(news);
+    }
+
+    fn take_still(&mut self, state: u64, picture: StillPicture, context: &egui::Context) {
+        if state != self.state.number {
+            return;
+        }
+        let size = picture.size.map(|side| side as usize);
+        let image = egui::ColorImage::from_rgba_unmultiplied(size, &picture.rgba);
+        let (samples, total) = (picture.samples, picture.total);
+        self.log(|| format!("still: {samples} of {total} samples"));
+        let options = egui::TextureOptions::LINEAR;
+        match &mut self.still {
+            Some(still) => {
+                still.texture.set(image, options);
+                (still.state, still.samples, still.total) = (state, samples, total);
+            }
+            None => {
+                let texture = context.load_texture("still picture", image, options);
+                self.still = Some(Still { state, texture, samples, total });
+            }
+        }
+    }
+
+    /// Shows what failed, and goes back to what was shown before. Without anything before, the program ends.
+    fn fail(&mut self, state: u64, error: ViewError, context: &egui::Context) {
+        if self.news.is_none() {
+            *self.ending.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+            return;
+        }
+        self.log(|| format!("failed: {error}"));
+        self.error = Some(error.to_string());
+        if state != self.state.number {
+            return;
+        }
+        (self.player.plays, self.busy) = (false, None);
+        let Some(news) = &self.news else { return };
+        let mut before = news.flags.clone();
+        before.remove("size");
+        if before != self.state.flags {
+            self.state.flags = before;
+            self.state.number += 1;
+            self.mark();
+        }
+    }
+
+    /// Asks the worker for what is to be shown.
+    fn ask(&mut self, context: &egui::Context) {
+        let Some(changed) = self.changed else { return };
+        let request = self.state.request(!self.player.plays);
+        let is_read = self.news.as_ref().is_some_and(|news| request.flags.has_data_of(&news.flags));
+        if is_read && (self.is_moving() || changed.elapsed() < STILL_AFTER) {
+            context.request_repaint_after(STILL_AFTER);
+            return;
+        }
+        if !is_read {
+            self.busy.get_or_insert_with(Instant::now);
+        }
+        self.changed = None;
+        self.worker.ask(request);
+    }
+
+    fn play(&mut self, context: &egui::Context) {
+        if !self.player.plays {
+            return;
+        }
+        let Some(line) = self.news.as_ref().and_then(|news| news.time_line.clone()) else {
+            self.player.plays = false;
+            return;
+        };
+        let step = Duration::from_secs_f32(1.0 / self.player.frames_per_second.max(0.1));
+        let is_shown = self.busy.is_none() && self.changed.is_none();
+        if is_shown && self.player.last.elapsed() >= step {
+            self.player.last = Instant::now();
+            self.go_to((line.frame + 1) % line.count);
+        }
+        context.request_repaint_after(step.min(Duration::from_millis(30)));
+    }
+
+    /// Starts or stops playing. Still pictures are rendered when it stops.
+    pub(crate) fn toggle_play(&mut self) {
+        self.player.plays = !self.player.plays;
+        if !self.player.plays {
+            self.mark();
+        }
+    }
+
+    fn keys(&mut self, context: &egui::Context) {
+        if context.egui_wants_keyboard_input() {
+            return;
+        }
+        use egui::Key;
+        let pressed = |key| context.input(|input| input.key_pressed(key));
+        let with_command = context.input(|input| input.modifiers.command);
+        let line = self.news.as_ref().and_then(|news| news.time_line.clone());
+        let copies =
+            context.input(|input| input.events.iter().any(|e| matches!(e, egui::Event::Copy)));
+        if copies {
+            self.copy(context);
+        }
+        if with_command && pressed(Key::S) {
+            self.save(context);
+        }
+        if with_command && pressed(Key::Q) {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if with_command {
+            return;
+        }
+        if pressed(Key::F) {
+            self.fit();
+        }
+        if pressed(Key::Escape) {
+            (self.picked, self.error) = (None, None);
+        }
+        if let Some(line) = line {
+            if pressed(Key::Space) {
+                self.toggle_play();
+            }
+            if pressed(Key::ArrowRight) {
+                self.go_to((line.frame + 1) % line.count);
+            }
+            if pressed(Key::ArrowLeft) {
+                self.go_to((line.frame + line.count - 1) % line.count);
+            }
+        }
+    }
+
+    /// The camera of what is to be seen, for the picture in the window.
+    fn camera(&self) -> Option<Box<dyn Camera>> {
+        let (news, orbit) = (self.news.as_ref()?, self.orbit.as_ref()?);
+        let [width, height] = self.state.window.map(f64::from);
+        let mut camera = orbit.camera.clone();
+        camera.set_aspect(width / height);
+        camera.parameters().ok()?.camera(width / height, &news.scene.subject()).ok()
+    }
+
+    /// Shows the picture, and lets the pointer move it.
+    pub(crate) fn picture(&mut self, ui: &mut egui::Ui) {
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let rect = fitted(ui.available_rect_before_wrap(), self.state.size, pixels_per_point);
+        let window = [rect.width(), rect.height()]
+            .map(|side| ((side * pixels_per_point).round() as u32).max(1));
+        let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
+        if self.state.resize(window) {
+            self.mark();
+        }
+        self.pointer(ui, &response);
+        self.see(ui.ctx());
+        let painter = ui.painter_at(rect);
+        painter.add(self.quick.callback(rect));
+        let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+        let texture = match self.current_still() {
+            Some(still) => Some(still.texture.id()),
+            None => self.quick.texture().map(|(texture, _)| texture),
+        };
+        if let Some(texture) = texture.filter(|_| self.news.is_some()) {
+            painter.image(texture, rect, whole, egui::Color32::WHITE);
+        }
+        self.marker(&painter, rect);
+        self.overlay(ui, rect);
+    }
+
+    fn pointer(&mut self, ui: &egui::Ui, response: &egui::Response) {
+        use egui::PointerButton::{Middle, Primary, Secondary};
+        let height = f64::from(response.rect.height().max(1.0));
+        let by = response.drag_delta();
+        let parts = [f64::from(by.x) / height, f64::from(by.y) / height];
+        let (shift, command) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
+        let is_pan = response.dragged_by(Secondary)
+            || response.dragged_by(Middle)
+            || response.dragged_by(Primary) && shift;
+        if by != egui::Vec2::ZERO {
+            if is_pan {
+                let height = self.height_at_pivot();
+                self.fly(|orbit| orbit.pan(parts, height));
+            } else if response.dragged_by(Primary) && command {
+                self.fly(|orbit| orbit.roll(-std::f64::consts::TAU * parts[0]));
+            } else if response.dragged_by(Primary) {
+                self.fly(|orbit| orbit.turn(parts));
+            }
+        } else if response.dragged() {
+            // A button that is held still moves nothing, but may do so again.
+            self.moved = self.moved.map(|_| Instant::now());
+        }
+        if response.hovered() {
+            let wheel = ui.input(|input| input.smooth_scroll_delta().y);
+            let pinch = ui.input(|input| input.zoom_delta());
+            if wheel != 0.0 {
+                self.fly(|orbit| orbit.zoom(f64::from(wheel)));
+            }
+            if pinch != 1.0 {
+                self.fly(|orbit| orbit.zoom(f64::from(pinch.ln()) / 0.003));
+            }
+        }
+        if (response.clicked() || response.double_clicked())
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            self.centers = response.double_clicked();
+            let part = (at - response.rect.min) / response.rect.size();
+            // The id under a pixel is that of a picture of all pixels.
+            self.look(false);
+            self.quick.pick([f64::from(part.x), f64::from(part.y)]);
+        }
+    }
+
+    /// The height of the picture at the depth of the pivot.
+    fn height_at_pivot(&self) -> f64 {
+        let (Some(camera), Some(orbit)) = (self.camera(), &self.orbit) else { return 0.0 };
+        let vectors = camera.vectors();
+        let up = 2.0 * vectors.up.length();
+        if orbit.camera.is_orthographic() {
+            return up;
+        }
+        let forward = vectors.forward.length();
+        let depth = (orbit.pivot - vectors.origin).dot(vectors.forward) / forward;
+        up / forward * depth.abs()
+    }
+
+    /// Renders a quick picture if what is shown is an older one.
+    fn see(&mut self, context: &egui::Context) {
+        let is_moving = self.is_moving();
+        let wanted = (self.state.number, is_moving);
+        if self.quick.is_busy() {
+            context.request_repaint_after(Duration::from_millis(4));
+        } else if self.seen != Some(wanted)
+            && (is_moving || self.current_still().is_none())
+            && self.seen != Some((self.state.number, false))
+        {
+            self.look(is_moving);
+        }
+        if is_moving {
+            context.request_repaint_after(STILL_AFTER / 2);
+        }
+        while let Some(picked) = self.quick.picked() {
+            self.show_picked(picked.hit);
+        }
+        if self.quick.is_picking() {
+            context.request_repaint_after(Duration::from_millis(4));
+        }
+        if let Some(error) = self.quick.take_error() {
+            self.error = Some(format!("the window's device: {error}"));
+        }
+        self.count(is_moving);
+    }
+
+    /// Renders a quick picture of the present state.
+    fn look(&mut self, is_moving: bool) {
+        let (Some(camera), Some(news)) = (self.camera(), &self.news) else { return };
+        let settings = &news.settings;
+        let background = settings.visible_background().unwrap_or(settings.background);
+        let size = self.state.window;
+        self.quick.see(Sight { camera, background, size, is_moving });
+        self.seen = Some((self.state.number, is_moving));
+    }
+
+    fn show_picked(&mut self, hit: Option<pinhole::gpu::PickedHit>) {
+        let news = self.news.as_ref();
+        self.picked = hit.and_then(|hit| {
+            let news = news?;
+            Details::of(&news.scene, &news.columns, hit.id)
+        });
+        self.log(|| match &self.picked {
+            Some(details) => format!("picked: id {} {}", details.id, details.title()),
+            None => "picked: nothing".to_owned(),
+        });
+        if let Some(details) = self.picked.as_ref().filter(|_| self.centers) {
+            let center = details.center;
+            self.fly(|orbit| orbit.move_to(center));
+        }
+    }
+
+    fn count(&mut self, is_moving: bool) {
+        let (now, count) = (Instant::now(), self.quick.count());
+        if !is_moving && !self.player.plays {
+            (self.rate.since, self.rate.before, self.rate.value) = (now, count, None);
+            return;
+        }
+        let elapsed = (now - self.rate.since).as_secs_f64();
+        if elapsed >= 1.0 {
+            let value = (count - self.rate.before) as f64 / elapsed;
+            self.rate = Rate { since: now, before: count, value: Some(value) };
+            let size = self.quick.texture().map_or([0, 0], |(_, size)| size);
+            self.log(|| format!("rate: {value:.1} pictures/s of {}x{}", size[0], size[1]));
+        }
+    }
+
+    /// Draws a ring around the sphere that was picked.
+    fn marker(&self, painter: &egui::Painter, rect: egui::Rect) {
+        let (Some(details), Some(camera)) = (&self.picked, self.camera()) else { return };
+        let up = camera.vectors().up.normalize_or_zero();
+        let at = |point: DVec3| {
+            let location = camera.location_of(point)?;
+            let (x, y) = (0.5 + 0.5 * location.x, 0.5 - 0.5 * location.y);
+            Some(rect.min + egui::vec2(x as f32 * rect.width(), y as f32 * rect.height()))
+        };
+        let (Some(middle), Some(edge)) =
+            (at(details.center), at(details.center + details.radius * up))
+        else {
+            return;
+        };
+        let radius = (edge - middle).length().max(4.0) + 2.0;
+        painter.circle_stroke(middle, radius, egui::Stroke::new(3.5, egui::Color32::WHITE));
+        let ring = egui::Stroke::new(1.5, egui::Color32::from_rgb(214, 96, 0));
+        painter.circle_stroke(middle, radius, ring);
+    }
+}
+
+/// The part of a rectangle that a picture of this size fills, on whole pixels.
+fn fitted(rect: egui::Rect, size: Option<[u32; 2]>, pixels_per_point: f32) -> egui::Rect {
+    let mut sides = rect.size();
+    if let Some([width, height]) = size.map(|size| size.map(|side| side.max(1) as f32)) {
+        let scale = (sides.x / width).min(sides.y / height);
+        sides = egui::vec2(width * scale, height * scale);
+    }
+    let to_pixels = |point: f32| (point * pixels_per_point).round() / pixels_per_point;
+    let min = rect.center() - 0.5 * sides;
+    let min = egui::pos2(to_pixels(min.x), to_pixels(min.y));
+    egui::Rect::from_min_size(min, egui::vec2(to_pixels(sides.x), to_pixels(sides.y)))
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        while let Some(message) = self.worker.message() {
+            self.hear(message, &context);
+        }
+        if let Some(saving) = &self.saving
+            && let Some(result) = saving.result()
+        {
+            match result {
+                Ok(()) => {
+                    let seconds = saving.started.elapsed().as_secs_f64();
+                    self.said = format!("saved {} ({seconds:.1} s)", saving.output);
+                    self.log(|| self.said.clone());
+                }
+                Err(error) => {
+                    self.log(|| format!("failed: {error}"));
+                    self.error = Some(error.to_string());
+                }
+            }
+            self.saving = None;
+        }
+        if context.input(|input| input.viewport().close_requested()) && self.saving.is_some() {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.said = "the window closes when the picture is saved".to_owned();
+            self.fields.closes = true;
+        } else if self.fields.closes && self.saving.is_none() {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        self.keys(&context);
+        self.panels(ui);
+        self.play(&context);
+        self.ask(&context);
+    }
+
+    fn on_exit(&mut self) {
+        self.worker.close();
+    }
+}

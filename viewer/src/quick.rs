@@ -1,0 +1,325 @@
+//! Quick pictures: primary rays on the window's own device, recorded into the window's encoder.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use eframe::{egui, wgpu};
+use pinhole::camera::film::Film;
+use pinhole::camera::{Camera, View};
+use pinhole::gpu::{DataTargets, Frame, Picked, Picker, RendererOptions, Targets};
+use pinhole::image::color::LinearRgb;
+use pinhole::render::RenderSettings;
+use wgpu::{TextureFormat, TextureUsages};
+
+use crate::worker::QuickScene;
+
+/// How long a picture may take while the camera moves. Slower ones get fewer pixels.
+const MOVING: Duration = Duration::from_millis(55);
+
+/// The sides of pictures while the camera moves, as parts of the whole.
+const PARTS: [f64; 4] = [1.0, 0.6, 0.4, 0.25];
+
+/// The quick picture of the window. It is shared with what egui calls to record it.
+#[derive(Clone)]
+pub(crate) struct Quick(Arc<Mutex<State>>);
+
+struct State {
+    render: RenderState,
+    scene: Option<QuickScene>,
+    targets: Option<TargetSet>,
+    camera: Option<Box<dyn Camera>>,
+    picker: Option<Picker>,
+    /// A picture that is to be recorded.
+    is_due: bool,
+    /// A pixel that is to be picked in the picture.
+    pick: Option<[u32; 2]>,
+    is_picking: bool,
+    /// When the last picture was recorded, while the device works on it.
+    started: Option<Instant>,
+    /// The microseconds that it took; 0 while the device works.
+    taken: Arc<AtomicU64>,
+    /// The sides of the picture, as parts of those of the whole.
+    part: f64,
+    /// What a picture of all pixels would take.
+    whole: Option<Duration>,
+    pictures: u64,
+    error: Option<String>,
+}
+
+/// Textures of one size, and what renders into them.
+struct TargetSet {
+    size: [u32; 2],
+    color: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    normal: wgpu::TextureView,
+    id: wgpu::TextureView,
+    frame: Frame,
+    texture: egui::TextureId,
+}
+
+impl TargetSet {
+    fn targets(&self) -> Targets<'_> {
+        let data = DataTargets { depth: &self.depth, normal: &self.normal, id: &self.id };
+        Targets { color: &self.color, data: Some(data) }
+    }
+}
+
+/// What is to be seen.
+pub(crate) struct Sight {
+    pub(crate) camera: Box<dyn Camera>,
+    pub(crate) background: LinearRgb,
+    /// The size of the whole picture in pixels.
+    pub(crate) size: [u32; 2],
+    /// Whether fewer pixels will do.
+    pub(crate) is_moving: bool,
+}
+
+impl Quick {
+    pub(crate) fn new(render: RenderState) -> Self {
+        let (picker, error) = match Picker::new(&render.device, 3) {
+            Ok(picker) => (Some(picker), None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+        Self(Arc::new(Mutex::new(State {
+            render,
+            scene: None,
+            targets: None,
+            camera: None,
+            picker,
+            is_due: false,
+            pick: None,
+            is_picking: false,
+            started: None,
+            taken: Arc::default(),
+            part: 1.0,
+            whole: None,
+            pictures: 0,
+            error,
+        })))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Shows another scene from now on.
+    pub(crate) fn set_scene(&self, scene: QuickScene) {
+        let mut state = self.state();
+        // Frames are made for a renderer.
+        let is_same = |old: &QuickScene| Arc::ptr_eq(&old.renderer, &scene.renderer);
+        if !state.scene.as_ref().is_some_and(is_same)
+            && let Some(targets) = state.targets.take()
+        {
+            state.render.renderer.write().free_texture(&targets.texture);
+        }
+        (state.scene, state.whole) = (Some(scene), None);
+    }
+
+    /// Whether the device still works on a picture.
+    pub(crate) fn is_busy(&self) -> bool {
+        let mut state = self.state();
+        // This only looks what is done, and never waits.
+        let _ = state.render.device.poll(wgpu::PollType::Poll);
+        state.learn();
+        state.started.is_some()
+    }
+
+    /// Prepares a picture, which the next frame of the window renders.
+    pub(crate) fn see(&self, sight: Sight) {
+        let mut state = self.state();
+        if let Err(error) = state.see(sight) {
+            state.error = Some(error);
+        }
+    }
+
+    /// Asks which sphere is at a pixel of the picture, given by parts of its width and height.
+    pub(crate) fn pick(&self, [x, y]: [f64; 2]) {
+        let mut state = self.state();
+        let Some(size) = state.targets.as_ref().map(|targets| targets.size) else { return };
+        let pixel = |part: f64, side: u32| ((part * f64::from(side)) as u32).min(side - 1);
+        state.pick = Some([pixel(x, size[0]), pixel(y, size[1])]);
+    }
+
+    /// Whether a pick has no result yet.
+    pub(crate) fn is_picking(&self) -> bool {
+        let state = self.state();
+        state.pick.is_some() || state.is_picking
+    }
+
+    /// The result of a pick, if there is one.
+    pub(crate) fn picked(&self) -> Option<Picked> {
+        let mut state = self.state();
+        match state.picker.as_mut()?.take() {
+            Ok(None) => None,
+            Ok(Some(picked)) => {
+                state.is_picking = false;
+                Some(picked)
+            }
+            Err(error) => {
+                (state.is_picking, state.error) = (false, Some(error.to_string()));
+                None
+            }
+        }
+    }
+
+    /// What went wrong since the last call.
+    pub(crate) fn take_error(&self) -> Option<String> {
+        self.state().error.take()
+    }
+
+    /// The texture of the last picture, and its size.
+    pub(crate) fn texture(&self) -> Option<(egui::TextureId, [u32; 2])> {
+        let state = self.state();
+        state.targets.as_ref().map(|targets| (targets.texture, targets.size))
+    }
+
+    /// The number of pictures so far.
+    pub(crate) fn count(&self) -> u64 {
+        self.state().pictures
+    }
+
+    /// What egui calls while it prepares its own frame.
+    pub(crate) fn callback(&self, rect: egui::Rect) -> egui::epaint::PaintCallback {
+        eframe::egui_wgpu::Callback::new_paint_callback(rect, Recording(self.clone()))
+    }
+}
+
+impl State {
+    /// Learns how long the last picture took, if the device is done with it.
+    fn learn(&mut self) {
+        let taken = self.taken.swap(0, Ordering::AcqRel);
+        if taken == 0 {
+            return;
+        }
+        self.started = None;
+        let whole = Duration::from_micros(taken).div_f64(self.part * self.part);
+        // One picture may be held up by other work; several in a row are not.
+        self.whole =
+            Some(self.whole.map_or(whole, |before| before.mul_f64(0.6) + whole.mul_f64(0.4)));
+    }
+
+    fn see(&mut self, sight: Sight) -> Result<(), String> {
+        let Some(scene) = self.scene.clone() else { return Ok(()) };
+        let Sight { camera, background, size: whole, is_moving } = sight;
+        let part = if is_moving { self.moving_part() } else { 1.0 };
+        let size = whole.map(|side| ((f64::from(side) * part).round() as u32).max(1));
+        if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
+            let old = self.targets.take();
+            let made = self.made(&scene, size, old.map(|old| old.texture));
+            self.targets = Some(made.map_err(|error| error.to_string())?);
+        }
+        let Some(targets) = &mut self.targets else { return Ok(()) };
+        let film = Film::new(size[0], size[1]).map_err(|error| error.to_string())?;
+        let view = View::new(camera.as_ref(), film);
+        let settings = RenderSettings { background, ..RenderSettings::default() };
+        let set = targets.frame.set_view(&self.render.queue, &scene.buffers, &view, &settings);
+        set.map_err(|error| error.to_string())?;
+        (self.camera, self.part, self.is_due) = (Some(camera), part, true);
+        Ok(())
+    }
+
+    /// How large pictures are while the camera moves.
+    fn moving_part(&self) -> f64 {
+        let Some(whole) = self.whole else { return PARTS[0] };
+        let fits = |part: &f64| whole.mul_f64(part * part) <= MOVING;
+        PARTS.into_iter().find(fits).unwrap_or(PARTS[PARTS.len() - 1])
+    }
+
+    fn made(
+        &self,
+        scene: &QuickScene,
+        size: [u32; 2],
+        texture: Option<egui::TextureId>,
+    ) -> Result<TargetSet, pinhole::gpu::GpuError> {
+        let device = &self.render.device;
+        let layer = |format| {
+            let usage = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("quick picture"),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let color = layer(RendererOptions::default().color.texture_format());
+        let [depth, normal, id] =
+            [TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::R32Uint]
+                .map(layer);
+        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
+        let targets = Targets { color: &color, data: Some(data) };
+        let frame = Frame::new(&scene.renderer, device, &targets)?;
+        let (mut renderer, filter) = (self.render.renderer.write(), wgpu::FilterMode::Linear);
+        let texture = match texture {
+            Some(id) => {
+                renderer.update_egui_texture_from_wgpu_texture(device, &color, filter, id);
+                id
+            }
+            None => renderer.register_native_texture(device, &color, filter),
+        };
+        drop(renderer);
+        Ok(TargetSet { size, color, depth, normal, id, frame, texture })
+    }
+
+    /// Records what is due.
+    fn record(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), String> {
+        let (Some(scene), Some(targets), Some(camera)) = (&self.scene, &self.targets, &self.camera)
+        else {
+            return Ok(());
+        };
+        if std::mem::take(&mut self.is_due) {
+            let recorded = scene.renderer.record(encoder, &scene.buffers, &targets.frame);
+            recorded.map_err(|error| error.to_string())?;
+            self.pictures += 1;
+            let (started, taken) = (Instant::now(), Arc::clone(&self.taken));
+            self.started = Some(started);
+            encoder.on_submitted_work_done(move || {
+                let micros = u64::try_from(started.elapsed().as_micros()).unwrap_or(u64::MAX);
+                taken.store(micros.max(1), Ordering::Release);
+            });
+        }
+        if let (Some(pixel), Some(picker)) = (self.pick.take(), &mut self.picker) {
+            let [width, height] = targets.size;
+            let film = Film::new(width, height).map_err(|error| error.to_string())?;
+            let view = View::new(camera.as_ref(), film);
+            let recorded = picker.record(encoder, &targets.targets(), &view, pixel);
+            recorded.map_err(|error| error.to_string())?;
+            self.is_picking = true;
+        }
+        Ok(())
+    }
+}
+
+struct Recording(Quick);
+
+impl CallbackTrait for Recording {
+    fn prepare(
+        &self,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+        _: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        _: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        let mut state = self.0.state();
+        if let Err(error) = state.record(encoder) {
+            state.error = Some(error);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _: egui::PaintCallbackInfo,
+        _: &mut wgpu::RenderPass<'static>,
+        _: &CallbackResources,
+    ) {
+        // The picture is a texture that egui draws.
+    }
+}
