@@ -7,8 +7,10 @@ mod app;
 mod details;
 mod orbit;
 mod panels;
+mod picture;
 mod quick;
 mod save;
+mod sections;
 mod state;
 mod worker;
 

@@ -19,7 +19,7 @@ use crate::worker::QuickScene;
 const MOVING: Duration = Duration::from_millis(55);
 
 /// The sides of pictures while the camera moves, as parts of the whole.
-const PARTS: [f64; 4] = [1.0, 0.6, 0.4, 0.25];
+const PARTS: [f64; 4] = [1.0, 0.7, 0.5, 0.33];
 
 /// The quick picture of the window. It is shared with what egui calls to record it.
 #[derive(Clone)]
@@ -40,10 +40,10 @@ struct State {
     started: Option<Instant>,
     /// The microseconds that it took; 0 while the device works.
     taken: Arc<AtomicU64>,
-    /// The sides of the picture, as parts of those of the whole.
-    part: f64,
-    /// What a picture of all pixels would take.
-    whole: Option<Duration>,
+    /// Which of the parts the picture has.
+    part: usize,
+    /// What pictures of each part take.
+    times: Times,
     pictures: u64,
     error: Option<String>,
 }
@@ -63,6 +63,32 @@ impl TargetSet {
     fn targets(&self) -> Targets<'_> {
         let data = DataTargets { depth: &self.depth, normal: &self.normal, id: &self.id };
         Targets { color: &self.color, data: Some(data) }
+    }
+}
+
+/// How long pictures of each part take, which is learnt while the camera moves.
+#[derive(Debug, Default)]
+struct Times([Option<Duration>; PARTS.len()]);
+
+impl Times {
+    fn learn(&mut self, part: usize, taken: Duration) {
+        // One picture may be held up by other work; several in a row are not.
+        let time = &mut self.0[part];
+        *time = Some(time.map_or(taken, |before| before.mul_f64(0.7) + taken.mul_f64(0.3)));
+    }
+
+    /// The largest part that is quick enough; or if none is, the largest one that is not much slower than the smallest:
+    /// what does not depend on the number of pixels gets no quicker with fewer.
+    fn part(&self) -> usize {
+        // What was not tried yet is tried.
+        let is_quick = |time: &Option<Duration>| time.is_none_or(|time| time <= MOVING);
+        if let Some(part) = self.0.iter().position(is_quick) {
+            return part;
+        }
+        let least = self.0.iter().flatten().min().copied().unwrap_or_default();
+        let is_near =
+            |time: &Option<Duration>| time.is_some_and(|time| time <= least.mul_f64(1.25));
+        self.0.iter().position(is_near).unwrap_or(0)
     }
 }
 
@@ -93,8 +119,8 @@ impl Quick {
             is_picking: false,
             started: None,
             taken: Arc::default(),
-            part: 1.0,
-            whole: None,
+            part: 0,
+            times: Times::default(),
             pictures: 0,
             error,
         })))
@@ -114,7 +140,7 @@ impl Quick {
         {
             state.render.renderer.write().free_texture(&targets.texture);
         }
-        (state.scene, state.whole) = (Some(scene), None);
+        state.scene = Some(scene);
     }
 
     /// Whether the device still works on a picture.
@@ -194,17 +220,14 @@ impl State {
             return;
         }
         self.started = None;
-        let whole = Duration::from_micros(taken).div_f64(self.part * self.part);
-        // One picture may be held up by other work; several in a row are not.
-        self.whole =
-            Some(self.whole.map_or(whole, |before| before.mul_f64(0.6) + whole.mul_f64(0.4)));
+        self.times.learn(self.part, Duration::from_micros(taken));
     }
 
     fn see(&mut self, sight: Sight) -> Result<(), String> {
         let Some(scene) = self.scene.clone() else { return Ok(()) };
         let Sight { camera, background, size: whole, is_moving } = sight;
-        let part = if is_moving { self.moving_part() } else { 1.0 };
-        let size = whole.map(|side| ((f64::from(side) * part).round() as u32).max(1));
+        let part = if is_moving { self.times.part() } else { 0 };
+        let size = whole.map(|side| ((f64::from(side) * PARTS[part]).round() as u32).max(1));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
             let old = self.targets.take();
             let made = self.made(&scene, size, old.map(|old| old.texture));
@@ -218,13 +241,6 @@ impl State {
         set.map_err(|error| error.to_string())?;
         (self.camera, self.part, self.is_due) = (Some(camera), part, true);
         Ok(())
-    }
-
-    /// How large pictures are while the camera moves.
-    fn moving_part(&self) -> f64 {
-        let Some(whole) = self.whole else { return PARTS[0] };
-        let fits = |part: &f64| whole.mul_f64(part * part) <= MOVING;
-        PARTS.into_iter().find(fits).unwrap_or(PARTS[PARTS.len() - 1])
     }
 
     fn made(
@@ -321,5 +337,29 @@ impl CallbackTrait for Recording {
         _: &CallbackResources,
     ) {
         // The picture is a texture that egui draws.
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(millis: [u64; 4]) -> Times {
+        Times(millis.map(|millis| Some(Duration::from_millis(millis))))
+    }
+
+    #[test]
+    fn pictures_are_as_large_as_they_are_quick() {
+        assert_eq!(Times::default().part(), 0);
+        assert_eq!(times([50, 30, 20, 10]).part(), 0);
+        assert_eq!(times([300, 150, 54, 40]).part(), 2);
+        assert_eq!(times([900, 400, 200, 110]).part(), 3);
+        // Here fewer pixels would not help.
+        assert_eq!(times([120, 110, 105, 100]).part(), 0);
+        let mut slow = Times::default();
+        slow.learn(0, Duration::from_millis(200));
+        assert_eq!(slow.part(), 1);
+        (0..20).for_each(|_| slow.learn(0, Duration::from_millis(20)));
+        assert_eq!(slow.part(), 0);
     }
 }
