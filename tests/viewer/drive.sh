@@ -203,7 +203,7 @@ shot molecule-resized
 quits
 
 echo "== flags: path tracing, a selection, colors, a given size =="
-opens helix.pdb --style path --samples 16 --select 'resi < 30 and name != "NA"' --color-by b_factor --legend \
+opens helix.pdb --style path --samples 16 --select 'residue_number < 30 and name != "NA"' --color-by b_factor --legend \
     --scale-bar --camera orthographic --size 320x200
 drags 1 400 350 -120 30
 mark
@@ -271,7 +271,7 @@ refused 2 helix.pdb --style nothing
 refused 2 helix.txt.unknown
 refused 2 -
 refused 1 helix.pdb --color-by nothing
-refused 1 helix.pdb --adapter "no such adapter"
+refused 2 helix.pdb --adapter "no such adapter"
 DISPLAY='' refused 1 helix.pdb
 VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent refused 1 helix.pdb
 echo "done; $skipped skipped; the screenshots are in $folder"

@@ -159,10 +159,9 @@ impl App {
     }
 
     /// Keeps the camera where it is, whatever the spheres do.
-    pub(crate) fn hold_camera(&mut self) {
-        if let Some(orbit) = self.orbit.as_ref().filter(|_| self.state.flags.get("eye").is_none()) {
-            let camera = orbit.camera.clone();
-            self.change(|flags| camera.write_to(flags));
+    fn hold_camera(&mut self) {
+        if self.state.flags.get("eye").is_none() {
+            self.fly(|orbit| orbit.move_to(orbit.pivot));
         }
     }
 
@@ -213,7 +212,8 @@ impl App {
     fn learn(&mut self, news: Box<News>) {
         if let Some(quick) = &news.quick {
             self.quick.set_scene(quick.clone());
-            self.seen = None;
+            // The picture of the scene before stays until there is a new one.
+            self.seen = self.seen.map(|_| (0, false));
         }
         let is_new = |old: &News| !Arc::ptr_eq(&old.scene, &news.scene);
         if self.news.as_deref().is_none_or(is_new) {
@@ -391,6 +391,11 @@ impl eframe::App for App {
         self.panels(ui);
         self.play(&context);
         self.ask(&context);
+    }
+
+    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
+        // Panels and pictures cover the rest.
+        crate::panels::BESIDE.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {

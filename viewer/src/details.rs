@@ -59,8 +59,11 @@ impl Details {
         if self.is_added {
             return "bond or edge of the cell".to_owned();
         }
-        let known = ["name", "atom", "species", "type", "residue", "residue_number", "chain"];
-        let parts: Vec<&str> = known.iter().filter_map(|name| self.value(name)).collect();
+        let of = |names: &[&str]| names.iter().find_map(|name| self.value(name));
+        let kind = of(&["name", "atom", "species", "type"]);
+        let place =
+            ["residue", "residue_number", "chain"].into_iter().filter_map(|name| of(&[name]));
+        let parts: Vec<&str> = kind.into_iter().chain(place).collect();
         if parts.is_empty() { format!("sphere {}", self.id) } else { parts.join(" ") }
     }
 }

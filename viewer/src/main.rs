@@ -4,6 +4,7 @@
 //! that it saves are exact by construction.
 
 mod app;
+mod blit;
 mod details;
 mod orbit;
 mod panels;
@@ -19,6 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use eframe::{egui, egui_wgpu, wgpu};
+use pinhole::gpu::GpuError;
 use pinhole_cli::viewing::{self, RenderFlags, ViewError};
 
 use app::App;
@@ -59,7 +61,7 @@ fn run(flags: RenderFlags) -> Result<(), ViewError> {
             .with_title(format!("{} – pinhole", state.flags.path()))
             .with_inner_size([1180.0, 760.0])
             .with_min_inner_size([480.0, 360.0]),
-        wgpu_options: wgpu_options(adapter),
+        wgpu_options: wgpu_options(adapter.clone()),
         // The picture's own bytes are shown.
         dithering: false,
         ..eframe::NativeOptions::default()
@@ -70,9 +72,26 @@ fn run(flags: RenderFlags) -> Result<(), ViewError> {
         options,
         Box::new(move |context| Ok(Box::new(App::new(context, state, worker, first, left)?))),
     );
-    opened.map_err(|error| ViewError::new(format!("no window can be opened: {error}")))?;
+    opened.map_err(|error| explained(&error, adapter.as_deref()))?;
     let ending = ending.lock().unwrap_or_else(PoisonError::into_inner).take();
     ending.map_or(Ok(()), Err)
+}
+
+/// Why there is no window: no display, no adapter, or something else.
+fn explained(error: &eframe::Error, adapter: Option<&str>) -> ViewError {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let displays = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+    if cfg!(all(unix, not(target_os = "macos"))) && !displays.into_iter().any(is_set) {
+        return ViewError::new(
+            "no window can be opened, because there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set; \
+             `pinhole render` needs none",
+        );
+    }
+    match pinhole::gpu::adapter::choose(adapter) {
+        Err(error @ GpuError::UnknownAdapter { .. }) => ViewError::usage(error.to_string()),
+        Err(error) => ViewError::new(format!("no window can be opened: {error}")),
+        Ok(_) => ViewError::new(format!("no window can be opened: {error}")),
+    }
 }
 
 /// The adapter that `pinhole render` would use, as far as it can show windows, with all its limits.

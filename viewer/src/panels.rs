@@ -16,6 +16,9 @@ pub(crate) fn dress(context: &egui::Context) {
     });
 }
 
+/// The color beside a picture that does not fill its part of the window.
+pub(crate) const BESIDE: Color32 = Color32::from_rgb(214, 216, 220);
+
 const RED: Color32 = Color32::from_rgb(176, 32, 32);
 
 impl App {
@@ -132,9 +135,9 @@ impl App {
     fn time_row(&mut self, ui: &mut egui::Ui) {
         let Some(line) = self.news.as_ref().and_then(|news| news.time_line.clone()) else { return };
         ui.horizontal(|ui| {
-            let (text, hint) = if self.player.plays { ("⏸", "Pause") } else { ("▶", "Play") };
-            let button = egui::Button::new(text).min_size(egui::vec2(30.0, 0.0));
-            if ui.add(button).on_hover_text(format!("{hint} (space)")).clicked() {
+            let text = if self.player.plays { "Pause" } else { "Play" };
+            let button = egui::Button::new(text).min_size(egui::vec2(52.0, 0.0));
+            if ui.add(button).on_hover_text("space").clicked() {
                 self.toggle_play();
             }
             let asked = self.state.flags.get("frame").and_then(|frame| frame.parse().ok());

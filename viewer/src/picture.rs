@@ -33,13 +33,10 @@ impl App {
         self.pointer(ui, &response);
         self.see(ui.ctx());
         let painter = ui.painter_at(rect);
-        painter.add(self.quick.callback(rect));
-        let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-        let texture = match self.current_still() {
-            Some(still) => Some(still.texture.id()),
-            None => self.quick.texture().map(|(texture, _)| texture),
-        };
-        if let Some(texture) = texture.filter(|_| self.news.is_some()) {
+        let still = self.current_still().map(|still| still.texture.id());
+        painter.add(self.quick.callback(rect, still.is_none() && self.seen.is_some()));
+        if let Some(texture) = still {
+            let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             painter.image(texture, rect, whole, egui::Color32::WHITE);
         }
         self.marker(&painter, rect);
@@ -106,9 +103,9 @@ impl App {
     fn see(&mut self, context: &egui::Context) {
         let is_moving = self.is_moving();
         let wanted = (self.state.number, is_moving);
-        if self.quick.is_busy() {
-            context.request_repaint_after(Duration::from_millis(4));
-        } else if self.seen != Some(wanted)
+        self.quick.poll();
+        // The window's own pictures wait for the device, so no more of these are recorded than it renders.
+        if self.seen != Some(wanted)
             && (is_moving || self.current_still().is_none())
             && self.seen != Some((self.state.number, false))
         {
@@ -165,7 +162,7 @@ impl App {
         if elapsed >= 1.0 {
             let value = (count - self.rate.before) as f64 / elapsed;
             self.rate = Rate { since: now, before: count, value: Some(value) };
-            let size = self.quick.texture().map_or([0, 0], |(_, size)| size);
+            let size = self.quick.size().unwrap_or_default();
             self.log(|| format!("rate: {value:.1} pictures/s of {}x{}", size[0], size[1]));
         }
     }

@@ -13,6 +13,7 @@ use pinhole::image::color::LinearRgb;
 use pinhole::render::RenderSettings;
 use wgpu::{TextureFormat, TextureUsages};
 
+use crate::blit::Blit;
 use crate::worker::QuickScene;
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -27,6 +28,7 @@ pub(crate) struct Quick(Arc<Mutex<State>>);
 
 struct State {
     render: RenderState,
+    blit: Blit,
     scene: Option<QuickScene>,
     targets: Option<TargetSet>,
     camera: Option<Box<dyn Camera>>,
@@ -36,9 +38,7 @@ struct State {
     /// A pixel that is to be picked in the picture.
     pick: Option<[u32; 2]>,
     is_picking: bool,
-    /// When the last picture was recorded, while the device works on it.
-    started: Option<Instant>,
-    /// The microseconds that it took; 0 while the device works.
+    /// The microseconds that the last picture took; 0 while the device works.
     taken: Arc<AtomicU64>,
     /// Which of the parts the picture has.
     part: usize,
@@ -56,7 +56,8 @@ struct TargetSet {
     normal: wgpu::TextureView,
     id: wgpu::TextureView,
     frame: Frame,
-    texture: egui::TextureId,
+    /// What draws the colors.
+    group: wgpu::BindGroup,
 }
 
 impl TargetSet {
@@ -109,6 +110,7 @@ impl Quick {
             Err(error) => (None, Some(error.to_string())),
         };
         Self(Arc::new(Mutex::new(State {
+            blit: Blit::new(&render),
             render,
             scene: None,
             targets: None,
@@ -117,7 +119,6 @@ impl Quick {
             is_due: false,
             pick: None,
             is_picking: false,
-            started: None,
             taken: Arc::default(),
             part: 0,
             times: Times::default(),
@@ -135,21 +136,21 @@ impl Quick {
         let mut state = self.state();
         // Frames are made for a renderer.
         let is_same = |old: &QuickScene| Arc::ptr_eq(&old.renderer, &scene.renderer);
-        if !state.scene.as_ref().is_some_and(is_same)
-            && let Some(targets) = state.targets.take()
-        {
-            state.render.renderer.write().free_texture(&targets.texture);
+        if !state.scene.as_ref().is_some_and(is_same) {
+            state.targets = None;
         }
         state.scene = Some(scene);
     }
 
-    /// Whether the device still works on a picture.
-    pub(crate) fn is_busy(&self) -> bool {
+    /// Looks what the device has done, without waiting.
+    pub(crate) fn poll(&self) {
         let mut state = self.state();
-        // This only looks what is done, and never waits.
         let _ = state.render.device.poll(wgpu::PollType::Poll);
-        state.learn();
-        state.started.is_some()
+        let taken = state.taken.swap(0, Ordering::AcqRel);
+        if taken > 0 {
+            let part = state.part;
+            state.times.learn(part, Duration::from_micros(taken));
+        }
     }
 
     /// Prepares a picture, which the next frame of the window renders.
@@ -195,10 +196,9 @@ impl Quick {
         self.state().error.take()
     }
 
-    /// The texture of the last picture, and its size.
-    pub(crate) fn texture(&self) -> Option<(egui::TextureId, [u32; 2])> {
-        let state = self.state();
-        state.targets.as_ref().map(|targets| (targets.texture, targets.size))
+    /// The size of the last picture.
+    pub(crate) fn size(&self) -> Option<[u32; 2]> {
+        self.state().targets.as_ref().map(|targets| targets.size)
     }
 
     /// The number of pictures so far.
@@ -206,31 +206,21 @@ impl Quick {
         self.state().pictures
     }
 
-    /// What egui calls while it prepares its own frame.
-    pub(crate) fn callback(&self, rect: egui::Rect) -> egui::epaint::PaintCallback {
-        eframe::egui_wgpu::Callback::new_paint_callback(rect, Recording(self.clone()))
+    /// What egui calls while it makes its own frame. The picture is drawn into the rectangle if it `is_seen`.
+    pub(crate) fn callback(&self, rect: egui::Rect, is_seen: bool) -> egui::epaint::PaintCallback {
+        let recording = Recording { quick: self.clone(), is_seen };
+        eframe::egui_wgpu::Callback::new_paint_callback(rect, recording)
     }
 }
 
 impl State {
-    /// Learns how long the last picture took, if the device is done with it.
-    fn learn(&mut self) {
-        let taken = self.taken.swap(0, Ordering::AcqRel);
-        if taken == 0 {
-            return;
-        }
-        self.started = None;
-        self.times.learn(self.part, Duration::from_micros(taken));
-    }
-
     fn see(&mut self, sight: Sight) -> Result<(), String> {
         let Some(scene) = self.scene.clone() else { return Ok(()) };
         let Sight { camera, background, size: whole, is_moving } = sight;
         let part = if is_moving { self.times.part() } else { 0 };
         let size = whole.map(|side| ((f64::from(side) * PARTS[part]).round() as u32).max(1));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
-            let old = self.targets.take();
-            let made = self.made(&scene, size, old.map(|old| old.texture));
+            let made = self.made(&scene, size);
             self.targets = Some(made.map_err(|error| error.to_string())?);
         }
         let Some(targets) = &mut self.targets else { return Ok(()) };
@@ -247,7 +237,6 @@ impl State {
         &self,
         scene: &QuickScene,
         size: [u32; 2],
-        texture: Option<egui::TextureId>,
     ) -> Result<TargetSet, pinhole::gpu::GpuError> {
         let device = &self.render.device;
         let layer = |format| {
@@ -271,16 +260,8 @@ impl State {
         let data = DataTargets { depth: &depth, normal: &normal, id: &id };
         let targets = Targets { color: &color, data: Some(data) };
         let frame = Frame::new(&scene.renderer, device, &targets)?;
-        let (mut renderer, filter) = (self.render.renderer.write(), wgpu::FilterMode::Linear);
-        let texture = match texture {
-            Some(id) => {
-                renderer.update_egui_texture_from_wgpu_texture(device, &color, filter, id);
-                id
-            }
-            None => renderer.register_native_texture(device, &color, filter),
-        };
-        drop(renderer);
-        Ok(TargetSet { size, color, depth, normal, id, frame, texture })
+        let group = self.blit.group(device, &color);
+        Ok(TargetSet { size, color, depth, normal, id, frame, group })
     }
 
     /// Records what is due.
@@ -294,7 +275,6 @@ impl State {
             recorded.map_err(|error| error.to_string())?;
             self.pictures += 1;
             let (started, taken) = (Instant::now(), Arc::clone(&self.taken));
-            self.started = Some(started);
             encoder.on_submitted_work_done(move || {
                 let micros = u64::try_from(started.elapsed().as_micros()).unwrap_or(u64::MAX);
                 taken.store(micros.max(1), Ordering::Release);
@@ -312,7 +292,10 @@ impl State {
     }
 }
 
-struct Recording(Quick);
+struct Recording {
+    quick: Quick,
+    is_seen: bool,
+}
 
 impl CallbackTrait for Recording {
     fn prepare(
@@ -323,7 +306,7 @@ impl CallbackTrait for Recording {
         encoder: &mut wgpu::CommandEncoder,
         _: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        let mut state = self.0.state();
+        let mut state = self.quick.state();
         if let Err(error) = state.record(encoder) {
             state.error = Some(error);
         }
@@ -333,10 +316,13 @@ impl CallbackTrait for Recording {
     fn paint(
         &self,
         _: egui::PaintCallbackInfo,
-        _: &mut wgpu::RenderPass<'static>,
+        pass: &mut wgpu::RenderPass<'static>,
         _: &CallbackResources,
     ) {
-        // The picture is a texture that egui draws.
+        let state = self.quick.state();
+        if let Some(targets) = state.targets.as_ref().filter(|_| self.is_seen) {
+            state.blit.draw(pass, &targets.group);
+        }
     }
 }
 

@@ -7,7 +7,6 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use eframe::egui;
-use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, CameraParameters};
 use pinhole::gpu::{GpuError, Renderer, RendererOptions, SceneBuffers, wgpu};
 use pinhole::load::Column;
@@ -44,7 +43,6 @@ pub(crate) struct News {
     pub(crate) scene: Arc<Scene>,
     pub(crate) columns: Arc<Vec<Column>>,
     pub(crate) camera: CameraParameters,
-    pub(crate) film: Film,
     pub(crate) settings: RenderSettings,
     pub(crate) style: Option<&'static str>,
     pub(crate) own_color_by: Option<String>,
@@ -228,7 +226,6 @@ impl Work {
             scene: Arc::clone(shown.scene()),
             columns: Arc::clone(shown.columns()),
             camera: shown.camera_parameters(),
-            film: shown.film(),
             settings: shown.settings().clone(),
             style: shown.style(),
             own_color_by: shown.own_color_by().map(str::to_owned),

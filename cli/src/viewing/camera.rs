@@ -96,7 +96,8 @@ impl ViewCamera {
     pub fn set_aspect(&mut self, aspect: f64) {
         let plane = self.table.get("half_extent").and_then(Value::as_array);
         if let Some(height) = plane.and_then(|plane| plane.get(1)).and_then(Value::as_float) {
-            let width = rounded(height * aspect, 1e-6 * height);
+            let [width, height] =
+                [height * aspect, height].map(|side| rounded(side, 1e-6 * height));
             self.table.insert("half_extent".to_owned(), vec![width, height].into());
         }
     }

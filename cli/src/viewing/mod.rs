@@ -33,7 +33,9 @@ impl ViewError {
         Self { message: message.into(), code: FAILED }
     }
 
-    fn usage(message: impl Into<String>) -> Self {
+    /// Wrong usage; the exit code is 2.
+    #[must_use]
+    pub fn usage(message: impl Into<String>) -> Self {
         Self { message: message.into(), code: USAGE }
     }
 

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use pinhole::annotate::Annotations;
-use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraParameters};
 use pinhole::image::encoding::Encoding;
 use pinhole::light::environment::Environment;
@@ -139,12 +138,6 @@ impl Shown {
     #[must_use]
     pub fn camera_parameters(&self) -> CameraParameters {
         self.input.parameters
-    }
-
-    /// The film.
-    #[must_use]
-    pub fn film(&self) -> Film {
-        self.input.film
     }
 
     /// The settings.
