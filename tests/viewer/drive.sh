@@ -5,7 +5,7 @@
 #     cargo build -p pinhole-cli -p pinhole-viewer
 #     tests/viewer/drive.sh [FOLDER]
 #
-# Needs Xvfb and xdotool; python3 for screenshots, and xclip or xsel for the clipboard. Says what it skips without them.
+# Needs Xvfb and xdotool; python3 for screenshots, and xclip, xsel or its tkinter for the clipboard. Says what it skips without them.
 # FOLDER keeps the screenshots, the pictures and what the viewer said. PINHOLE_BIN is the folder of both programs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -162,8 +162,11 @@ same() {
         [ "$(timeout 10 xclip -selection clipboard -o)" = "$command" ] || fail "$1: the clipboard has another command"
     elif command -v xsel >/dev/null; then
         [ "$(timeout 10 xsel --clipboard --output)" = "$command" ] || fail "$1: the clipboard has another command"
+    elif python3 -c 'import tkinter' 2>/dev/null; then
+        [ "$(timeout 10 python3 -c 'import tkinter; print(tkinter.Tk().clipboard_get())')" = "$command" ] ||
+            fail "$1: the clipboard has another command"
     else
-        skip "$1: the clipboard: neither xclip nor xsel is there; the command on standard output was used"
+        skip "$1: the clipboard: xclip, xsel and tkinter are missing; the command on standard output was used"
     fi
     saved=${command##* -o }
     mv "$saved" "$1-saved.png"

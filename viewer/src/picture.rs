@@ -28,6 +28,7 @@ impl App {
             .map(|side| ((side * pixels_per_point).round() as u32).max(1));
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
         if self.state.resize(window) {
+            self.moved = Some(Instant::now());
             self.mark();
         }
         self.pointer(ui, &response);
@@ -101,7 +102,7 @@ impl App {
 
     /// Renders a quick picture if what is shown is an older one.
     fn see(&mut self, context: &egui::Context) {
-        let is_moving = self.is_moving();
+        let is_moving = self.is_moving() || self.player.plays;
         let wanted = (self.state.number, is_moving);
         self.quick.poll();
         // The window's own pictures wait for the device, so no more of these are recorded than it renders.
@@ -111,7 +112,7 @@ impl App {
         {
             self.look(is_moving);
         }
-        if is_moving {
+        if self.is_moving() {
             context.request_repaint_after(STILL_AFTER / 2);
         }
         while let Some(picked) = self.quick.picked() {
@@ -154,7 +155,7 @@ impl App {
 
     fn count(&mut self, is_moving: bool) {
         let (now, count) = (Instant::now(), self.quick.count());
-        if !is_moving && !self.player.plays {
+        if !is_moving {
             (self.rate.since, self.rate.before, self.rate.value) = (now, count, None);
             return;
         }

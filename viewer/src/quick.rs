@@ -109,7 +109,8 @@ impl Quick {
             Ok(picker) => (Some(picker), None),
             Err(error) => (None, Some(error.to_string())),
         };
-        Self(Arc::new(Mutex::new(State {
+        let device = render.device.clone();
+        let quick = Self(Arc::new(Mutex::new(State {
             blit: Blit::new(&render),
             render,
             scene: None,
@@ -124,7 +125,18 @@ impl Quick {
             times: Times::default(),
             pictures: 0,
             error,
-        })))
+        })));
+        // Errors that nobody expects are shown, and do not end the program.
+        let weak = Arc::downgrade(&quick.0);
+        device.on_uncaptured_error(Arc::new(move |error| {
+            let message = error.to_string();
+            let Some(state) = weak.upgrade() else { return };
+            // The state may be locked by what caused the error.
+            let _ = std::thread::Builder::new().spawn(move || {
+                state.lock().unwrap_or_else(PoisonError::into_inner).error = Some(message);
+            });
+        }));
+        quick
     }
 
     fn state(&self) -> MutexGuard<'_, State> {

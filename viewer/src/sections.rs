@@ -216,6 +216,9 @@ impl App {
             if save.on_hover_text("Renders as `pinhole render` does (Ctrl+S)").clicked() {
                 self.save(&ui.ctx().clone());
             }
+            if self.saving.is_none() && std::path::Path::new(&self.state.output).exists() {
+                ui.label(RichText::new("replaces the file that is there").size(11.0).weak());
+            }
             if let Some(saving) = &self.saving {
                 ui.spinner();
                 ui.label(format!("saving, {:.0} s", saving.started.elapsed().as_secs_f64()));

@@ -119,8 +119,11 @@ impl Worker {
 
     /// Asks for something else, in place of what was asked for before.
     pub(crate) fn ask(&self, request: Request) {
-        self.shared.inbox().request = Some(request);
+        let mut inbox = self.shared.inbox();
+        // The thread reads the number with the request.
         self.cancel();
+        inbox.request = Some(request);
+        drop(inbox);
         self.shared.is_changed.notify_all();
     }
 

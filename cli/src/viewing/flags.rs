@@ -353,7 +353,7 @@ mod tests {
         let plain = parsed(&["a.pdb"]);
         for flag in [
             "--style=path",
-            "--eye=1,2,3",
+            "--view=iso",
             "--size=9x9",
             "--legend-title=a",
             "--bits=16",
