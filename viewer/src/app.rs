@@ -203,7 +203,7 @@ impl App {
     fn hear(&mut self, message: Message, context: &egui::Context) {
         match message {
             Message::Shown(news) => self.learn(news),
-            Message::Still { state, picture } => self.take_still(state, picture, context),
+            Message::Still { state, picture } => self.take_still(state, &picture, context),
             Message::Note(note) => self.said = note,
             Message::Failed { state, error } => self.fail(state, error, context),
         }
@@ -234,7 +234,7 @@ impl App {
         self.news = Some(news);
     }
 
-    fn take_still(&mut self, state: u64, picture: StillPicture, context: &egui::Context) {
+    fn take_still(&mut self, state: u64, picture: &StillPicture, context: &egui::Context) {
         if state != self.state.number {
             return;
         }

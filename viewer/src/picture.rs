@@ -69,10 +69,10 @@ impl App {
         if response.hovered() {
             let wheel = ui.input(|input| input.smooth_scroll_delta().y);
             let pinch = ui.input(|input| input.zoom_delta());
-            if wheel != 0.0 {
+            if wheel.abs() > 0.0 {
                 self.fly(|orbit| orbit.zoom(f64::from(wheel)));
             }
-            if pinch != 1.0 {
+            if (pinch - 1.0).abs() > 1e-6 {
                 self.fly(|orbit| orbit.zoom(f64::from(pinch.ln()) / 0.003));
             }
         }

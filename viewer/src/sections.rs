@@ -251,7 +251,7 @@ impl App {
                 self.change(|old| *old = flags);
             }
             Err(error) => {
-                (self.error, self.fields.others) = (Some(error.to_string()), text.to_owned())
+                (self.error, self.fields.others) = (Some(error.to_string()), text.to_owned());
             }
         }
     }

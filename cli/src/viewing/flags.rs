@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 
 use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
+use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
 
 use super::{ViewCamera, ViewError};
@@ -145,7 +146,10 @@ impl RenderFlags {
         }
         let flags = self.render_args("-")?.input.view.camera.flags()?;
         let parameters = flags.parameters(None, DVec3::Y).map_err(ViewError::usage)?;
-        Ok(ViewCamera::new(&parameters))
+        // A camera with an eye depends on no spheres, so that these are any.
+        let any = Bounds::of_sphere(DVec3::ZERO, 1.0);
+        let placed = parameters.placed(1.0, &(&any).into());
+        Ok(ViewCamera::new(&placed.map_err(|error| ViewError::usage(error.to_string()))?))
     }
 
     /// Removes all flags of the camera.
@@ -341,10 +345,15 @@ mod tests {
 
     #[test]
     fn a_shell_reads_the_words_back() {
-        let flags =
-            parsed(&["my file.pdb", "--select", "name == 'C1' or $x", "--label", "50% \"a\""]);
+        let flags = parsed(&[
+            "my file.pdb",
+            "--select",
+            "name == 'C1' or name == $x",
+            "--label",
+            "50% \"a\"",
+        ]);
         let line = flags.command_line("out put.png");
-        let expected = r#"pinhole render 'my file.pdb' '--select=name == '\''C1'\'' or $x' '--label=50% "a"' -o 'out put.png'"#;
+        let expected = r#"pinhole render 'my file.pdb' '--select=name == '\''C1'\'' or name == $x' '--label=50% "a"' -o 'out put.png'"#;
         assert!(cfg!(windows) || line == expected, "{line}");
     }
 

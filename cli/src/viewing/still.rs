@@ -122,10 +122,8 @@ impl StillRenderer {
             (&shown.input.scene, std::mem::discriminant(&settings.integrator));
         let is_of_scene =
             |up: &Uploaded| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
-        let rendered = match self.uploaded.as_ref().filter(|uploaded| is_of_scene(uploaded)) {
-            Some(uploaded) => Some(render(&uploaded.buffers)),
-            None => None,
-        };
+        let uploaded = self.uploaded.as_ref().filter(|uploaded| is_of_scene(uploaded));
+        let rendered = uploaded.map(|uploaded| render(&uploaded.buffers));
         let rendered = match rendered {
             Some(done @ (Ok(_) | Err(GpuError::Stopped))) => done,
             // The structure may not suit this view, so that others are tried.
