@@ -6,6 +6,7 @@
 mod app;
 mod blit;
 mod details;
+mod layers;
 mod orbit;
 mod panels;
 mod picture;

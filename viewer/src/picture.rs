@@ -105,6 +105,8 @@ impl App {
         let is_moving = self.is_moving() || self.player.plays;
         let wanted = (self.state.number, is_moving);
         self.quick.poll();
+        // What is asked for below is recorded with this frame of the window.
+        let is_waiting = self.quick.is_waiting();
         // The window's own pictures wait for the device, so no more of these are recorded than it renders.
         if self.seen != Some(wanted)
             && (is_moving || self.current_still().is_none())
@@ -118,7 +120,7 @@ impl App {
         while let Some(picked) = self.quick.picked() {
             self.show_picked(picked.hit);
         }
-        if self.quick.is_picking() {
+        if is_waiting {
             context.request_repaint_after(Duration::from_millis(4));
         }
         if let Some(error) = self.quick.take_error() {
@@ -130,10 +132,8 @@ impl App {
     /// Renders a quick picture of the present state.
     fn look(&mut self, is_moving: bool) {
         let (Some(camera), Some(news)) = (self.camera(), &self.news) else { return };
-        let settings = &news.settings;
-        let background = settings.visible_background().unwrap_or(settings.background);
-        let size = self.state.window;
-        self.quick.see(Sight { camera, background, size, is_moving });
+        let (settings, size) = (news.settings.clone(), self.state.window);
+        self.quick.see(Sight { camera, settings, size, is_moving });
         self.seen = Some((self.state.number, is_moving));
     }
 

@@ -1,4 +1,5 @@
-//! Quick pictures: primary rays on the window's own device, recorded into the window's encoder.
+//! Quick pictures on the window's own device, recorded into the window's encoder: studios with their light, others by
+//! primary rays.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,12 +9,11 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use eframe::{egui, wgpu};
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, View};
-use pinhole::gpu::{DataTargets, Frame, Picked, Picker, RendererOptions, Targets};
-use pinhole::image::color::LinearRgb;
-use pinhole::render::RenderSettings;
-use wgpu::{TextureFormat, TextureUsages};
+use pinhole::gpu::{Frame, LitState, LivePicture, Picked, Picker};
+use pinhole::render::{Integrator, RenderSettings};
 
 use crate::blit::Blit;
+use crate::layers::Layers;
 use crate::worker::QuickScene;
 
 /// How long a picture may take while the camera moves. Slower ones get fewer pixels.
@@ -42,8 +42,8 @@ struct State {
     taken: Arc<AtomicU64>,
     /// Which of the parts the picture has.
     part: usize,
-    /// What pictures of each part take.
-    times: Times,
+    /// What pictures of each part take: those by primary rays, and live ones.
+    times: [Times; 2],
     pictures: u64,
     error: Option<String>,
 }
@@ -51,20 +51,18 @@ struct State {
 /// Textures of one size, and what renders into them.
 struct TargetSet {
     size: [u32; 2],
-    color: wgpu::TextureView,
-    depth: wgpu::TextureView,
-    normal: wgpu::TextureView,
-    id: wgpu::TextureView,
-    frame: Frame,
+    layers: Layers,
+    source: Source,
     /// What draws the colors.
     group: wgpu::BindGroup,
 }
 
-impl TargetSet {
-    fn targets(&self) -> Targets<'_> {
-        let data = DataTargets { depth: &self.depth, normal: &self.normal, id: &self.id };
-        Targets { color: &self.color, data: Some(data) }
-    }
+/// What renders a quick picture.
+enum Source {
+    /// One ray for each pixel, lit from the eye.
+    Primary(Frame),
+    /// The light of a studio.
+    Live(Box<LivePicture>),
 }
 
 /// How long pictures of each part take, which is learnt while the camera moves.
@@ -91,12 +89,17 @@ impl Times {
             |time: &Option<Duration>| time.is_some_and(|time| time <= least.mul_f64(1.25));
         self.0.iter().position(is_near).unwrap_or(0)
     }
+
+    /// Whether even the smallest pictures take too long.
+    fn is_slow(&self) -> bool {
+        self.0.iter().all(|time| time.is_some_and(|time| time > 2 * MOVING))
+    }
 }
 
 /// What is to be seen.
 pub(crate) struct Sight {
     pub(crate) camera: Box<dyn Camera>,
-    pub(crate) background: LinearRgb,
+    pub(crate) settings: RenderSettings,
     /// The size of the whole picture in pixels.
     pub(crate) size: [u32; 2],
     /// Whether fewer pixels will do.
@@ -122,7 +125,7 @@ impl Quick {
             is_picking: false,
             taken: Arc::default(),
             part: 0,
-            times: Times::default(),
+            times: Default::default(),
             pictures: 0,
             error,
         })));
@@ -160,8 +163,8 @@ impl Quick {
         let _ = state.render.device.poll(wgpu::PollType::Poll);
         let taken = state.taken.swap(0, Ordering::AcqRel);
         if taken > 0 {
-            let part = state.part;
-            state.times.learn(part, Duration::from_micros(taken));
+            let (part, kind) = (state.part, usize::from(state.is_live()));
+            state.times[kind].learn(part, Duration::from_micros(taken));
         }
     }
 
@@ -181,10 +184,10 @@ impl Quick {
         state.pick = Some([pixel(x, size[0]), pixel(y, size[1])]);
     }
 
-    /// Whether a pick has no result yet.
-    pub(crate) fn is_picking(&self) -> bool {
+    /// Whether a picture or a pick waits for the device.
+    pub(crate) fn is_waiting(&self) -> bool {
         let state = self.state();
-        state.pick.is_some() || state.is_picking
+        state.is_due || state.pick.is_some() || state.is_picking
     }
 
     /// The result of a pick, if there is one.
@@ -226,65 +229,101 @@ impl Quick {
 }
 
 impl State {
+    fn is_live(&self) -> bool {
+        self.targets.as_ref().is_some_and(|targets| matches!(targets.source, Source::Live(_)))
+    }
+
     fn see(&mut self, sight: Sight) -> Result<(), String> {
         let Some(scene) = self.scene.clone() else { return Ok(()) };
-        let Sight { camera, background, size: whole, is_moving } = sight;
-        let part = if is_moving { self.times.part() } else { 0 };
-        let size = whole.map(|side| ((f64::from(side) * PARTS[part]).round() as u32).max(1));
-        if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
-            let made = self.made(&scene, size);
-            self.targets = Some(made.map_err(|error| error.to_string())?);
+        let is_studio = matches!(sight.settings.integrator, Integrator::Studio(_));
+        let is_live = scene.is_live && is_studio && !self.times[1].is_slow();
+        if is_live && self.see_with(&scene, &sight, true).is_err() {
+            // What cannot be shown with its light is shown without.
+            if let Some(scene) = &mut self.scene {
+                scene.is_live = false;
+            }
         }
-        let Some(targets) = &mut self.targets else { return Ok(()) };
-        let film = Film::new(size[0], size[1]).map_err(|error| error.to_string())?;
-        let view = View::new(camera.as_ref(), film);
-        let settings = RenderSettings { background, ..RenderSettings::default() };
-        let set = targets.frame.set_view(&self.render.queue, &scene.buffers, &view, &settings);
-        set.map_err(|error| error.to_string())?;
-        (self.camera, self.part, self.is_due) = (Some(camera), part, true);
+        if !self.scene.as_ref().is_some_and(|scene| scene.is_live) || !is_live {
+            self.see_with(&scene, &sight, false).map_err(|error| error.to_string())?;
+        }
+        (self.camera, self.is_due) = (Some(sight.camera), true);
         Ok(())
     }
 
-    fn made(
-        &self,
+    fn see_with(
+        &mut self,
         scene: &QuickScene,
-        size: [u32; 2],
-    ) -> Result<TargetSet, pinhole::gpu::GpuError> {
-        let device = &self.render.device;
-        let layer = |format| {
-            let usage = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("quick picture"),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        sight: &Sight,
+        is_live: bool,
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        let part = if sight.is_moving { self.times[usize::from(is_live)].part() } else { 0 };
+        let size = sight.size.map(|side| ((f64::from(side) * PARTS[part]).round() as u32).max(1));
+        let film = Film::new(size[0], size[1])?;
+        let view = View::new(sight.camera.as_ref(), film);
+        let background = sight.settings.visible_background();
+        let background = background.unwrap_or(sight.settings.background);
+        let settings = match is_live {
+            true => RenderSettings { is_transparent: false, ..sight.settings.clone() },
+            false => RenderSettings { background, ..RenderSettings::default() },
         };
-        let color = layer(RendererOptions::default().color.texture_format());
-        let [depth, normal, id] =
-            [TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::R32Uint]
-                .map(layer);
-        let data = DataTargets { depth: &depth, normal: &normal, id: &id };
-        let targets = Targets { color: &color, data: Some(data) };
-        let frame = Frame::new(&scene.renderer, device, &targets)?;
-        let group = self.blit.group(device, &color);
-        Ok(TargetSet { size, color, depth, normal, id, frame, group })
+        let RenderState { device, queue, .. } = &self.render;
+        let (renderer, buffers) = (&scene.renderer, &scene.buffers);
+        let fits = |targets: &TargetSet| {
+            targets.size == size && matches!(targets.source, Source::Live(_)) == is_live
+        };
+        if !self.targets.as_ref().is_some_and(fits) {
+            let layers = Layers::new(device, size);
+            let targets = layers.targets();
+            let source = match is_live {
+                true => {
+                    let live = LivePicture::new(
+                        renderer, device, queue, buffers, &view, &settings, &targets,
+                    );
+                    Source::Live(Box::new(live?))
+                }
+                false => Source::Primary(Frame::new(renderer.renderer(), device, &targets)?),
+            };
+            let group = self.blit.group(device, &layers.color);
+            self.targets = Some(TargetSet { size, layers, source, group });
+        }
+        match self.targets.as_mut().map(|targets| &mut targets.source) {
+            Some(Source::Live(live)) => {
+                live.set(renderer, device, queue, buffers, &view, &settings)?;
+            }
+            Some(Source::Primary(frame)) => frame.set_view(queue, buffers, &view, &settings)?,
+            None => {}
+        }
+        self.part = part;
+        Ok(())
     }
 
     /// Records what is due.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), String> {
-        let (Some(scene), Some(targets), Some(camera)) = (&self.scene, &self.targets, &self.camera)
+        let (Some(scene), Some(targets), Some(camera)) =
+            (&self.scene, &mut self.targets, &self.camera)
         else {
             return Ok(());
         };
-        if std::mem::take(&mut self.is_due) {
-            let recorded = scene.renderer.record(encoder, &scene.buffers, &targets.frame);
-            recorded.map_err(|error| error.to_string())?;
+        if self.is_due {
+            let recorded = match &mut targets.source {
+                Source::Primary(frame) => {
+                    scene.renderer.renderer().record(encoder, &scene.buffers, frame).map(|()| true)
+                }
+                Source::Live(live) => {
+                    let queue = &self.render.queue;
+                    let recorded = live.record(&scene.renderer, queue, encoder, &scene.buffers);
+                    recorded.map(|progress| progress.state != LitState::Waiting)
+                }
+            };
+            match recorded {
+                Ok(true) => self.is_due = false,
+                // The device has enough to do.
+                Ok(false) => return Ok(()),
+                Err(error) => {
+                    self.is_due = false;
+                    return Err(error.to_string());
+                }
+            }
             self.pictures += 1;
             let (started, taken) = (Instant::now(), Arc::clone(&self.taken));
             encoder.on_submitted_work_done(move || {
@@ -296,7 +335,7 @@ impl State {
             let [width, height] = targets.size;
             let film = Film::new(width, height).map_err(|error| error.to_string())?;
             let view = View::new(camera.as_ref(), film);
-            let recorded = picker.record(encoder, &targets.targets(), &view, pixel);
+            let recorded = picker.record(encoder, &targets.layers.targets(), &view, pixel);
             recorded.map_err(|error| error.to_string())?;
             self.is_picking = true;
         }

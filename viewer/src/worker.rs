@@ -6,11 +6,15 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use crate::layers::Layers;
 use eframe::egui;
-use pinhole::camera::{CameraKind, CameraParameters};
-use pinhole::gpu::{GpuError, Renderer, RendererOptions, SceneBuffers, wgpu};
+use pinhole::camera::film::Film;
+use pinhole::camera::{CameraKind, CameraParameters, View};
+use pinhole::gpu::{
+    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, wgpu,
+};
 use pinhole::load::Column;
-use pinhole::render::RenderSettings;
+use pinhole::render::{Integrator, RenderSettings};
 use pinhole::scene::Scene;
 use pinhole_cli::viewing::{RenderFlags, Shown, StillPicture, StillRenderer, TimeLine, ViewError};
 
@@ -55,8 +59,10 @@ pub(crate) struct News {
 /// A scene on the window's device, and what renders it there.
 #[derive(Clone)]
 pub(crate) struct QuickScene {
-    pub(crate) renderer: Arc<Renderer>,
+    pub(crate) renderer: Arc<LitRenderer>,
     pub(crate) buffers: Arc<SceneBuffers>,
+    /// Whether the light is that of a studio, which the window's device can follow while things move.
+    pub(crate) is_live: bool,
 }
 
 /// The window, as far as this thread needs it.
@@ -164,7 +170,7 @@ struct Work {
     shown: Option<Shown>,
     still: Option<StillRenderer>,
     /// What renders quick pictures, for a kind of camera.
-    renderer: Option<(CameraKind, Arc<Renderer>)>,
+    renderer: Option<(CameraKind, Arc<LitRenderer>)>,
     /// What is shown, on the window's device.
     buffers: Option<Arc<SceneBuffers>>,
 }
@@ -266,23 +272,39 @@ impl Work {
         let before = self.renderer.take().filter(|(kind, _)| *kind == camera);
         let renderer = match before {
             Some((_, renderer)) => renderer,
-            None => Arc::new(Renderer::new(
-                device,
-                &RendererOptions {
-                    data_layers: true,
-                    cameras: vec![camera],
-                    ..RendererOptions::default()
-                },
-            )?),
+            None => {
+                let cameras = vec![camera];
+                let options =
+                    RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
+                Arc::new(LitRenderer::new(Renderer::new(device, &options)?))
+            }
         };
         self.renderer = Some((camera, Arc::clone(&renderer)));
         let buffers = match self.buffers.take() {
             Some(buffers) => buffers,
-            None => Arc::new(SceneBuffers::new(&renderer, device, queue, shown.scene())?),
+            None => Arc::new(SceneBuffers::new(renderer.renderer(), device, queue, shown.scene())?),
         };
         self.buffers = Some(Arc::clone(&buffers));
-        Ok(Some(QuickScene { renderer, buffers }))
+        let is_live = is_live(window, &renderer, &buffers, shown);
+        Ok(Some(QuickScene { renderer, buffers, is_live }))
     }
+}
+
+/// Whether a live picture of what is shown is possible. Builds its pipelines, so that the window does not wait for them.
+fn is_live(
+    Window { device, queue, .. }: &Window,
+    renderer: &LitRenderer,
+    scene: &SceneBuffers,
+    shown: &Shown,
+) -> bool {
+    if !matches!(shown.settings().integrator, Integrator::Studio(_)) {
+        return false;
+    }
+    let Ok(film) = Film::new(16, 16) else { return false };
+    let view = View::new(shown.camera(), film);
+    let settings = RenderSettings { is_transparent: false, ..shown.settings().clone() };
+    let layers = Layers::new(device, [16, 16]);
+    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets()).is_ok()
 }
 
 fn error_of(error: &GpuError) -> ViewError {
