@@ -277,4 +277,11 @@ refused 1 helix.pdb --color-by nothing
 refused 2 helix.pdb --adapter "no such adapter"
 DISPLAY='' refused 1 helix.pdb
 VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent refused 1 helix.pdb
+mkdir -p alone
+cp "$bin/pinhole" alone/
+code=0
+PATH=/usr/bin:/bin alone/pinhole view helix.pdb >out.txt 2>err.txt || code=$?
+[ "$code" = 1 ] && grep -q 'cargo install --path viewer' err.txt || fail "without a viewer: code $code, $(cat err.txt)"
+echo "code $code: $(cat err.txt)"
+rm -r alone
 echo "done; $skipped skipped; the screenshots are in $folder"

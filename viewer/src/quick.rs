@@ -60,7 +60,7 @@ struct TargetSet {
 /// What renders a quick picture.
 enum Source {
     /// One ray for each pixel, lit from the eye.
-    Primary(Frame),
+    Primary(Box<Frame>),
     /// The light of a studio.
     Live(Box<LivePicture>),
 }
@@ -281,7 +281,10 @@ impl State {
                     );
                     Source::Live(Box::new(live?))
                 }
-                false => Source::Primary(Frame::new(renderer.renderer(), device, &targets)?),
+                false => {
+                    let frame = Frame::new(renderer.renderer(), device, &targets)?;
+                    Source::Primary(Box::new(frame))
+                }
             };
             let group = self.blit.group(device, &layers.color);
             self.targets = Some(TargetSet { size, layers, source, group });
