@@ -1,7 +1,6 @@
 //! `pinhole verify`: checks whether a picture is legal that an adapter renders now, or that was recorded before.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
 
@@ -175,7 +174,8 @@ mod recorded {
         let lit = (is_lit && outputs.has_page())
             .then(|| verify_lit::render(&headless, &input, choice))
             .transpose()?;
-        let run = Run { scene: Arc::unwrap_or_clone(input.scene), recording, provenance };
+        let run =
+            Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
         Ok(Recorded { run, outputs, paths, lit })
     }
 

@@ -45,6 +45,7 @@ pub(super) struct Found {
     /// The number of bonds, if bonds are drawn.
     pub(super) bonds: Option<usize>,
     /// The columns of the data that is drawn, if they were asked for.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
     pub(super) columns: Vec<Column>,
 }
 
@@ -94,6 +95,7 @@ impl Contents {
     }
 
     /// Takes the columns of the data, if they were asked for; then they are empty.
+    #[cfg(feature = "gpu")]
     pub(crate) fn take_columns(&mut self) -> Vec<Column> {
         std::mem::take(&mut self.found.columns)
     }
