@@ -33,6 +33,15 @@ demo:
 hosts *ARGUMENTS:
     tests/hosts/drive.sh {{ARGUMENTS}}
 
+# Shows a file in a window.
+view *ARGUMENTS:
+    cargo run --release -p pinhole-viewer -- {{ARGUMENTS}}
+
+# Drives the viewer in a window on a screen in memory.
+drive:
+    cargo build -p pinhole-cli -p pinhole-viewer
+    tests/viewer/drive.sh
+
 # Compares structures on this machine's adapter.
 bench *ARGUMENTS:
     cargo run --release -- bench {{ARGUMENTS}}

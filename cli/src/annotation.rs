@@ -13,7 +13,7 @@ use pinhole::camera::film::Film;
 use pinhole::color_by::ColorKey;
 use pinhole::image::encoding::Encoding;
 
-const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
+pub(super) const HEADING: &str = "Annotations (drawn on a PNG, after exposure and tone)";
 
 #[derive(Debug, Args)]
 pub(super) struct AnnotationArgs {

@@ -13,6 +13,7 @@ use super::generate::GenerateArgs;
 use super::light::LightArgs;
 use super::report::ReportArgs;
 use super::stop_rule::StopArgs;
+use super::view::ViewArguments;
 use pinhole::accel::AccelChoice;
 use pinhole::load::Format;
 
@@ -32,6 +33,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Render a picture of a scene file or a data file
     Render(Box<RenderArgs>),
+    /// Show a file in a window, from all sides, and give the command that renders what is seen
+    View(Box<ViewArguments>),
     /// Render on an adapter, and check for every pixel whether a conforming device may have made it
     Verify(Box<VerifyArgs>),
     /// Show how much memory a render would need on the device and the machine, and whether it fits

@@ -1,6 +1,7 @@
 //! Scenes for `pinhole bench`: standard scenes and files.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -75,6 +76,7 @@ impl BenchSource {
                 }
                 let name = one_line(&path.display().to_string());
                 let Input { scene, camera, film, .. } = input;
+                let scene = Arc::unwrap_or_clone(scene);
                 Ok(BenchScene { name, scene, camera, film, load })
             }
         }

@@ -11,9 +11,9 @@ use pinhole::glam::DVec3;
 
 /// Heading of these flags in the help. It is set on each flag, because clap would put later flags under a heading that
 /// is set once.
-const HEADING: &str = "Camera (any of these flags replaces the camera of the scene)";
+pub(super) const HEADING: &str = "Camera (any of these flags replaces the camera of the scene)";
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct CameraArgs {
     /// Kind of the camera [default: pinhole]
     #[arg(long, help_heading = HEADING, value_name = "KIND", value_parser = kinds())]
@@ -146,7 +146,7 @@ impl CameraArgs {
     }
 
     /// Returns every key of a camera table with its flag and its value. Each camera refuses keys that it does not have.
-    fn keys(&self) -> [(&'static str, &'static str, Option<toml::Value>); 17] {
+    pub(super) fn keys(&self) -> [(&'static str, &'static str, Option<toml::Value>); 17] {
         [
             ("eye", "--eye", self.eye.map(list)),
             ("look_at", "--look-at", self.look_at.map(list)),

@@ -1,6 +1,7 @@
 //! Reads the input: from a path to a scene with its camera and settings.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use anyhow::Result;
 
@@ -20,8 +21,7 @@ pub(super) use super::read_file::read;
 use super::report::Report;
 use super::structure_flags::StructureFlags;
 use contents::Contents;
-pub(super) use frames::FoundFrames;
-use frames::OpenFrames;
+pub(super) use frames::{FoundFrames, OpenFrames};
 pub(super) use look::{Framed, Look};
 use pinhole::annotate::AnnotationPlan;
 use pinhole::camera::film::Film;
@@ -41,7 +41,7 @@ mod look;
 
 /// Everything that a render needs from its input.
 pub(super) struct Input {
-    pub(super) scene: Scene,
+    pub(super) scene: Arc<Scene>,
     /// The camera; for a stereo camera, the view from the middle between the eyes.
     pub(super) camera: Box<dyn Camera>,
     /// The left and the right eye of a stereo camera.
@@ -110,7 +110,9 @@ pub(super) struct Source {
     /// The colors by kind that all frames of a movie have, although no flag asks for them.
     kinds: Option<ColorBy>,
     /// The open file, if several of its frames are read.
-    frames: Option<OpenFrames>,
+    frames: Option<Arc<OpenFrames>>,
+    /// Whether the columns of the data are kept, for the viewer.
+    keeps_columns: bool,
 }
 
 impl Source {
@@ -176,6 +178,7 @@ impl Source {
             annotation: AnnotationFlags::default(),
             kinds: None,
             frames: None,
+            keeps_columns: false,
         }
     }
 

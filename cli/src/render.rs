@@ -36,10 +36,12 @@ use super::views::Views;
 use super::with_scene::with_structures;
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
+use pinhole::annotate::Annotations;
 use pinhole::camera::View;
 use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan};
+use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 
 /// A render job, checked as far as is possible before the input is read.
@@ -54,7 +56,7 @@ pub(super) struct Job {
 }
 
 impl Job {
-    fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
+    pub(super) fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
         let outputs = Outputs::new(output, &args.layers)?;
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
@@ -74,6 +76,23 @@ impl Job {
             device: Device::new(&args.device, args.accel.accel)?,
             stereo: args.stereo,
         })
+    }
+
+    /// Applies the flags for the picture's file to an input, and returns how the picture is encoded and what is drawn
+    /// over it. Notes are given to `note`.
+    pub(super) fn finish(
+        &self,
+        input: &mut Input,
+        note: impl Fn(&dyn std::fmt::Display),
+    ) -> Result<(Encoding, Annotations), Failure> {
+        let encoding = self.annotation.apply_to(self.encoding.apply_to(input.encoding));
+        let encoding = encoding.with_background(input.settings.visible_background());
+        input.settings.is_transparent = encoding.transparent();
+        if input.settings.integrator.is_primary() {
+            self.stop_rule.check_without_light()?;
+        }
+        input.settings.notes(&input.scene).iter().for_each(|text| note(text));
+        Ok((encoding, self.annotation.for_input(input, note)?))
     }
 }
 
@@ -107,14 +126,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
-    let encoding = job.annotation.apply_to(job.encoding.apply_to(input.encoding));
-    let encoding = encoding.with_background(input.settings.visible_background());
-    input.settings.is_transparent = encoding.transparent();
-    if input.settings.integrator.is_primary() {
-        job.stop_rule.check_without_light()?;
-    }
-    input.settings.notes(&input.scene).iter().for_each(|text| note(text));
-    let outputs = job.outputs.with_annotations(job.annotation.for_input(&input, note)?);
+    let (encoding, annotations) = job.finish(&mut input, note)?;
+    let outputs = job.outputs.with_annotations(annotations);
     let layers = outputs.layers(&encoding);
     let views = Views::of(&input);
     if job.stereo.is_some() && views.count() == 1 {

@@ -24,7 +24,9 @@ pub(super) fn message(error: &clap::Error, arguments: &[String]) -> Option<Strin
     let command = arguments.iter().find_map(|argument| program.find_subcommand(argument));
     let hint = match command {
         Some(command) => {
-            let others = program.get_subcommands().filter(|other| flags(other).any(|f| f == *flag));
+            // Flags of `view` are flags of `render`.
+            let others = program.get_subcommands().filter(|other| other.get_name() != "view");
+            let others = others.filter(|other| flags(other).any(|f| f == *flag));
             let others: Vec<_> = others.map(|other| format!("`{}`", other.get_name())).collect();
             match nearest(flag, command) {
                 _ if is_of_columns(flag, &program) && SCENES.contains(&command.get_name()) => {

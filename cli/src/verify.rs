@@ -174,7 +174,8 @@ mod recorded {
         let lit = (is_lit && outputs.has_page())
             .then(|| verify_lit::render(&headless, &input, choice))
             .transpose()?;
-        let run = Run { scene: input.scene, recording, provenance };
+        let run =
+            Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
         Ok(Recorded { run, outputs, paths, lit })
     }
 

@@ -48,8 +48,7 @@ fn lit_by_lamps(seen: Seen, before: Shades, seed: u32, number: u32) -> Lit {
         shades.lamps += select(vec4f(0.0), open - shade, is_cast);
         choice = choose(choice, light, select(0.0, luminance(open.rgb) + shade.w, is_cast));
     }
-    let u = sample_pair(seed, number, 2u + choice.light);
-    let lamp = sample_lamp(choice.light, seen.start.position, u);
+    let lamp = sample_lamp(choice.light, seen.start.position, sample_pair(seed, number, 2u + choice.light));
     // A point of the lamp behind the surface is hidden.
     var is_dark = dot(normal, lamp.direction) <= 0.0;
     if (choice.total > 0.0 && !is_dark) {

@@ -340,7 +340,7 @@ fn apply(input: &mut Input, change: Change, notes: &mut Notes) -> Result<(), Fai
                 apply_look(input, *look);
             }
             contents.take_notes().into_iter().for_each(|note| notes.tell(note));
-            input.scene = contents.scene;
+            input.scene = Arc::new(contents.scene);
             let checked = input.settings.check(&input.scene);
             checked.with_context(|| input.report.path.clone())?;
         }

@@ -15,10 +15,10 @@ use pinhole::added::Additions;
 use pinhole::camera::film::Film;
 use pinhole::color_by::{ColorBy, ColorKey, Mapping};
 use pinhole::image::color::LinearRgb;
-use pinhole::load::{self, Loaded};
+use pinhole::load::{self, Column, Loaded};
 use pinhole::scene::Scene;
 use pinhole::scene_file::{AppliedData, Data, DataSpheres, IntegratorKind, SceneFile};
-use pinhole::select::Kept;
+use pinhole::select::{Kept, Selection};
 
 /// What a file holds. The scene may be moved out of it.
 pub(crate) struct Contents {
@@ -44,6 +44,9 @@ pub(super) struct Found {
     pub(super) kept: Option<Kept>,
     /// The number of bonds, if bonds are drawn.
     pub(super) bonds: Option<usize>,
+    /// The columns of the data that is drawn, if they were asked for.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "for the viewer"))]
+    pub(super) columns: Vec<Column>,
 }
 
 /// The data of a scene file.
@@ -59,6 +62,7 @@ struct FoundData {
     bonds: Option<usize>,
     /// The number of spheres that were added at the end.
     added: usize,
+    columns: Vec<Column>,
 }
 
 /// Where the data of a scene file is, and the options for reading it.
@@ -90,6 +94,12 @@ impl Contents {
         self.found.color_key.as_mut()
     }
 
+    /// Takes the columns of the data, if they were asked for; then they are empty.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn take_columns(&mut self) -> Vec<Column> {
+        std::mem::take(&mut self.found.columns)
+    }
+
     /// The colors by kind that no flag asked for.
     pub(crate) fn kinds(&self) -> Option<&ColorBy> {
         self.found.kinds.as_ref()
@@ -109,6 +119,7 @@ impl Source {
         let file_name = || path.display().to_string();
         let selected = self.structure.select.as_ref().map(|select| select.apply(&mut loaded));
         let kept = selected.transpose().context("--select").with_context(file_name)?;
+        let columns = self.columns_of(&loaded, None);
         let mut mapping = self.color.apply_to(&Mapping::default())?;
         loaded.correct_notes(mapping.color.is_some(), mapping.radius.is_some(), |_| false);
         let mut notes = std::mem::take(&mut loaded.notes);
@@ -136,7 +147,7 @@ impl Source {
                 path.display()
             ));
         }
-        let file = SceneFile::parse_in_style("", Some(self.style)).with_context(file_name)?;
+        let file = self.scene_of_data()?;
         let files = [path.clone()].into_iter().chain(self.options.topology.clone()).collect();
         let size_from = String::new();
         let found = Found {
@@ -149,12 +160,27 @@ impl Source {
             size_from,
             kept,
             bonds,
+            columns,
         };
         self.prepared(file, scene, found)
     }
 
+    /// Copies the columns of the spheres that `select` keeps, if they are asked for.
+    fn columns_of(&self, loaded: &Loaded, select: Option<&Selection>) -> Vec<Column> {
+        match (self.keeps_columns, select) {
+            (false, _) => Vec::new(),
+            (true, None) => loaded.columns.clone(),
+            (true, Some(select)) => {
+                let mut kept = loaded.clone();
+                // Where this fails, so does what is drawn.
+                let _ = select.apply(&mut kept);
+                kept.columns
+            }
+        }
+    }
+
     /// Returns the text of the scene file.
-    pub(super) fn text(&self) -> Result<String, Failure> {
+    pub(crate) fn text(&self) -> Result<String, Failure> {
         let not_text = |_| {
             anyhow!("{}: this is not UTF-8 text; a scene file is TOML text", self.path.display())
         };
@@ -162,11 +188,20 @@ impl Source {
     }
 
     /// Reads a scene from the text of a scene file, and its data.
-    pub(super) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
+    pub(crate) fn contents_of_text(&self, text: &str) -> Result<Contents, Failure> {
         let file_name = || self.path.display().to_string();
         let file = self.parsed(text)?;
-        let FoundData { spheres: data, color_key, color, notes, has_atoms, kept, bonds, added } =
-            self.data_of(&file)?;
+        let FoundData {
+            spheres: data,
+            color_key,
+            color,
+            notes,
+            has_atoms,
+            kept,
+            bonds,
+            added,
+            columns,
+        } = self.data_of(&file)?;
         let kind = self.light.integrator(file.integrator().or(self.color.integrator()));
         let sky_file = file.sky_image().filter(|_| kind == IntegratorKind::Path);
         let sky_image = sky_file.map(|file| self.resolve(file));
@@ -192,26 +227,34 @@ impl Source {
             size_from: String::new(),
             kept,
             bonds,
+            columns,
         };
         self.prepared(file, scene, found)
     }
 
-    pub(super) fn parsed(&self, text: &str) -> Result<SceneFile> {
+    /// The scene file that stands for a data file: its style.
+    pub(crate) fn scene_of_data(&self) -> Result<SceneFile> {
+        let file = SceneFile::parse_in_style("", Some(self.style));
+        file.with_context(|| self.path.display().to_string())
+    }
+
+    pub(crate) fn parsed(&self, text: &str) -> Result<SceneFile> {
         let file = SceneFile::parse_in_style(text, self.light.style());
         file.with_context(|| self.path.display().to_string())
     }
 
     /// Applies the flags for the film and the background.
-    fn prepared(
-        &self,
-        mut file: SceneFile,
-        scene: Scene,
-        found: Found,
-    ) -> Result<Contents, Failure> {
+    fn prepared(&self, file: SceneFile, scene: Scene, found: Found) -> Result<Contents, Failure> {
+        let (file, size_from) = self.with_film(file)?;
+        Ok(Contents { file: Arc::new(file), scene, found: Found { size_from, ..found } })
+    }
+
+    /// Gives a scene file the film and the background of the flags. Also returns where the film's size comes from.
+    pub(crate) fn with_film(&self, mut file: SceneFile) -> Result<(SceneFile, String), Failure> {
         let (film, size_from) = self.film(file.film)?;
         file.film = film;
         file.background = self.light.background().unwrap_or(file.background);
-        Ok(Contents { file: Arc::new(file), scene, found: Found { size_from, ..found } })
+        Ok((file, size_from))
     }
 
     /// Returns the film, and where its size comes from.
@@ -264,6 +307,7 @@ impl Source {
                     kept: None,
                     bonds: None,
                     added: 0,
+                    columns: Vec::new(),
                 }),
             };
         };
@@ -276,6 +320,7 @@ impl Source {
         let has_bonds = additions.bonds.is_some();
         let select = self.structure.select.clone().or(data.select);
         let (color, radius) = (options.color, options.radius);
+        let columns = self.columns_of(&loaded, select.as_ref());
         let data = Data { mapping, color, radius, select, additions, ..data };
         let AppliedData { spheres, color_key, notes, kept, added, .. } =
             data.apply(loaded).with_context(in_scene)?;
@@ -288,6 +333,7 @@ impl Source {
             kept,
             bonds: has_bonds.then_some(added.bonds()),
             added: added.len(),
+            columns,
         })
     }
 

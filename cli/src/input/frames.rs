@@ -1,7 +1,7 @@
 //! Several frames of one file, of which one at a time is read.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Result;
 
@@ -62,8 +62,32 @@ impl Source {
         let note = file.problem().map(|problem| {
             format!("{}: after the {count} complete frames: {problem}", path.display())
         });
-        self.frames = Some(OpenFrames { path, file: Mutex::new(file) });
+        self.frames = Some(Arc::new(OpenFrames { path, file: Mutex::new(file) }));
         Ok(Ok(FoundFrames { count, note }))
+    }
+
+    /// The open file, to be used again for other frames.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn frames(&self) -> Option<Arc<OpenFrames>> {
+        self.frames.clone()
+    }
+
+    /// Returns this source with a file that was opened before with the same options.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn with_frames(self, frames: Option<Arc<OpenFrames>>) -> Self {
+        Self { frames, ..self }
+    }
+
+    /// Returns this source, which keeps the columns of its data.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn keeping_columns(self) -> Self {
+        Self { keeps_columns: true, ..self }
+    }
+
+    /// Whether the input is a scene file.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn is_scene_file(&self) -> bool {
+        matches!(self.format, Format::Scene)
     }
 
     /// Chooses the frame that is read next.

@@ -1,6 +1,7 @@
 //! The camera and the settings for rendering.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{Context, Error, Result};
 
@@ -116,8 +117,18 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, found } = contents;
-        let Found { notes, files, sky_image, color_key, kinds, has_atoms, size_from, kept, bonds } =
-            found;
+        let Found {
+            notes,
+            files,
+            sky_image,
+            color_key,
+            kinds,
+            has_atoms,
+            size_from,
+            kept,
+            bonds,
+            ..
+        } = found;
         let report = Report {
             path: self.path.display().to_string(),
             spheres: scene.len() - scene.added(),
@@ -133,7 +144,7 @@ impl Source {
         let own_spheres = file.spheres().collect();
         let Look { camera, eyes, settings, parameters, .. } = look;
         Ok(Input {
-            scene,
+            scene: Arc::new(scene),
             camera,
             eyes,
             film,

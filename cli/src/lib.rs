@@ -1,0 +1,166 @@
+//! The program `pinhole`. It parses the arguments, checks them and turns them into types of the library, and runs the
+//! job. Only this crate uses clap, prints, and accesses the file system.
+//!
+//! It is a library for one other program, the viewer, which turns flags into pictures by the same code: see [`viewing`].
+
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "the comments of arguments are their help texts, not Markdown"
+)]
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+mod adapter;
+mod annotation;
+mod args;
+#[cfg(feature = "gpu")]
+mod bench;
+#[cfg(feature = "gpu")]
+mod bench_report;
+#[cfg(feature = "gpu")]
+mod bench_scene;
+mod camera;
+mod color_flags;
+mod data;
+mod demo;
+mod device;
+#[cfg(feature = "gpu")]
+mod dump_shaders;
+mod encoding;
+mod failure;
+mod file_info;
+mod file_info_text;
+mod frames;
+mod generate;
+mod info;
+mod input;
+mod input_format;
+mod interrupt;
+mod kind_color;
+mod light;
+mod memory;
+mod output;
+mod picture;
+#[cfg(feature = "gpu")]
+mod plan;
+mod print_scene;
+mod process;
+mod progress;
+mod read_file;
+mod render;
+mod report;
+#[cfg(feature = "gpu")]
+mod self_test;
+mod speak;
+mod stop_rule;
+mod structure_flags;
+#[cfg(feature = "gpu")]
+mod table;
+mod threads;
+mod unknown_flag;
+mod verify;
+mod verify_lit;
+mod verify_output;
+mod verify_page;
+mod verify_page_paths;
+mod verify_paths;
+mod verify_pictures;
+mod verify_report;
+mod view;
+#[cfg(feature = "gpu")]
+pub mod viewing;
+mod views;
+#[cfg(feature = "gpu")]
+mod with_scene;
+
+use args::{Arguments, Command};
+use speak::{answer, tell, tell_all};
+
+/// Runs the program with the arguments of the process. This must be the first thing that the process does.
+///
+/// Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed, 130 stopped.
+#[must_use]
+pub fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    quieten_device_select();
+    run()
+}
+
+/// Switches off Mesa's device-select layer where it would only print errors.
+///
+/// Without a desktop session, the layer fails to reach a Wayland display, and libwayland then prints a line that starts
+/// with `error:` for every Vulkan instance. The layer puts one GPU first, which the program does by itself. The layer
+/// stays on for a user who has configured it.
+#[cfg(target_os = "linux")]
+#[expect(unsafe_code, reason = "the layer reads nothing but the environment")]
+fn quieten_device_select() {
+    let is_set = |name| std::env::var_os(name).is_some();
+    if !is_set("XDG_RUNTIME_DIR") && !is_set("MESA_VK_DEVICE_SELECT") {
+        // SAFETY: this is the first thing that `main` does, so there is no other thread yet.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let arguments = std::env::args_os().skip(1);
+            let words: Vec<_> = arguments.map(|word| word.to_string_lossy().into()).collect();
+            return explain(&error, &words);
+        }
+    };
+    let result = interrupt::install().and_then(|()| match arguments.command {
+        Command::Render(args) => render::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Plan(args) => plan::run(&args),
+        #[cfg(feature = "gpu")]
+        Command::Bench(args) => bench::run(&args),
+        Command::Demo(args) => demo::run(&args),
+        Command::Generate(args) => generate::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::View(args) => view::run(&args),
+    });
+    progress::clear();
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            tell(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+/// Prints the help or the version as clap formats it, and an error on one line. `arguments` are those of the program,
+/// without its name.
+fn explain(error: &clap::Error, arguments: &[String]) -> ExitCode {
+    let text = error.to_string();
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match answer(text.as_bytes()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(_) => failure::FAILED.into(),
+        },
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            tell_all(&text);
+            failure::USAGE.into()
+        }
+        ErrorKind::UnknownArgument => {
+            tell(unknown_flag::message(error, arguments).as_deref().unwrap_or(one_message(&text)));
+            failure::USAGE.into()
+        }
+        _ => {
+            tell(one_message(&text));
+            failure::USAGE.into()
+        }
+    }
+}
+
+/// The message of an error without the usage, which would make it longer than a line.
+fn one_message(text: &str) -> &str {
+    let message = text.split("\n\nUsage:").next().unwrap_or_default();
+    message.split("\n\nFor more information").next().unwrap_or_default()
+}

@@ -1,0 +1,403 @@
+//! A file and flags of `pinhole render`, as text.
+
+use std::collections::HashMap;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::OnceLock;
+
+use clap::parser::ValueSource;
+use clap::{CommandFactory, Parser};
+use pinhole::geometry::bounds::Bounds;
+use pinhole::glam::DVec3;
+
+use super::{ViewCamera, ViewError};
+use crate::args::{Arguments, Command, RenderArgs};
+use crate::render::{self, Job};
+use crate::{annotation, camera, light};
+
+/// A file and flags of `pinhole render` that say what is seen: the whole state of a view.
+///
+/// Every flag is there once, except `--label`, in the order in which `pinhole render --help` lists them; flags that are
+/// set later follow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RenderFlags {
+    path: String,
+    /// Names without dashes, and values, which are empty for flags without one.
+    flags: Vec<(String, String)>,
+}
+
+/// What a flag decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decides {
+    /// Which spheres there are, and their colours.
+    Data,
+    Camera,
+    /// The light, which scene files give to their spheres as well.
+    Light,
+    /// The film, the encoding, and what is drawn over the picture.
+    Picture,
+}
+
+impl RenderFlags {
+    /// Parses the arguments of this process, which are those of `pinhole view`. Prints the help, the version, or what is
+    /// wrong, as `pinhole` does.
+    ///
+    /// # Errors
+    /// The exit code, if there is nothing to show.
+    pub fn of_process() -> Result<Self, ExitCode> {
+        let words = std::env::args_os().skip(1);
+        let mut arguments: Vec<String> = words.map(|word| word.to_string_lossy().into()).collect();
+        arguments.insert(0, "view".to_owned());
+        Self::matched(std::env::args_os().skip(1)).map_err(|error| match error {
+            Refusal::Clap(error) => crate::explain(&error, &arguments),
+            Refusal::Other(error) => {
+                super::print_error(&error);
+                error.exit_code()
+            }
+        })
+    }
+
+    /// Parses words: a file and flags, as they stand behind `pinhole view`.
+    ///
+    /// # Errors
+    /// If there is no file, or a flag that `pinhole view` does not have, or one with a wrong value.
+    pub fn parse<W: Into<OsString>>(words: impl IntoIterator<Item = W>) -> Result<Self, ViewError> {
+        Self::matched(words.into_iter().map(Into::into)).map_err(|error| match error {
+            Refusal::Clap(error) => of_clap(&error),
+            Refusal::Other(error) => error,
+        })
+    }
+
+    fn matched(words: impl Iterator<Item = OsString>) -> Result<Self, Refusal> {
+        let mut program = Arguments::command();
+        program.build();
+        let start = ["pinhole", "view"].map(OsString::from);
+        let words: Vec<OsString> = start.into_iter().chain(words).collect();
+        let matches = program.clone().try_get_matches_from(&words).map_err(Refusal::Clap)?;
+        let (Some(matches), Some(view)) =
+            (matches.subcommand_matches("view"), program.find_subcommand("view"))
+        else {
+            return Err(Refusal::Other(ViewError::usage("there is nothing to show; name a file")));
+        };
+        let mut found = Self { path: String::new(), flags: Vec::new() };
+        for argument in view.get_arguments() {
+            let id = argument.get_id().as_str();
+            if matches.value_source(id) != Some(ValueSource::CommandLine) {
+                continue;
+            }
+            let raw = matches.get_raw(id).into_iter().flatten();
+            let values: Vec<String> =
+                raw.map(text).collect::<Result<_, _>>().map_err(Refusal::Other)?;
+            let Some(name) = argument.get_long() else {
+                found.path = values.into_iter().next().unwrap_or_default();
+                continue;
+            };
+            if !argument.get_action().takes_values() {
+                found.flags.push((name.to_owned(), String::new()));
+            } else if argument.get_value_delimiter().is_some() {
+                found.flags.push((name.to_owned(), values.join(",")));
+            } else {
+                found.flags.extend(values.into_iter().map(|value| (name.to_owned(), value)));
+            }
+        }
+        if found.path == "-" {
+            return Err(Refusal::Other(ViewError::usage(
+                "-: the viewer reads its file more than once, which standard input cannot give; name a file",
+            )));
+        }
+        // The same checks that `render` makes before it reads anything.
+        found.job().map_err(Refusal::Other)?;
+        Ok(found)
+    }
+
+    /// The path of the file.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The value of a flag, which is named without dashes; empty for a flag without a value. `None` if it is not there.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.flags.iter().find(|(other, _)| other == name).map(|(_, value)| value.as_str())
+    }
+
+    /// Gives a flag a value, or none if it is empty. The value is checked when the flags are used.
+    pub fn set(&mut self, name: &str, value: &str) {
+        match self.flags.iter_mut().find(|(other, _)| other == name) {
+            Some((_, old)) => value.clone_into(old),
+            None => self.flags.push((name.to_owned(), value.to_owned())),
+        }
+    }
+
+    /// Removes a flag.
+    pub fn remove(&mut self, name: &str) {
+        self.flags.retain(|(other, _)| other != name);
+    }
+
+    /// The camera of the flags, if they say where it is.
+    ///
+    /// # Errors
+    /// If the flags do not make a camera.
+    pub fn camera(&self) -> Result<Option<ViewCamera>, ViewError> {
+        if self.get("eye").is_none() {
+            return Ok(None);
+        }
+        let flags = self.render_args("-")?.input.view.camera.flags()?;
+        let parameters = flags.parameters(None, DVec3::Y).map_err(ViewError::usage)?;
+        // A camera with an eye depends on no spheres, so that these are any.
+        let any = Bounds::of_sphere(DVec3::ZERO, 1.0);
+        let placed = parameters.placed(1.0, &(&any).into());
+        Ok(ViewCamera::new(&placed.map_err(|error| ViewError::usage(error.to_string()))?))
+    }
+
+    /// Removes all flags of the camera.
+    pub fn remove_camera(&mut self) {
+        self.flags.retain(|(name, _)| decides(name) != Decides::Camera);
+    }
+
+    /// Whether the same spheres in the same colours belong to both, so that only camera, light or film differ.
+    #[must_use]
+    pub fn has_data_of(&self, other: &Self) -> bool {
+        // Scene files give light to spheres, too.
+        let is_scene = self.path.to_ascii_lowercase().ends_with(".toml");
+        let of_data = |flags: &Self| -> Vec<(String, String)> {
+            let is_kept = |name: &str| match decides(name) {
+                Decides::Data => true,
+                Decides::Light => is_scene,
+                Decides::Camera | Decides::Picture => false,
+            };
+            let mut kept: Vec<_> =
+                flags.flags.iter().filter(|(n, _)| is_kept(n)).cloned().collect();
+            kept.sort();
+            kept
+        };
+        self.path == other.path && of_data(self) == of_data(other)
+    }
+
+    /// Whether both read the same file in the same way, but perhaps other frames of it.
+    pub(super) fn has_file_of(&self, other: &Self) -> bool {
+        let reading = ["format", "topology", "columns", "radius"];
+        self.path == other.path && reading.iter().all(|name| self.get(name) == other.get(name))
+    }
+
+    /// The words behind `pinhole render`, without the output.
+    #[must_use]
+    pub fn words(&self) -> Vec<String> {
+        let path =
+            if self.path.starts_with('-') { format!("./{}", self.path) } else { self.path.clone() };
+        let flag = |(name, value): &(String, String)| match value.as_str() {
+            "" => format!("--{name}"),
+            value => format!("--{name}={value}"),
+        };
+        [path].into_iter().chain(self.flags.iter().map(flag)).collect()
+    }
+
+    /// The command that renders what is seen, for a shell.
+    #[must_use]
+    pub fn command_line(&self, output: &str) -> String {
+        let end = ["-o".to_owned(), output.to_owned()];
+        let words: Vec<String> = self.words().iter().chain(&end).map(|word| quoted(word)).collect();
+        format!("pinhole render {}", words.join(" "))
+    }
+
+    /// Renders and writes the picture, as `pinhole render` does with the same flags.
+    ///
+    /// # Errors
+    /// The errors of `pinhole render`.
+    pub fn save(&self, output: &str) -> Result<(), ViewError> {
+        // A name that starts with a dash is a file here, not standard output.
+        let output =
+            if output.starts_with('-') { format!("./{output}") } else { output.to_owned() };
+        Ok(render::run(&*self.render_args(&output)?)?)
+    }
+
+    /// Checks the flags as far as is possible before the file is read.
+    ///
+    /// # Errors
+    /// If a flag has a wrong value, or does not go with another or with the file.
+    pub fn check(&self) -> Result<(), ViewError> {
+        self.job().map(drop)
+    }
+
+    fn render_args(&self, output: &str) -> Result<Box<RenderArgs>, ViewError> {
+        let start = ["pinhole", "render"].map(str::to_owned);
+        let end = ["-o".to_owned(), output.to_owned()];
+        let words = start.into_iter().chain(self.words()).chain(end);
+        match Arguments::try_parse_from(words).map_err(|error| of_clap(&error))?.command {
+            Command::Render(args) => Ok(args),
+            _ => Err(ViewError::usage("these are not the flags of `render`")),
+        }
+    }
+
+    /// The job of `pinhole render` with these flags.
+    pub(super) fn job(&self) -> Result<Job, ViewError> {
+        Ok(Job::new(&*self.render_args("-")?, Path::new("-"))?)
+    }
+}
+
+enum Refusal {
+    Clap(clap::Error),
+    Other(ViewError),
+}
+
+fn of_clap(error: &clap::Error) -> ViewError {
+    let text = error.to_string();
+    let message = crate::one_message(&text);
+    ViewError::usage(message.strip_prefix("error: ").unwrap_or(message))
+}
+
+fn text(word: &std::ffi::OsStr) -> Result<String, ViewError> {
+    word.to_str().map(str::to_owned).ok_or_else(|| {
+        ViewError::usage(format!(
+            "{}: the viewer cannot write this name into a command, because it is not UTF-8; rename it",
+            word.to_string_lossy()
+        ))
+    })
+}
+
+/// What a flag decides, by the heading under which the help shows it.
+fn decides(name: &str) -> Decides {
+    static HEADINGS: OnceLock<HashMap<String, Decides>> = OnceLock::new();
+    let headings = HEADINGS.get_or_init(|| {
+        let mut program = Arguments::command();
+        program.build();
+        let flags = program.find_subcommand("view").into_iter().flat_map(clap::Command::get_opts);
+        let of_flag = |flag: &clap::Arg| {
+            let name = flag.get_long()?.to_owned();
+            let decides = match flag.get_help_heading() {
+                Some(camera::HEADING) => Decides::Camera,
+                Some(light::HEADING) => Decides::Light,
+                Some(annotation::HEADING) => Decides::Picture,
+                _ if PICTURE.contains(&name.as_str()) => Decides::Picture,
+                _ => Decides::Data,
+            };
+            Some((name, decides))
+        };
+        flags.filter_map(of_flag).collect()
+    });
+    headings.get(name).copied().unwrap_or(Decides::Data)
+}
+
+/// Flags without a heading that leave the spheres as they are.
+const PICTURE: [&str; 9] =
+    ["size", "bits", "transparent", "exposure", "tone", "backend", "adapter", "limits", "accel"];
+
+/// Quotes a word for a shell, if it needs that.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    if cfg!(windows) { format!("\"{word}\"") } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failure::USAGE;
+
+    fn parsed(words: &[&str]) -> RenderFlags {
+        RenderFlags::parse(words).unwrap()
+    }
+
+    #[test]
+    fn flags_survive_being_written_and_read() {
+        let all = [
+            "a.pdb",
+            "--eye=1,2,-3",
+            "--look-at",
+            "0,0,-1e-7",
+            "--fov",
+            "22.5",
+            "--style",
+            "path",
+            "--samples=3",
+            "--select",
+            "chain == A and z > -3",
+            "--bonds",
+            "--box=0.2",
+            "--color-by",
+            "b_factor",
+            "--range",
+            "-1,5",
+            "--label",
+            "it's @ 5",
+            "--label=two",
+            "--legend",
+            "--scale-bar",
+            "--transparent",
+            "--ao",
+            "--denoise=false",
+            "--cmap-reverse",
+            "--frame=0",
+            "--size",
+            "640x480",
+        ];
+        let flags = parsed(&all);
+        assert_eq!(parsed(&flags.words().iter().map(String::as_str).collect::<Vec<_>>()), flags);
+        assert_eq!(flags.get("bonds"), Some(""));
+        assert_eq!(flags.get("ao"), Some("4"));
+        assert_eq!(flags.get("look-at"), Some("0,0,-1e-7"));
+        assert_eq!(flags.words().iter().filter(|word| word.starts_with("--label")).count(), 2);
+    }
+
+    #[test]
+    fn a_shell_reads_the_words_back() {
+        let flags = parsed(&[
+            "my file.pdb",
+            "--select",
+            "name == 'C1' or name == $x",
+            "--label",
+            "50% \"a\"",
+        ]);
+        let line = flags.command_line("out put.png");
+        let expected = r#"pinhole render 'my file.pdb' '--select=name == '\''C1'\'' or name == $x' '--label=50% "a"' -o 'out put.png'"#;
+        assert!(cfg!(windows) || line == expected, "{line}");
+    }
+
+    #[test]
+    fn only_some_flags_change_the_spheres() {
+        let plain = parsed(&["a.pdb"]);
+        for flag in [
+            "--style=path",
+            "--view=iso",
+            "--size=9x9",
+            "--legend-title=a",
+            "--bits=16",
+            "--samples=2",
+        ] {
+            assert!(parsed(&["a.pdb", flag]).has_data_of(&plain), "{flag}");
+        }
+        for flag in ["--select=x > 1", "--bonds", "--color-by=x", "--frame=1", "--radius=1"] {
+            assert!(
+                !RenderFlags { flags: parsed(&["a.xyz", flag]).flags, ..plain.clone() }
+                    .has_data_of(&plain)
+            );
+        }
+        let scene = parsed(&["a.toml"]);
+        assert!(!parsed(&["a.toml", "--style=path"]).has_data_of(&scene));
+        assert!(parsed(&["a.toml", "--zoom=2"]).has_data_of(&scene));
+    }
+
+    #[test]
+    fn wrong_words_are_refused_in_one_line() {
+        for words in [
+            &["a.pdb", "--stlye", "path"][..],
+            &["a.pdb", "--style", "no"],
+            &["a.pdb", "--size", "x"],
+            &["a.unknown"],
+            &["-"],
+            &["a.pdb", "--eye", "1,2"],
+            &["a.pdb", "-o", "a.png"],
+            &[],
+        ] {
+            let error = RenderFlags::parse(words).unwrap_err();
+            assert!(
+                !error.to_string().contains('\n') && error.exit_code() == USAGE.into(),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! What the viewer shares with `pinhole render`, so that both make the same picture.
+//!
+//! The state of a view is [`RenderFlags`]: a file, and flags of `pinhole render`. [`Shown`] is what they mean: spheres,
+//! camera and settings. [`StillRenderer`] renders the picture for a window, and [`RenderFlags::save`] runs
+//! `pinhole render` itself.
+
+mod camera;
+mod flags;
+mod shown;
+mod still;
+
+use std::fmt;
+use std::process::ExitCode;
+
+use crate::failure::{FAILED, Failure, USAGE};
+
+pub use camera::ViewCamera;
+pub use flags::RenderFlags;
+pub use shown::{Shown, TimeLine};
+pub use still::{StillPicture, StillRenderer};
+
+/// Why something cannot be shown: one line for the user, and the exit code of `pinhole`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewError {
+    message: String,
+    code: u8,
+}
+
+impl ViewError {
+    /// Something that failed; the exit code is 1.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), code: FAILED }
+    }
+
+    /// Wrong usage; the exit code is 2.
+    #[must_use]
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self { message: message.into(), code: USAGE }
+    }
+
+    /// The exit code that `pinhole` has in this case.
+    #[must_use]
+    pub fn exit_code(&self) -> ExitCode {
+        self.code.into()
+    }
+}
+
+impl From<Failure> for ViewError {
+    fn from(failure: Failure) -> Self {
+        let code = if matches!(failure, Failure::Usage(_)) { USAGE } else { FAILED };
+        Self { message: failure.message(), code }
+    }
+}
+
+impl fmt::Display for ViewError {
+    /// Writes the message on one line, without the word `error`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&pinhole::internals::text::one_line(&self.message))
+    }
+}
+
+impl std::error::Error for ViewError {}
+
+/// Prepares the process for showing files: starts its threads, and shows no progress on the terminal.
+///
+/// # Errors
+/// If the threads cannot be started.
+pub fn prepare() -> Result<(), ViewError> {
+    crate::progress::close();
+    Ok(crate::threads::start()?)
+}
+
+/// Prints an error as `pinhole` does, on standard error.
+pub fn print_error(error: &dyn fmt::Display) {
+    crate::speak::tell(format_args!("error: {error}"));
+}
+
+/// Prints a line on standard error, with control characters escaped.
+pub fn print_note(line: &str) {
+    crate::speak::tell(line);
+}
+
+/// Prints a line on standard output.
+pub fn print_line(line: &str) {
+    // Nobody may be listening, which is no error of a window.
+    let _ = crate::speak::answer(format!("{line}\n").as_bytes());
+}

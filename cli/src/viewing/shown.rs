@@ -1,0 +1,187 @@
+//! What flags mean: spheres with a camera and settings.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::Context;
+use pinhole::annotate::Annotations;
+use pinhole::camera::{Camera, CameraParameters};
+use pinhole::image::encoding::Encoding;
+use pinhole::light::environment::Environment;
+use pinhole::load::Column;
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+
+use super::{RenderFlags, ViewError};
+use crate::failure::Failure;
+use crate::input::{Framed, Input, OpenFrames, Source};
+
+/// What [`RenderFlags`] mean: the spheres of a file, seen by a camera with a film, and the settings of the picture.
+pub struct Shown {
+    flags: RenderFlags,
+    pub(super) input: Input,
+    /// The text of a scene file; `None` for a data file.
+    text: Option<String>,
+    sky: Option<(PathBuf, Environment)>,
+    pub(super) encoding: Encoding,
+    pub(super) annotations: Annotations,
+    columns: Arc<Vec<Column>>,
+    frames: FileFrames,
+    notes: Vec<String>,
+}
+
+/// The frames of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TimeLine {
+    /// The number of frames, at least one.
+    pub count: usize,
+    /// The frame that is shown, counted from 0.
+    pub frame: usize,
+}
+
+#[derive(Clone, Default)]
+struct FileFrames {
+    file: Option<Arc<OpenFrames>>,
+    count: Option<usize>,
+    note: Option<String>,
+}
+
+impl Shown {
+    /// Reads the file. Frames that were found before in the same file, for `before`, are not searched again.
+    ///
+    /// # Errors
+    /// The errors of `pinhole render`.
+    pub fn open(flags: &RenderFlags, before: Option<&Self>) -> Result<Self, ViewError> {
+        let job = flags.job()?;
+        let before = before.filter(|before| flags.has_file_of(&before.flags));
+        let mut source = job.source.keeping_columns();
+        let frames = match before {
+            Some(before) => before.frames.clone(),
+            None => found_frames(&mut source)?,
+        };
+        let source = source.with_frames(frames.file.clone());
+        let text = source.is_scene_file().then(|| source.text()).transpose()?;
+        let mut contents = match &text {
+            Some(text) => source.contents_of_text(text)?,
+            None => source.contents()?,
+        };
+        let columns = Arc::new(contents.take_columns());
+        let sky = source.sky(&contents).map_err(Failure::from)?;
+        let framed = Framed::new(&contents.scene, contents.color_key());
+        let look = source.look(&contents.file, framed, sky.clone(), None)?;
+        let mut input = source.input_with(contents, look)?;
+        let mut notes = std::mem::take(&mut input.notes);
+        notes.extend(frames.note.clone());
+        let sky = input.sky_image.clone().zip(sky);
+        let (encoding, annotations) = (Encoding::default(), Annotations::default());
+        let flags = flags.clone();
+        let mut shown =
+            Self { flags, input, text, sky, encoding, annotations, columns, frames, notes };
+        let flags = shown.flags.clone();
+        shown.see(&flags)?;
+        Ok(shown)
+    }
+
+    /// Changes camera, light and film to those of flags, whose data must be the same; see [`RenderFlags::has_data_of`].
+    ///
+    /// # Errors
+    /// The errors of `pinhole render`. What is shown stays as it is.
+    pub fn see(&mut self, flags: &RenderFlags) -> Result<(), ViewError> {
+        let job = flags.job()?;
+        let source = &job.source;
+        let file = match &self.text {
+            Some(text) => source.parsed(text),
+            None => source.scene_of_data(),
+        };
+        let (file, size_from) = source.with_film(file.map_err(Failure::from)?)?;
+        let sky = self.sky.as_ref().map(|(_, sky)| sky.clone());
+        let framed = Framed::new(&self.input.scene, self.input.color_key.as_ref());
+        let look = source.look(&file, framed, sky, None)?;
+        let input = &mut self.input;
+        (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
+        input.parameters = look.parameters;
+        (input.film, input.encoding, input.size_from) = (file.film, file.encoding, size_from);
+        input.annotations = file.annotations.clone();
+        (self.encoding, self.annotations) = job.finish(input, |_| {})?;
+        let checked = input.settings.check(&input.scene).with_context(|| flags.path().to_owned());
+        checked.map_err(Failure::from)?;
+        self.flags = flags.clone();
+        Ok(())
+    }
+
+    /// The flags that are shown.
+    #[must_use]
+    pub fn flags(&self) -> &RenderFlags {
+        &self.flags
+    }
+
+    /// The spheres.
+    #[must_use]
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.input.scene
+    }
+
+    /// The columns of the data, with a value for each of its spheres, which are the last ones of the scene apart from
+    /// [`Scene::added`]; empty if the data has none.
+    #[must_use]
+    pub fn columns(&self) -> &Arc<Vec<Column>> {
+        &self.columns
+    }
+
+    /// The camera; for two eyes, that of the middle between them.
+    #[must_use]
+    pub fn camera(&self) -> &dyn Camera {
+        self.input.camera.as_ref()
+    }
+
+    /// The parameters of the camera, with its place.
+    #[must_use]
+    pub fn camera_parameters(&self) -> CameraParameters {
+        self.input.parameters
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &RenderSettings {
+        &self.input.settings
+    }
+
+    /// The name of the style, if there is one.
+    #[must_use]
+    pub fn style(&self) -> Option<&'static str> {
+        self.input.report.style.map(|style| style.name())
+    }
+
+    /// The column that colours the spheres although no flag asks for it.
+    #[must_use]
+    pub fn own_color_by(&self) -> Option<&str> {
+        self.input.report.color_by.as_deref()
+    }
+
+    /// The frames; `None` for a file that has one picture.
+    #[must_use]
+    pub fn time_line(&self) -> Option<TimeLine> {
+        let count = self.frames.count.filter(|count| *count > 1)?;
+        let frame = self.flags.get("frame").and_then(|frame| frame.parse().ok());
+        let of_scene = || self.input.data.as_ref().and_then(|data| data.frame);
+        Some(TimeLine { count, frame: frame.or_else(of_scene).unwrap_or(0) })
+    }
+
+    /// Notes for the user about the file.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+/// Finds the frames of a file, if its format has such.
+fn found_frames(source: &mut Source) -> Result<FileFrames, Failure> {
+    Ok(match source.open_frames()? {
+        Ok(found) => {
+            let (count, note) = (Some(found.count), found.note);
+            FileFrames { file: source.frames(), count, note }
+        }
+        // A file without frames.
+        Err(_) => FileFrames::default(),
+    })
+}

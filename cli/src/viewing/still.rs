@@ -1,0 +1,204 @@
+//! Pictures for a window, as `pinhole render` makes them, with more and more samples.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use anyhow::Context;
+use pinhole::accel::AccelChoice;
+use pinhole::cpu::{self, SearchTree};
+use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
+use pinhole::image::encoding::Bits;
+use pinhole::image::{Image, LayerSet};
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
+use pinhole::write::png;
+
+use super::{RenderFlags, Shown, ViewError};
+use crate::device::{Opened, explained};
+use crate::failure::Failure;
+use crate::render;
+use crate::views::Views;
+use crate::with_scene::with_structures;
+
+/// Renders what is shown, on a device of its own.
+pub struct StillRenderer {
+    opened: Opened,
+    uploaded: Option<Uploaded>,
+}
+
+/// A scene on the device.
+struct Uploaded {
+    scene: Arc<Scene>,
+    /// What the structures were planned for.
+    integrator: std::mem::Discriminant<pinhole::render::Integrator>,
+    buffers: SceneBuffers,
+}
+
+/// A picture with some of its samples, encoded with its annotations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct StillPicture {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Red, green, blue and alpha of every pixel in sRGB, row by row from the top; not multiplied by alpha.
+    pub rgba: Vec<u8>,
+    /// The number of samples of each pixel. If it is the total, these are the pixels that `pinhole render` writes.
+    pub samples: u32,
+    /// The number of samples that each pixel will have.
+    pub total: u32,
+}
+
+impl StillRenderer {
+    /// Opens the device that the flags ask for.
+    ///
+    /// # Errors
+    /// If there is no such adapter, or it fails.
+    pub fn open(flags: &RenderFlags) -> Result<Self, ViewError> {
+        Ok(Self { opened: flags.job()?.device.open()?, uploaded: None })
+    }
+
+    /// What is wrong with the device, if something is.
+    #[must_use]
+    pub fn warning(&self) -> Option<&str> {
+        match &self.opened {
+            Opened::Device { warning, .. } => warning.as_deref(),
+            Opened::CpuInstead => {
+                Some("still pictures are rendered by the CPU reference, which is slower")
+            }
+            Opened::Cpu => None,
+        }
+    }
+
+    /// Renders the picture, first with few samples and at last with all, and gives each to `show`. Ends early, and
+    /// returns false, when `is_wanted` says that the picture is not wanted any more.
+    ///
+    /// # Errors
+    /// The errors of `pinhole render`.
+    pub fn render(
+        &mut self,
+        shown: &Shown,
+        is_wanted: &dyn Fn() -> bool,
+        show: &mut dyn FnMut(StillPicture),
+    ) -> Result<bool, ViewError> {
+        let encoding = shown.encoding.with_bits(Bits::Eight);
+        let layers = encoding.layers().iter().chain(LayerSet::COLOR.iter()).collect();
+        let mut settings = shown.input.settings.clone();
+        let total = if settings.integrator.is_primary() { 1 } else { settings.sampling.samples };
+        for samples in steps(total) {
+            settings.sampling.samples = samples;
+            let Some(image) = self.image(shown, &settings, layers, is_wanted)? else {
+                return Ok(false);
+            };
+            let pixels = png::samples_annotated(&image, &encoding, &shown.annotations);
+            let pixels = pixels.context("the picture cannot be shown").map_err(Failure::from)?;
+            let rgba = if encoding.transparent() {
+                pixels
+            } else {
+                pixels.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect()
+            };
+            show(StillPicture { size: [image.width(), image.height()], rgba, samples, total });
+        }
+        Ok(true)
+    }
+
+    /// Renders the view; `None` if it is not wanted any more.
+    fn image(
+        &mut self,
+        shown: &Shown,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        is_wanted: &dyn Fn() -> bool,
+    ) -> Result<Option<Image>, Failure> {
+        let (headless, choice) = match &self.opened {
+            Opened::Device { headless, choice, .. } => (headless, *choice),
+            Opened::Cpu | Opened::CpuInstead => return on_cpu(shown, settings, layers, is_wanted),
+        };
+        let watch = || if is_wanted() { Decision::GoOn } else { Decision::Stop };
+        let render = |buffers: &SceneBuffers| {
+            let view = shown.input.view();
+            headless.render_uploaded(buffers, &view, settings, layers, &mut |_| watch())
+        };
+        let (scene, integrator) =
+            (&shown.input.scene, std::mem::discriminant(&settings.integrator));
+        let is_of_scene =
+            |up: &Uploaded| Arc::ptr_eq(&up.scene, scene) && up.integrator == integrator;
+        let uploaded = self.uploaded.as_ref().filter(|uploaded| is_of_scene(uploaded));
+        let rendered = uploaded.map(|uploaded| render(&uploaded.buffers));
+        let rendered = match rendered {
+            Some(done @ (Ok(_) | Err(GpuError::Stopped))) => done,
+            // The structure may not suit this view, so that others are tried.
+            Some(Err(_)) | None => {
+                self.uploaded = None;
+                let first = first_render(headless, shown, layers, choice, &render)?;
+                first.map(|(buffers, picture)| {
+                    let scene = Arc::clone(scene);
+                    self.uploaded = Some(Uploaded { scene, integrator, buffers });
+                    picture
+                })
+            }
+        };
+        match rendered {
+            Ok(picture) => Ok(Some(picture.image)),
+            Err(GpuError::Stopped) => Ok(None),
+            Err(error) => Err(explained(headless, &error)),
+        }
+    }
+}
+
+/// Copies the scene to the device and renders, with another structure if the first one does not suit.
+fn first_render(
+    headless: &Headless,
+    shown: &Shown,
+    layers: LayerSet,
+    choice: AccelChoice,
+    render: &dyn Fn(&SceneBuffers) -> Result<Picture, GpuError>,
+) -> Result<Result<(SceneBuffers, Picture), GpuError>, Failure> {
+    let input = &shown.input;
+    let view = Views::One(input.view());
+    let plan = |choice| render::plan(headless, input, &view, layers, choice);
+    let done = with_structures(headless, &input.scene, choice, plan, |structures| {
+        let uploaded = headless.upload(&input.scene, &structures);
+        drop(structures);
+        Ok(uploaded.and_then(|buffers| {
+            let picture = render(&buffers)?;
+            Ok((buffers, picture))
+        }))
+    })?;
+    Ok(done.map(|(done, _)| done))
+}
+
+fn on_cpu(
+    shown: &Shown,
+    settings: &RenderSettings,
+    layers: LayerSet,
+    is_wanted: &dyn Fn() -> bool,
+) -> Result<Option<Image>, Failure> {
+    let tree = SearchTree::new(&shown.input.scene).context("the search tree cannot be built")?;
+    // The rows are rendered by several threads, and only this one knows whether the picture is wanted.
+    if !is_wanted() {
+        return Ok(None);
+    }
+    let watch = |_| ControlFlow::Continue(());
+    let image = cpu::render_watched(&tree, &shown.input.view(), settings, layers, &watch);
+    Ok(Some(image.context("the CPU reference cannot render this picture")?))
+}
+
+/// The numbers of samples of the pictures that are shown, up to all.
+fn steps(total: u32) -> impl Iterator<Item = u32> {
+    let fewer = std::iter::successors(Some(1_u32), |samples| samples.checked_mul(4));
+    // A picture with almost all samples would cost more than it shows.
+    fewer.take_while(move |samples| *samples <= total / 2).chain([total])
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_last_picture_has_all_samples() {
+        let steps = |total| super::steps(total).collect::<Vec<_>>();
+        assert_eq!(steps(1), [1]);
+        assert_eq!(steps(2), [1, 2]);
+        assert_eq!(steps(8), [1, 4, 8]);
+        assert_eq!(steps(100), [1, 4, 16, 100]);
+        assert_eq!(steps(u32::MAX).last(), Some(&u32::MAX));
+    }
+}

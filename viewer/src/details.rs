@@ -1,0 +1,142 @@
+//! What is known about a sphere that was picked.
+
+use std::sync::Arc;
+
+use pinhole::glam::DVec3;
+use pinhole::load::{Column, ColumnValues};
+use pinhole::scene::Scene;
+
+/// A sphere that was picked.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Details {
+    /// Index of the sphere in the scene.
+    pub(crate) id: u32,
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    /// Whether it was added to the data, as the spheres of bonds are.
+    pub(crate) is_added: bool,
+    pub(crate) rows: Vec<Row>,
+}
+
+/// A value of a sphere.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) name: String,
+    pub(crate) value: String,
+    /// The expression that selects spheres with this value, where there is one.
+    pub(crate) select: Option<String>,
+}
+
+impl Details {
+    /// Describes a sphere; `None` if the scene has no such sphere.
+    pub(crate) fn of(scene: &Arc<Scene>, columns: &[Column], id: u32) -> Option<Self> {
+        let index = id as usize;
+        let sphere = scene.spheres().get(index)?;
+        let [x, y, z, radius] = sphere.map(f64::from);
+        let center = scene.origin() + DVec3::new(x, y, z);
+        let of_data = scene.len() - scene.added();
+        let is_added = index >= of_data;
+        let rows = columns.iter().filter(|_| !is_added).filter_map(|column| {
+            let count = match &column.values {
+                ColumnValues::Labels(labels) => labels.indices.len(),
+                ColumnValues::Numbers(numbers) => numbers.len(),
+                _ => return None,
+            };
+            // The spheres of the data follow those that a scene file has itself.
+            let index = index.checked_sub(of_data.checked_sub(count)?)?;
+            row(column, index)
+        });
+        Some(Self { id, center, radius, is_added, rows: rows.collect() })
+    }
+
+    /// The value of a column.
+    pub(crate) fn value(&self, name: &str) -> Option<&str> {
+        self.rows.iter().find(|row| row.name == name).map(|row| row.value.as_str())
+    }
+
+    /// A short name, such as `CA 42 A`, from the columns that files of atoms have.
+    pub(crate) fn title(&self) -> String {
+        if self.is_added {
+            return "bond or edge of the cell".to_owned();
+        }
+        let of = |names: &[&str]| names.iter().find_map(|name| self.value(name));
+        let kind = of(&["name", "atom", "species", "type"]);
+        let place =
+            ["residue", "residue_number", "chain"].into_iter().filter_map(|name| of(&[name]));
+        let parts: Vec<&str> = kind.into_iter().chain(place).collect();
+        if parts.is_empty() { format!("sphere {}", self.id) } else { parts.join(" ") }
+    }
+}
+
+fn row(column: &Column, index: usize) -> Option<Row> {
+    let name = column.name.clone();
+    Some(match &column.values {
+        ColumnValues::Labels(labels) => {
+            let text = labels.names.get(*labels.indices.get(index)? as usize)?;
+            let quote = if text.contains('"') { '\'' } else { '"' };
+            let select = format!("{name} == {quote}{text}{quote}");
+            Row { name, value: text.clone(), select: Some(select) }
+        }
+        ColumnValues::Numbers(numbers) => {
+            let number = *numbers.get(index)?;
+            let is_whole = number.fract() == 0.0 && number.abs() < 1e9;
+            let select = is_whole.then(|| format!("{name} == {number}"));
+            Row { name, value: readable(number), select }
+        }
+        _ => return None,
+    })
+}
+
+/// Writes a number with as many digits as files usually have.
+pub(crate) fn readable(number: f64) -> String {
+    if !number.is_finite() || number == 0.0 || (1e-4..1e7).contains(&number.abs()) {
+        // Seven significant digits, without zeros at the end.
+        let before = number.abs().max(1.0).log10().floor();
+        let digits = (6.0 - before).clamp(0.0, 8.0) as usize;
+        let text = format!("{number:.digits$}");
+        let text = if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.')
+        } else {
+            &text
+        };
+        return text.to_owned();
+    }
+    format!("{number:.6e}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinhole::load::{self, Options};
+
+    #[test]
+    fn a_sphere_is_described_by_its_columns() {
+        let text = "2\nProperties=species:S:1:pos:R:3:charge:R:1\nO 0 0 0 -0.8\nH 0.96 0 0 0.4\n";
+        let loaded = load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap();
+        let columns = loaded.columns.clone();
+        let scene = Arc::new(loaded.scene(pinhole::LinearRgb::WHITE).unwrap());
+        let details = Details::of(&scene, &columns, 1).unwrap();
+        assert_eq!((details.value("species"), details.value("charge")), (Some("H"), Some("0.4")));
+        assert_eq!(details.title(), "H");
+        assert_eq!(details.rows[0].select.as_deref(), Some("species == \"H\""));
+        assert_eq!(Details::of(&scene, &columns, 2), None);
+        let added = Arc::new(Scene::clone(&scene).with_added(1));
+        let bond = Details::of(&added, &columns, 1).unwrap();
+        assert!(bond.is_added && bond.rows.is_empty());
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (number, text) in [
+            (0.0, "0"),
+            (1.5, "1.5"),
+            (-0.1, "-0.1"),
+            (12_345.678_9, "12345.68"),
+            (2e-7, "2.000000e-7"),
+            (100.0, "100"),
+        ] {
+            assert_eq!(readable(number), text);
+        }
+        assert_eq!(readable(f64::NAN), "NaN");
+    }
+}

@@ -1,0 +1,312 @@
+//! The thread that reads files, prepares scenes for the window's device and renders still pictures.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crate::layers::Layers;
+use eframe::egui;
+use pinhole::camera::film::Film;
+use pinhole::camera::{CameraKind, CameraParameters, View};
+use pinhole::gpu::{
+    GpuError, LitRenderer, LivePicture, Renderer, RendererOptions, SceneBuffers, wgpu,
+};
+use pinhole::load::Column;
+use pinhole::render::{Integrator, RenderSettings};
+use pinhole::scene::Scene;
+use pinhole_cli::viewing::{RenderFlags, Shown, StillPicture, StillRenderer, TimeLine, ViewError};
+
+/// What the window wants to show.
+#[derive(Clone, Debug)]
+pub(crate) struct Request {
+    /// The state of the window for which this is.
+    pub(crate) state: u64,
+    pub(crate) flags: RenderFlags,
+    /// Whether still pictures are wanted.
+    pub(crate) still: bool,
+}
+
+/// What the window is told.
+pub(crate) enum Message {
+    /// The flags of a request were understood, and the file was read.
+    Shown(Box<News>),
+    /// A still picture, which will be followed by better ones.
+    Still { state: u64, picture: StillPicture },
+    /// A request failed. What was shown before stays.
+    Failed { state: u64, error: ViewError },
+    /// Something that the user should know.
+    Note(String),
+}
+
+/// What flags mean.
+pub(crate) struct News {
+    pub(crate) state: u64,
+    pub(crate) flags: RenderFlags,
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) columns: Arc<Vec<Column>>,
+    pub(crate) camera: CameraParameters,
+    pub(crate) settings: RenderSettings,
+    pub(crate) style: Option<&'static str>,
+    pub(crate) own_color_by: Option<String>,
+    pub(crate) time_line: Option<TimeLine>,
+    pub(crate) notes: Vec<String>,
+    /// The scene on the window's device, if there is a window.
+    pub(crate) quick: Option<QuickScene>,
+}
+
+/// A scene on the window's device, and what renders it there.
+#[derive(Clone)]
+pub(crate) struct QuickScene {
+    pub(crate) renderer: Arc<LitRenderer>,
+    pub(crate) buffers: Arc<SceneBuffers>,
+    /// Whether the light is that of a studio, which the window's device can follow while things move.
+    pub(crate) is_live: bool,
+}
+
+/// The window, as far as this thread needs it.
+#[derive(Clone)]
+pub(crate) struct Window {
+    pub(crate) context: egui::Context,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+}
+
+#[derive(Default)]
+struct Inbox {
+    request: Option<Request>,
+    window: Option<Window>,
+    is_closed: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    inbox: Mutex<Inbox>,
+    is_changed: Condvar,
+    /// Counts requests, so that work for an older one ends.
+    newest: AtomicU64,
+}
+
+impl Shared {
+    fn inbox(&self) -> MutexGuard<'_, Inbox> {
+        self.inbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The thread, and the ways to and from it.
+pub(crate) struct Worker {
+    shared: Arc<Shared>,
+    messages: Receiver<Message>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the thread with a first request.
+    pub(crate) fn start(request: Request) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        shared.inbox().request = Some(request);
+        let (sender, messages) = channel();
+        let thread = std::thread::Builder::new().name("pictures".to_owned()).spawn({
+            let shared = Arc::clone(&shared);
+            move || {
+                let (shown, still, renderer, buffers) = (None, None, None, None);
+                Work { shared, sender, shown, still, renderer, buffers }.run();
+            }
+        })?;
+        Ok(Self { shared, messages, thread: Some(thread) })
+    }
+
+    /// Gives the thread the window's device.
+    pub(crate) fn attach(&self, window: Window) {
+        self.shared.inbox().window = Some(window);
+        self.shared.is_changed.notify_all();
+    }
+
+    /// Asks for something else, in place of what was asked for before.
+    pub(crate) fn ask(&self, request: Request) {
+        let mut inbox = self.shared.inbox();
+        // The thread reads the number with the request.
+        self.cancel();
+        inbox.request = Some(request);
+        drop(inbox);
+        self.shared.is_changed.notify_all();
+    }
+
+    /// Ends the still picture that is being rendered.
+    pub(crate) fn cancel(&self) {
+        self.shared.newest.fetch_add(1, Ordering::AcqRel);
+    }
+
+    /// The next message, if there is one.
+    pub(crate) fn message(&self) -> Option<Message> {
+        self.messages.try_recv().ok()
+    }
+
+    /// The next message, if there is one within a time.
+    pub(crate) fn message_within(&self, time: Duration) -> Option<Message> {
+        self.messages.recv_timeout(time).ok()
+    }
+
+    /// Ends the thread, so that no driver is interrupted. A file that takes long to read is not waited for.
+    pub(crate) fn close(&mut self) {
+        self.shared.inbox().is_closed = true;
+        self.cancel();
+        self.shared.is_changed.notify_all();
+        let Some(thread) = self.thread.take() else { return };
+        for _ in 0..300 {
+            if thread.is_finished() {
+                let _ = thread.join();
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+struct Work {
+    shared: Arc<Shared>,
+    sender: Sender<Message>,
+    shown: Option<Shown>,
+    still: Option<StillRenderer>,
+    /// What renders quick pictures, for a kind of camera.
+    renderer: Option<(CameraKind, Arc<LitRenderer>)>,
+    /// What is shown, on the window's device.
+    buffers: Option<Arc<SceneBuffers>>,
+}
+
+impl Work {
+    fn run(mut self) {
+        while let Some((request, number)) = self.next() {
+            let state = request.state;
+            match self.show(&request, number) {
+                Ok(()) => {}
+                Err(error) => self.tell(Message::Failed { state, error }),
+            }
+        }
+    }
+
+    /// Waits for a request, or for a window that shows what was asked for before.
+    fn next(&self) -> Option<(Request, u64)> {
+        let mut inbox = self.shared.inbox();
+        loop {
+            if inbox.is_closed {
+                return None;
+            }
+            if let Some(request) = inbox.request.take() {
+                return Some((request, self.shared.newest.load(Ordering::Acquire)));
+            }
+            inbox = self.shared.is_changed.wait(inbox).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn window(&self) -> Option<Window> {
+        self.shared.inbox().window.clone()
+    }
+
+    fn tell(&self, message: Message) {
+        // A window that is gone needs no messages.
+        let _ = self.sender.send(message);
+        if let Some(window) = self.window() {
+            window.context.request_repaint();
+        }
+    }
+
+    fn show(&mut self, request: &Request, number: u64) -> Result<(), ViewError> {
+        let flags = &request.flags;
+        let reopened = match &mut self.shown {
+            Some(shown) if flags.has_data_of(shown.flags()) => {
+                shown.see(flags)?;
+                None
+            }
+            before => Some(Shown::open(flags, before.as_ref())?),
+        };
+        if let Some(shown) = reopened {
+            self.buffers = None;
+            self.shown = Some(shown);
+        }
+        let window = self.window();
+        let quick = window.as_ref().map(|window| self.prepared(window)).transpose();
+        let quick = quick.map_err(|error| error_of(&error))?.flatten();
+        let Some(shown) = &self.shown else { return Ok(()) };
+        self.tell(Message::Shown(Box::new(News {
+            state: request.state,
+            flags: flags.clone(),
+            scene: Arc::clone(shown.scene()),
+            columns: Arc::clone(shown.columns()),
+            camera: shown.camera_parameters(),
+            settings: shown.settings().clone(),
+            style: shown.style(),
+            own_color_by: shown.own_color_by().map(str::to_owned),
+            time_line: shown.time_line(),
+            notes: shown.notes().to_vec(),
+            quick,
+        })));
+        if !request.still || window.is_none() {
+            return Ok(());
+        }
+        if self.still.is_none() {
+            let still = StillRenderer::open(flags)?;
+            if let Some(warning) = still.warning() {
+                self.tell(Message::Note(warning.to_owned()));
+            }
+            self.still = Some(still);
+        }
+        let (sender, shared) = (self.sender.clone(), Arc::clone(&self.shared));
+        let (Some(still), Some(shown)) = (&mut self.still, &self.shown) else { return Ok(()) };
+        let is_wanted = move || shared.newest.load(Ordering::Acquire) == number;
+        still.render(shown, &is_wanted, &mut |picture| {
+            let _ = sender.send(Message::Still { state: request.state, picture });
+            if let Some(window) = &window {
+                window.context.request_repaint();
+            }
+        })?;
+        Ok(())
+    }
+
+    /// Builds what renders quick pictures, and copies the scene to the window's device, unless that was done before.
+    fn prepared(&mut self, window: &Window) -> Result<Option<QuickScene>, GpuError> {
+        let Window { device, queue, .. } = window;
+        let Some(shown) = &self.shown else { return Ok(None) };
+        let camera = shown.camera().kind();
+        let before = self.renderer.take().filter(|(kind, _)| *kind == camera);
+        let renderer = match before {
+            Some((_, renderer)) => renderer,
+            None => {
+                let cameras = vec![camera];
+                let options =
+                    RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
+                Arc::new(LitRenderer::new(Renderer::new(device, &options)?))
+            }
+        };
+        self.renderer = Some((camera, Arc::clone(&renderer)));
+        let buffers = match self.buffers.take() {
+            Some(buffers) => buffers,
+            None => Arc::new(SceneBuffers::new(renderer.renderer(), device, queue, shown.scene())?),
+        };
+        self.buffers = Some(Arc::clone(&buffers));
+        let is_live = is_live(window, &renderer, &buffers, shown);
+        Ok(Some(QuickScene { renderer, buffers, is_live }))
+    }
+}
+
+/// Whether a live picture of what is shown is possible. Builds its pipelines, so that the window does not wait for them.
+fn is_live(
+    Window { device, queue, .. }: &Window,
+    renderer: &LitRenderer,
+    scene: &SceneBuffers,
+    shown: &Shown,
+) -> bool {
+    if !matches!(shown.settings().integrator, Integrator::Studio(_)) {
+        return false;
+    }
+    let Ok(film) = Film::new(16, 16) else { return false };
+    let view = View::new(shown.camera(), film);
+    let settings = RenderSettings { is_transparent: false, ..shown.settings().clone() };
+    let layers = Layers::new(device, [16, 16]);
+    LivePicture::new(renderer, device, queue, scene, &view, &settings, &layers.targets()).is_ok()
+}
+
+fn error_of(error: &GpuError) -> ViewError {
+    ViewError::new(format!("the window's device: {error}"))
+}
