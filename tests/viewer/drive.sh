@@ -269,7 +269,7 @@ refused() {
 head -c 300 /dev/urandom >bad.xyz
 refused 1 missing.pdb
 refused 1 bad.xyz
-refused 2 helix.pdb --stlye path
+refused 2 helix.pdb --styel path
 refused 2 helix.pdb --style nothing
 refused 2 helix.txt.unknown
 refused 2 -

@@ -384,7 +384,7 @@ mod tests {
     #[test]
     fn wrong_words_are_refused_in_one_line() {
         for words in [
-            &["a.pdb", "--stlye", "path"][..],
+            &["a.pdb", "--styel", "path"][..],
             &["a.pdb", "--style", "no"],
             &["a.pdb", "--size", "x"],
             &["a.unknown"],

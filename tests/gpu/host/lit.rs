@@ -194,7 +194,7 @@ fn changes(headless: &'static Headless) {
     let mut picture = show.picture(&scene, &view).unwrap();
     let mut others = vec![named("studio_key_and_fill", 4), named("path_matt_under_a_sky", 4)];
     let mut brighter = named("studio_ambient_occlusion", 4);
-    let key = brighter.settings.lights[0].clone();
+    let key = brighter.settings.lights[0];
     brighter.settings.lights.push(key);
     let mut transparent = named("studio_ambient_occlusion", 4);
     transparent.settings.is_transparent = true;
