@@ -184,8 +184,8 @@ drags 1 400 350 160 60
 waits "still: \([0-9]*\) of \1 samples"
 same orbit
 drags 3 400 350 60 -40
-xdotool mousemove --window "$window" 400 350 click 4 click 4
 mark
+xdotool mousemove --window "$window" 400 350 click 4 click 4
 waits "still: \([0-9]*\) of \1 samples"
 same pan-and-zoom
 shot molecule-moved
@@ -208,8 +208,8 @@ quits
 echo "== flags: path tracing, a selection, colors, a given size =="
 opens helix.pdb --style path --samples 16 --select 'residue_number < 30 and name != "NA"' --color-by b_factor --legend \
     --scale-bar --camera orthographic --size 320x200
-drags 1 400 350 -120 30
 mark
+drags 1 400 350 -120 30
 waits "still: \([0-9]*\) of \1 samples" 300
 same flags
 shot flags
@@ -249,10 +249,10 @@ for step in $(seq 160); do
     xdotool mousemove --window "$window" $((450 + step % 80 * 3)) $((350 + step % 40 * 2))
     sleep 0.05
 done
-xdotool mouseup 1
 waits "rate:" 10
 grep "rate:" said.txt
 mark
+xdotool mouseup 1
 waits "still: \([0-9]*\) of \1 samples" 300
 shot many
 quits
