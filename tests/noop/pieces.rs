@@ -4,8 +4,8 @@ use std::thread;
 
 use pinhole::camera::{CameraKind, DepthOrder, HostCamera};
 use pinhole::gpu::{
-    DepthTest, Frame, GpuError, Headless, HostDepth, LitPicture, Recolor, Renderer,
-    RendererOptions, SceneBuffers, wgpu,
+    DepthTest, Frame, GpuError, Headless, HostDepth, LitPicture, LitRenderer, LivePicture, Recolor,
+    Renderer, RendererOptions, SceneBuffers, wgpu,
 };
 
 use crate::async_forms::broken;
@@ -18,6 +18,8 @@ fn everything_may_be_shared_between_threads() {
     shared::<SceneBuffers>();
     shared::<Frame>();
     shared::<LitPicture>();
+    shared::<LitRenderer>();
+    shared::<LivePicture>();
     shared::<Recolor>();
     shared::<Headless>();
     shared::<GpuError>();

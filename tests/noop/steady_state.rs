@@ -2,7 +2,9 @@
 
 use pinhole::accel::AccelChoice;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{LitPicture, LitRenderer, LitState, Renderer, RendererOptions, wgpu};
+use pinhole::gpu::{
+    LitPicture, LitRenderer, LitState, LivePicture, Renderer, RendererOptions, wgpu,
+};
 use pinhole::{RenderSettings, View};
 
 use crate::calls::{self, Calls};
@@ -101,5 +103,41 @@ fn lit_pictures_create_submit_and_await_nothing() {
         };
         record(false);
         record(true);
+    }
+}
+
+/// Live pictures allocate nothing while the camera and the lamps move.
+#[test]
+fn live_pictures_create_submit_and_await_nothing() {
+    let host = Host::new();
+    let (device, queue) = (&host.device, &host.queue);
+    let options = RendererOptions { data_layers: true, ..RendererOptions::default() };
+    let renderer = Renderer::new(device, &options).unwrap();
+    let scene = host.scene(&renderer, &scene(), AccelChoice::Auto, 1 << 27);
+    let lit = LitRenderer::new(renderer);
+    let settings = RenderSettings::studio();
+    let camera = pinhole_camera();
+    let view = View::new(&camera, film());
+    let mut picture = host.with_targets(&options, SIZE, |targets| {
+        LivePicture::new(&lit, device, queue, &scene, &view, &settings, targets).unwrap()
+    });
+    for frame in 0..4 {
+        let eye = [0.2 * f64::from(frame), 1.0, 12.0];
+        let pose = Pose::looking_at(eye, [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.7, 1.5).unwrap();
+        let view = View::new(&camera, film());
+        let (set, done) = calls::of(|| picture.set(&lit, device, queue, &scene, &view, &settings));
+        done.unwrap();
+        assert_eq!(set, Calls { writes: set.writes, all: set.all, ..Calls::default() });
+        assert!((1..=3).contains(&set.writes), "{set:?}");
+        let mut encoder = host.encoder();
+        let (recorded, done) = calls::of(|| picture.record(&lit, queue, &mut encoder, &scene));
+        let (mapped, all) = (recorded.mapped, recorded.all);
+        assert_eq!(recorded, Calls { writes: 2, mapped, all, ..Calls::default() });
+        assert!(mapped <= 1, "{recorded:?}");
+        let done = done.unwrap();
+        assert!(done.rays > 0 && !done.was_lost, "{done:?}");
+        queue.submit([encoder.finish()]);
+        device.poll(wgpu::PollType::Poll).unwrap();
     }
 }

@@ -53,7 +53,7 @@ impl Budget {
     }
 
     /// The number of rays that the next frame may trace.
-    fn rays(&mut self) -> u64 {
+    pub fn rays(&mut self) -> u64 {
         let [rays, nanoseconds] = self.done.each_ref().map(|value| value.swap(0, Ordering::AcqRel));
         if rays > 0 {
             let took = Duration::from_nanos(nanoseconds);
@@ -69,7 +69,7 @@ impl Budget {
 
     /// Measures how long the device takes for rays that were recorded into this encoder: from now until they are
     /// executed.
-    fn watch(&self, encoder: &wgpu::CommandEncoder, rays: u64) {
+    pub fn watch(&self, encoder: &wgpu::CommandEncoder, rays: u64) {
         if rays > 0 {
             let (begin, done) = (Instant::now(), Arc::clone(&self.done));
             encoder.on_submitted_work_done(move || {

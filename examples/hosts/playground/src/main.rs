@@ -11,20 +11,24 @@
 mod panels;
 
 use eframe::{egui, egui_wgpu};
-use panels::{Draw, Panels, Report};
+use panels::{Draw, Panels, Report, Way};
 use pinhole::{RenderSettings, Scene, View};
 use pinhole_host_common::{Orbit, Outcome, molecule, paths, save_still, start_log, studio};
 
-/// A way to light the scene: its name, and its settings for an angle of the light and a number of samples.
-type Tier = (&'static str, fn(f64, u32) -> RenderSettings);
+/// A way to light the scene: its name, how it is shown, and its settings for an angle of the light and a number of samples.
+type Tier = (&'static str, Way, fn(f64, u32) -> RenderSettings);
 
 /// What is shown, from left to right. Another way to light the scene is another row.
-const TIERS: [Tier; 2] = [("Studio", studio), ("Path tracing", paths)];
+const TIERS: [Tier; 3] = [
+    ("Studio", Way::Samples, studio),
+    ("Studio while it moves", Way::Live, studio),
+    ("Path tracing", Way::Samples, paths),
+];
 
 fn main() -> Outcome<()> {
     start_log();
     let options = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default().with_inner_size([1000.0, 560.0]),
+        viewport: egui::ViewportBuilder::default().with_inner_size([1200.0, 520.0]),
         ..eframe::NativeOptions::default()
     };
     eframe::run_native(
@@ -52,7 +56,7 @@ impl Playground {
     fn new(creation: &eframe::CreationContext<'_>) -> Outcome<Self> {
         let egui = creation.wgpu_render_state.as_ref().ok_or("eframe runs without wgpu")?;
         let scene = molecule()?;
-        let panels = Panels::new(egui, &scene, TIERS.len())?;
+        let panels = Panels::new(egui, &scene, &TIERS.map(|(_, way, _)| way))?;
         egui.renderer.write().callback_resources.insert(panels);
         let (orbit, angle, samples) = (Orbit::default(), -0.7, 8);
         Ok(Self { scene, orbit, angle, samples, turn: 0, is_done: false, message: None })
@@ -60,7 +64,7 @@ impl Playground {
 
     /// One panel: the spheres, and below them what they took.
     fn panel(&mut self, ui: &mut egui::Ui, panel: usize, report: Option<Report>) {
-        let (name, settings) = TIERS[panel];
+        let (name, _, settings) = TIERS[panel];
         let size = ui.available_size() - egui::vec2(0.0, 60.0);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::drag());
         let dragged = response.drag_delta();
@@ -76,6 +80,7 @@ impl Playground {
             context: ui.ctx().clone(),
             rect,
             orbit: self.orbit,
+            angle: self.angle,
             settings,
         };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, draw));
@@ -101,7 +106,7 @@ impl Playground {
         let (film, [x, y]) = report.place;
         let camera = self.orbit.camera(film.aspect())?;
         println!("panel {}x{}+{x}+{y}", film.width(), film.height());
-        let settings = TIERS[0].1(self.angle, self.samples);
+        let settings = TIERS[0].2(self.angle, self.samples);
         save_still("playground", &self.scene, &View::new(&camera, film), &settings)
     }
 }

@@ -6,8 +6,8 @@ use eframe::egui;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use pinhole::camera::CameraKind;
 use pinhole::gpu::{
-    Composite, CompositeOptions, CompositePicture, LitPicture, LitProgress, LitRenderer, LitState,
-    Renderer, RendererOptions, SceneBuffers, TargetTextures, wgpu,
+    Composite, CompositeOptions, CompositePicture, LitPicture, LitRenderer, LitState, LivePicture,
+    Renderer, RendererOptions, SceneBuffers, TargetTextures, Targets, wgpu,
 };
 use pinhole::{Film, RenderSettings, Scene, View};
 use pinhole_host_common::{Budget, Orbit, Outcome};
@@ -21,11 +21,29 @@ pub(crate) struct Panels {
     failed: Option<String>,
 }
 
+/// How a picture is shown.
+#[derive(Clone, Copy)]
+pub(crate) enum Way {
+    /// Samples accumulate, and begin again when something moves.
+    Samples,
+    /// A few rays in each frame, averaged over the frames before.
+    Live,
+}
+
+/// How far a picture is: samples, or frames that are averaged.
+#[derive(Clone, Copy)]
+pub(crate) struct Progress {
+    pub(crate) samples: u32,
+    pub(crate) total: u32,
+    pub(crate) is_done: bool,
+}
+
 /// One way to light the scene.
 struct Panel {
+    way: Way,
     budget: Budget,
     shown: Option<Shown>,
-    progress: Option<LitProgress>,
+    progress: Option<Progress>,
     /// Time of the device since the picture began.
     spent: Duration,
 }
@@ -35,14 +53,23 @@ struct Shown {
     film: Film,
     first_pixel: [u32; 2],
     textures: TargetTextures,
-    lit: LitPicture,
+    picture: Picture,
     composed: CompositePicture,
 }
+
+enum Picture {
+    Samples(Box<LitPicture>),
+    /// With what it showed last, and the number of frames of it.
+    Live(Box<LivePicture>, Option<(Orbit, f64)>, u32),
+}
+
+/// Number of frames of a live picture, after which they change no more that could be seen.
+const FRAMES: u32 = 64;
 
 /// What a panel tells of its picture.
 #[derive(Clone, Copy)]
 pub(crate) struct Report {
-    pub(crate) progress: LitProgress,
+    pub(crate) progress: Progress,
     /// Rays of the last frame, and the time that the device took.
     pub(crate) last: Option<(u64, Duration)>,
     /// Time of the device since the picture began.
@@ -52,7 +79,7 @@ pub(crate) struct Report {
 }
 
 impl Panels {
-    pub(crate) fn new(egui: &RenderState, scene: &Scene, count: usize) -> Outcome<Self> {
+    pub(crate) fn new(egui: &RenderState, scene: &Scene, ways: &[Way]) -> Outcome<Self> {
         let device = &egui.device;
         let options = RendererOptions {
             cameras: vec![CameraKind::Pinhole],
@@ -63,18 +90,19 @@ impl Panels {
         let options = CompositeOptions::without_depth(egui.target_format);
         let composite = Composite::new(device, &options)?;
         let buffers = SceneBuffers::for_studio(renderer.renderer(), device, &egui.queue, scene)?;
-        let panel = |_| Panel {
+        let panel = |way: &Way| Panel {
+            way: *way,
             budget: Budget::new(Duration::from_millis(100)),
             shown: None,
             progress: None,
             spent: Duration::ZERO,
         };
-        let panels = (0..count).map(panel).collect();
+        let panels = ways.iter().map(panel).collect();
         Ok(Self { renderer, composite, buffers, panels, failed: None })
     }
 
     pub(crate) fn report(&self, panel: usize) -> Option<Report> {
-        let Panel { budget, shown, progress, spent } = self.panels.get(panel)?;
+        let Panel { budget, shown, progress, spent, .. } = self.panels.get(panel)?;
         let place = shown.as_ref().map(|shown| (shown.film, shown.first_pixel))?;
         Some(Report { progress: (*progress)?, last: budget.last(), spent: *spent, place })
     }
@@ -98,7 +126,7 @@ impl Panels {
 
 impl Panel {
     fn is_done(&self) -> bool {
-        self.progress.is_some_and(|progress| progress.state == LitState::Done)
+        self.progress.is_some_and(|progress| progress.is_done)
     }
 }
 
@@ -111,6 +139,8 @@ pub(crate) struct Draw {
     pub(crate) has_turn: bool,
     pub(crate) rect: egui::Rect,
     pub(crate) orbit: Orbit,
+    /// Angle of the light.
+    pub(crate) angle: f64,
     pub(crate) settings: RenderSettings,
 }
 
@@ -181,8 +211,13 @@ impl Draw {
                 none.insert(Shown {
                     film,
                     first_pixel: [left, top],
-                    lit: LitPicture::new(
-                        renderer, device, queue, buffers, &view, settings, &targets,
+                    picture: make(
+                        panel.way,
+                        (renderer, device, queue),
+                        buffers,
+                        &view,
+                        settings,
+                        &targets,
                     )?,
                     composed: CompositePicture::new(composite, device, &targets)?,
                     textures,
@@ -191,13 +226,39 @@ impl Draw {
         };
         shown.first_pixel = [left, top];
         shown.composed.set_place(queue, shown.first_pixel);
-        if shown.lit.set(renderer, device, queue, buffers, &view, settings)? {
+        let is_new = match &mut shown.picture {
+            Picture::Samples(lit) => lit.set(renderer, device, queue, buffers, &view, settings)?,
+            Picture::Live(live, last, frames) => {
+                live.set(renderer, device, queue, buffers, &view, settings)?;
+                let is_new = *last != Some((self.orbit, self.angle));
+                *last = Some((self.orbit, self.angle));
+                *frames = if is_new { 0 } else { *frames };
+                is_new
+            }
+        };
+        if is_new {
             (panel.progress, panel.spent) = (None, Duration::ZERO);
         }
-        if self.has_turn && !panel.progress.is_some_and(|p| p.state == LitState::Done) {
+        if self.has_turn && !panel.progress.is_some_and(|progress| progress.is_done) {
             let before = panel.budget.last();
-            let progress =
-                panel.budget.record(&mut shown.lit, renderer, queue, encoder, buffers)?;
+            let progress = match &mut shown.picture {
+                Picture::Samples(lit) => panel
+                    .budget
+                    .record(lit, renderer, queue, encoder, buffers)?
+                    .map(|progress| Progress {
+                        samples: progress.samples,
+                        total: progress.total,
+                        is_done: progress.state == LitState::Done,
+                    }),
+                Picture::Live(live, _, frames) => {
+                    let progress = live.record(renderer, queue, encoder, buffers)?;
+                    // A live picture has as many rays as it has.
+                    panel.budget.rays();
+                    panel.budget.watch(encoder, progress.rays);
+                    *frames += u32::from(progress.rays > 0);
+                    Some(Progress { samples: *frames, total: FRAMES, is_done: *frames >= FRAMES })
+                }
+            };
             if let Some((_, took)) = panel.budget.last().filter(|last| Some(*last) != before) {
                 panel.spent += took;
             }
@@ -209,4 +270,23 @@ impl Draw {
         }
         Ok(())
     }
+}
+
+fn make(
+    way: Way,
+    (renderer, device, queue): (&LitRenderer, &wgpu::Device, &wgpu::Queue),
+    buffers: &SceneBuffers,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    targets: &Targets<'_>,
+) -> Outcome<Picture> {
+    Ok(match way {
+        Way::Samples => Picture::Samples(Box::new(LitPicture::new(
+            renderer, device, queue, buffers, view, settings, targets,
+        )?)),
+        Way::Live => {
+            let live = LivePicture::new(renderer, device, queue, buffers, view, settings, targets)?;
+            Picture::Live(Box::new(live), None, 0)
+        }
+    })
 }
