@@ -2,6 +2,7 @@
 //!
 //! * tracing, with and without a depth of the host, and drawing into its render pass, for 100,000 spheres in 1280×960
 //!   pixels;
+//! * a studio of the same spheres, in a host's encoders and by `Headless`, and a frame of a live picture;
 //! * the first frame of three spheres, from a device that is open, with different ways to build the pipelines. Drivers
 //!   keep what they compile on the disk: `MESA_SHADER_CACHE_DISABLE=true` shows how long it takes without that.
 //!
@@ -13,14 +14,17 @@
 
 use std::time::Instant;
 
-use pinhole::accel::Structure;
+use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::{CameraKind, DepthOrder, HostCamera};
 use pinhole::generate::Kind;
 use pinhole::gpu::{
-    Composite, CompositeDepth, CompositeOptions, CompositePicture, DataTargets, DepthTest, Frame,
-    HostDepth, Renderer, RendererOptions, SceneBuffers, Targets, adapter, wgpu,
+    Composite, CompositeDepth, CompositeOptions, CompositePicture, DataTargets, Decision,
+    DepthTest, Frame, Headless, HeadlessOptions, HostDepth, LitPicture, LitRenderer, LitState,
+    LivePicture, Renderer, RendererOptions, SceneBuffers, Structures, Targets, adapter, wgpu,
 };
-use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
+use pinhole::image::Layer;
+use pinhole::render::{Integrator, Occlusion, Studio};
+use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View};
 use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [1280, 960];
@@ -163,6 +167,7 @@ fn main() {
     println!("{} ({:?}), {} {}\n", info.name, info.backend, info.driver, info.driver_info);
     let layers = Layers::new(&host);
     many_spheres(&host, &layers);
+    studios(&host, &layers);
     three_spheres(&host, &layers);
 }
 
@@ -230,6 +235,60 @@ fn many_spheres(host: &Host, layers: &Layers) {
         }
     }
     cases.measure("100,000 spheres, 1280x960");
+}
+
+/// A studio of 100,000 spheres with eight samples, shadows and two directions of ambient occlusion for each.
+fn studios(host: &Host, layers: &Layers) {
+    let Host { device, queue } = host;
+    let cameras = vec![CameraKind::Pinhole];
+    let options = RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
+    let lit = LitRenderer::new(Renderer::new(device, &options).unwrap());
+    let spheres = Kind::Random.spheres(100_000, 1).unwrap();
+    let of_host = Scene::from_f32(spheres, LinearRgb::from_srgb8([200, 120, 60])).unwrap();
+    let scene = SceneBuffers::for_studio(lit.renderer(), device, queue, &of_host).unwrap();
+    let (camera, film) = (camera(), Film::new(SIZE[0], SIZE[1]).unwrap());
+    let view = View::new(&camera, film);
+    let mut settings = RenderSettings::studio();
+    settings.sampling.samples = 8;
+    let occlusion = Some(Occlusion { radius: Some(0.05), samples: 2 });
+    settings.integrator = Integrator::Studio(Studio { occlusion, ..Studio::default() });
+    let (lit, scene, view, settings) = (&lit, &scene, &view, &settings);
+
+    let headless = Headless::open(&HeadlessOptions::default()).unwrap();
+    let structures = headless.plan_accel(&of_host, AccelChoice::Auto).build(of_host.spheres());
+    let structures = Structures { accel: structures, occluders: None };
+    let uploaded = headless.upload(&of_host, &structures).unwrap();
+    let data = LayerSet::DATA.with(Layer::Alpha);
+    let mut cases = Cases::default();
+    cases.add("Headless, 8 samples", || {
+        let watch = &mut |_: &_| Decision::GoOn;
+        headless.render_uploaded(&uploaded, view, settings, data, watch).unwrap();
+    });
+    // Every turn is another picture, whose random numbers are others.
+    for (max_rays, name) in [(u64::MAX, "all at once"), (4_000_000, "4 million rays at a time")] {
+        let mut settings = settings.clone();
+        let mut picture =
+            LitPicture::new(lit, device, queue, scene, view, &settings, &layers.targets()).unwrap();
+        cases.add(format!("LitPicture, 8 samples, {name}"), move || {
+            settings.sampling.seed += 1;
+            picture.set(lit, device, queue, scene, view, &settings).unwrap();
+            let mut state = LitState::Refining;
+            while state != LitState::Done {
+                host.run(|encoder| {
+                    state = picture.record(lit, queue, encoder, scene, max_rays).unwrap().state;
+                });
+            }
+        });
+    }
+    let mut live =
+        LivePicture::new(lit, device, queue, scene, view, settings, &layers.targets()).unwrap();
+    cases.add("LivePicture, a frame", move || {
+        live.set(lit, device, queue, scene, view, settings).unwrap();
+        host.run(|encoder| {
+            live.record(lit, queue, encoder, scene).unwrap();
+        });
+    });
+    cases.measure("a studio of 100,000 spheres, 1280x960");
 }
 
 /// What a host does from its first call to its first frame, after which it drops everything.

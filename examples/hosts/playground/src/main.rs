@@ -64,7 +64,7 @@ impl Playground {
 
     /// One panel: the spheres, and below them what they took.
     fn panel(&mut self, ui: &mut egui::Ui, panel: usize, report: Option<Report>) {
-        let (name, _, settings) = TIERS[panel];
+        let (name, way, settings) = TIERS[panel];
         let size = ui.available_size() - egui::vec2(0.0, 60.0);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::drag());
         let dragged = response.drag_delta();
@@ -86,12 +86,12 @@ impl Playground {
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, draw));
         ui.strong(name);
         let Some(Report { progress, last, spent, .. }) = report else { return };
-        ui.label(format!(
-            "{} of {} samples in {:.2} s",
-            progress.samples,
-            progress.total,
-            spent.as_secs_f64()
-        ));
+        let what = match way {
+            Way::Samples => "samples",
+            Way::Live => "frames",
+        };
+        let seconds = spent.as_secs_f64();
+        ui.label(format!("{} of {} {what} in {seconds:.2} s", progress.samples, progress.total));
         if let Some((rays, took)) = last {
             let (millions, seconds) = (rays as f64 / 1e6, took.as_secs_f64());
             ui.label(format!(
