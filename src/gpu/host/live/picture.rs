@@ -191,7 +191,7 @@ impl LivePicture {
         }
         // Lamps move with the camera, or because the host moves them. Whatever else changes, changes what is hidden.
         let has_other_rays = lighting.rays_differ(&self.lighting);
-        self.has_moving_lamps = !has_other_rays && lighting.tables != self.lighting.tables;
+        self.has_moving_lamps |= lighting.tables != self.lighting.tables;
         if has_other_rays {
             self.before = None;
         }
