@@ -206,7 +206,6 @@ mod tests {
     use crate::gpu::headless::denoise::Denoise;
     use crate::gpu::host::host_view::HostView;
     use crate::gpu::kernels;
-    use crate::gpu::passes::lit::LiveView;
     use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::scene::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Looped, Operands, SelfTest, Values};
@@ -347,24 +346,6 @@ mod tests {
                 first,
                 visible_first,
                 visible_size
-            }),
-            layout!(LiveView {
-                right,
-                is_parallel,
-                up,
-                footprint,
-                forward,
-                y_sign,
-                shift,
-                has_before,
-                across,
-                most_lamps,
-                down,
-                most_open,
-                along,
-                zero,
-                size,
-                pad
             }),
             layout!(RecolorRange { first, count, shape_count, zero }),
             layout!(LightingParameters {
