@@ -259,7 +259,7 @@ impl LitPicture {
             }
         }
         self.record_data(renderer.renderer(), queue, encoder, scene, &mut budget)?;
-        if self.data_cursor.parts == self.data.parts().count() {
+        if self.has_data() {
             self.record_samples(queue, encoder, scene, place, &mut budget)?;
         }
         self.is_cleared = true;
@@ -273,9 +273,14 @@ impl LitPicture {
     fn free_place(&self, max_rays: u64) -> Option<usize> {
         let DataCursor { parts, left } = &self.data_cursor;
         let is_begun = *parts > 0 || !left.is_empty();
-        let has_all = *parts == self.data.parts().count();
-        let is_sliced = !has_all && (is_begun || self.data_groups() * RAYS_PER_GROUP > max_rays);
+        let is_sliced =
+            !self.has_data() && (is_begun || self.data_groups() * RAYS_PER_GROUP > max_rays);
         self.tickets.free().filter(|_| !is_sliced || self.tickets.are_all_free())
+    }
+
+    /// Whether the picture by primary rays is recorded.
+    fn has_data(&self) -> bool {
+        self.data_cursor.parts == self.data.parts().count()
     }
 
     /// Number of workgroups of the picture by primary rays, over all bricks.
@@ -292,6 +297,9 @@ impl LitPicture {
         scene: &SceneBuffers,
         budget: &mut Budget,
     ) -> Result<(), GpuError> {
+        if self.has_data() {
+            return Ok(());
+        }
         let (data, cursor) = (&mut self.data, &mut self.data_cursor);
         let parts: Vec<BandBrick> = data.parts().collect();
         renderer.check_pipelines(scene, data, |part| part)?;

@@ -15,7 +15,8 @@ use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
 use crate::gpu::passes::frame::{Frame, Targets, iteration_limit};
 use crate::gpu::passes::lit::records::DispatchParameters;
 use crate::gpu::passes::lit::{
-    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView, bind_group, whole,
+    LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView, bind_group, buffer,
+    whole,
 };
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
@@ -311,22 +312,10 @@ impl Buffers {
         let pixels = u64::from(width) * u64::from(height);
         check_storage_size(device, "the surfaces of a live picture", 64 * pixels)?;
         scoped(device, || {
-            let uniform = |label, bytes: usize| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size: bytes as u64,
-                    usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            };
-            let storage = |label, bytes| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size: bytes,
-                    usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            };
+            let uniform =
+                |label, bytes: usize| buffer(device, label, bytes as u64, BufferUsages::UNIFORM);
+            let both = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let storage = |label, bytes| buffer(device, label, bytes, both);
             let frame = uniform("pinhole live frame", size_of::<FrameParameters>());
             let dispatches = uniform("pinhole live dispatches", AT_ONCE * strides[0]);
             let views = uniform("pinhole live views", AT_ONCE * strides[1]);

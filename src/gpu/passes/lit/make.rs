@@ -19,12 +19,7 @@ impl Make<'_> {
         bytes: usize,
         usage: BufferUsages,
     ) -> Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes as u64,
-            usage: usage | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
+        buffer(self.device, label, bytes as u64, usage)
     }
 
     pub(in crate::gpu) fn filled(
@@ -37,6 +32,21 @@ impl Make<'_> {
         self.queue.write_buffer(&buffer, 0, bytes);
         buffer
     }
+}
+
+/// A buffer that can be written.
+pub(in crate::gpu) fn buffer(
+    device: &Device,
+    label: &'static str,
+    bytes: u64,
+    usage: BufferUsages,
+) -> Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes,
+        usage: usage | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// A bind group of some resources.

@@ -37,7 +37,7 @@ pub(in crate::gpu) use kernels::all_kernels;
 pub(in crate::gpu) use lighting::LightingData;
 pub(in crate::gpu) use lighting_buffers::LightingBuffers;
 pub(in crate::gpu) use live::{LiveKey, LivePasses, LiveView};
-pub(in crate::gpu) use make::{bind_group, whole};
+pub(in crate::gpu) use make::{bind_group, buffer, whole};
 pub(in crate::gpu) use passes::{AllLitPasses, LitKey, LitLayouts, LitPasses};
 pub(in crate::gpu) use recorder::Recorder;
 pub(in crate::gpu) use round::{AT_ONCE, Moment, Round, Step};
