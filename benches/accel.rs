@@ -49,7 +49,7 @@ fn build(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene) {
     group.throughput(Throughput::Elements(count as u64));
     let budget = GridBudget { listed: 5 * count, cells: 2 * count };
     for (layout, name) in
-        [(ListLayout::Copied, "grid, copied"), (ListLayout::Referenced, "grid, referenced")]
+        [(ListLayout::Balls, "grid, copied"), (ListLayout::Referenced, "grid, referenced")]
     {
         group.bench_function(name, |b| {
             b.iter(|| build_grid(spheres, &ids, margin, layout, budget));

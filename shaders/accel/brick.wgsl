@@ -12,7 +12,7 @@ struct Nearest {
 
 // Number of shapes, index of the first, box of the grid, and layout of the appearance words.
 @group(1) @binding(0) var<uniform> brick: Brick;
-// Shapes in the order of the structure, in the layout of the primitive. The sign of a radius has no meaning here.
+// Shapes in the order of the structure, in the layout of the primitive.
 @group(1) @binding(1) var<storage, read> shapes: array<Shape>;
 // Index of each shape in input order.
 @group(1) @binding(2) var<storage, read> ids: array<u32>;

@@ -1,38 +1,8 @@
-// Testing the spheres of a grid cell.
+// Testing the spheres of a cell's list of references. The highest bit of the last reference is set.
 //
 // The ids in a list ascend, and the nearest sphere of the list replaces an equally near one of an earlier cell. The
 // cell that contains the nearest hit point holds all spheres through that point and is tested last. The smallest id
 // therefore wins among equal distances, and no id needs to be read.
-
-//// copied
-// Testing the list of a cell that stores copies of its spheres. The radius of the last sphere is negative.
-// provides: test_list
-// needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_within, shapes
-
-fn test_list(search: Search, start: u32, found: ptr<function, Found>) {
-    var t = NO_HIT;
-    var shape_index = NO_SHAPE;
-    var at = start;
-    loop {
-        let here = distance_within(search, at, t);
-        if (here < t) {
-            t = here;
-            shape_index = at;
-        }
-        if (shapes[at].w < 0.0) {
-            break;
-        }
-        at++;
-    }
-    // Every list has an end, so it suffices to count its iterations here.
-    count_iterations(at - start);
-    if (shape_index != NO_SHAPE && t <= (*found).t) {
-        *found = Found(t, shape_index);
-    }
-}
-
-//// referenced
-// Testing the list of a cell that stores indices of spheres. The highest bit of the last index is set.
 // provides: test_list
 // needs: Found, NO_HIT, NO_SHAPE, Search, count_iterations, distance_within
 

@@ -3,7 +3,7 @@
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
 // computed from the index of the plane instead of being accumulated, so that their error does not grow.
 // provides: walk
-// needs: EMPTY, Found, KIND, NO_SHAPE, Search, brick, cells, first_cell, grid_ray, least, spend, test_list
+// needs: EMPTY, Found, KIND, NO_SHAPE, Search, brick, cell_word, first_cell, grid_ray, least, spend, test_list
 
 fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
     let along = grid_ray(search.ray, search.inverse);
@@ -14,7 +14,7 @@ fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
     let strides = vec3f(1.0, counts.x, counts.x * counts.y);
     var cell = first_cell(along);
     loop {
-        let word = cells[u32(dot(cell, strides))];
+        let word = cell_word(u32(dot(cell, strides)));
         let planes = along.base + (cell + along.ahead) * along.delta;
         let t_leave = least(planes);
         if (word != EMPTY) {

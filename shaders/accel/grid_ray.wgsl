@@ -1,10 +1,7 @@
-// Coordinates of a ray in a grid, and the searches that grid.wgsl and nested_grid.wgsl share.
+// Coordinates of a ray in a grid, and the searches that all traversals of grids share.
 // provides: EMPTY, Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, REACH,
-//   REACH_BITS, cells, find_any, find_nearest, first_cell, grid_ray, least
+//   REACH_BITS, find_any, find_nearest, first_cell, grid_ray, least
 // needs: Nearest, Ray, Search, brick, offer, walk
-
-// Words of the cells of the grid, and of the grids inside its cells, one for each cell.
-@group(1) @binding(3) var<storage, read> cells: array<u32>;
 
 // Kind of a cell, in the two highest bits of its word. The other bits depend on the kind.
 const KIND: u32 = 3u << 30u;
@@ -33,6 +30,8 @@ struct GridRay {
     // The position on the ray at distance t, in units of cells, is start + t * speed.
     start: vec3f,
     speed: vec3f,
+    // Cells for each unit of distance along the ray.
+    per_cell: f32,
     // Distances at which the ray enters and leaves the grid.
     t_enter: f32,
     t_leave: f32,
@@ -62,7 +61,7 @@ fn grid_ray(ray: Ray, inverse: vec3f) -> GridRay {
     let t_leave = least(base + ahead * counts * delta);
     let per_cell = 1.0 / brick.cell_size;
     let start = (ray.origin - brick.min) * per_cell;
-    return GridRay(ahead, step, base, delta, start, ray.direction * per_cell, t_enter, t_leave);
+    return GridRay(ahead, step, base, delta, start, ray.direction * per_cell, per_cell, t_enter, t_leave);
 }
 
 // The cell in which the ray enters the grid.

@@ -3,9 +3,9 @@
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
 // computed from the index of the plane instead of being accumulated, so that their error does not grow. The word of an
 // empty cell contains the number of empty cells ahead of it, and the ray crosses all of them in one step.
-// provides: walk
-// needs: EMPTY, Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, REACH,
-//   REACH_BITS, Search, brick, cells, first_cell, grid_ray, least, spend, test_list
+// provides: leaving, next_cell, walk
+// needs: EMPTY, Found, GridRay, KIND, NO_SHAPE, REACH, REACH_BITS, Search, brick, cell_word, first_cell, grid_ray, least,
+//   spend, walk_cell
 
 fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
     let along = grid_ray(search.ray, search.inverse);
@@ -25,7 +25,7 @@ fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
         // A loop of its own advances to the next cell with spheres. Rays that run together on a software device then
         // test spheres at the same time, instead of one testing while others cross empty space.
         loop {
-            word = cells[u32(dot(cell, strides))];
+            word = cell_word(u32(dot(cell, strides)));
             // The word of an empty cell contains the number of empty cells ahead for each octant.
             let reach = select(0.0, f32((word >> octant) & REACH), (word & KIND) == EMPTY);
             t_leave = least(leaving(along, cell, reach));
@@ -61,38 +61,4 @@ fn next_cell(along: GridRay, cell: vec3f, reach: f32, t: f32) -> vec3f {
     let kept = clamp(ahead, vec3f(0.0), last);
     let is_left = leaving(along, cell, reach) <= vec3f(t);
     return select(kept, cell + along.step * (reach + 1.0), is_left);
-}
-
-// Traverses a cell of the outer grid that is not empty. A cell with a list is treated as a grid of one cell.
-fn walk_cell(
-    search: Search,
-    along: GridRay,
-    word: u32,
-    cell: vec3f,
-    t_enter: f32,
-    t_leave: f32,
-    found: ptr<function, Found>,
-    stop_at_first: bool,
-) {
-    let is_grid = (word & KIND) == GRID;
-    let side = f32(1u << select(0u, (word >> LEVEL_SHIFT) & LEVEL, is_grid));
-    let strides = vec3f(1.0, side, side * side);
-    let there = floor((along.start + t_enter * along.speed - cell) * side);
-    var inner = clamp(there, vec3f(0.0), vec3f(side - 1.0));
-    loop {
-        var inner_word = word;
-        if (is_grid) {
-            inner_word = cells[(word & INNER_START) * INNER_UNIT + u32(dot(inner, strides))];
-        }
-        let planes = along.base + (cell + (inner + along.ahead) / side) * along.delta;
-        let t_inner = least(planes);
-        if ((inner_word & KIND) == LIST) {
-            test_list(search, inner_word & ~KIND, found);
-        }
-        let is_done = (*found).t <= t_inner || (stop_at_first && (*found).shape_index != NO_SHAPE);
-        if (is_done || t_inner >= t_leave || !spend(1u)) {
-            break;
-        }
-        inner = select(inner, inner + along.step, planes <= vec3f(t_inner));
-    }
 }

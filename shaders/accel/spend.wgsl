@@ -1,6 +1,6 @@
 // Counting the loop iterations of an invocation, and reporting when they reach the limit.
 // provides: count_iterations, report_spent, spend
-// needs: frame, give_up
+// needs: give_up, iteration_limit
 
 // Number of iterations of all loops of this invocation.
 var<private> spent: u32;
@@ -13,11 +13,11 @@ fn count_iterations(iterations: u32) {
 // Kernels are built without wgpu's own loop bound, and old software devices leave long loops silently.
 fn spend(iterations: u32) -> bool {
     count_iterations(iterations);
-    return spent <= frame.iteration_limit;
+    return spent <= iteration_limit();
 }
 
 fn report_spent() {
-    if (spent > frame.iteration_limit) {
+    if (spent > iteration_limit()) {
         give_up();
     }
 }

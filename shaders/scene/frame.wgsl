@@ -1,5 +1,5 @@
 // The parameters of a frame, the struct of a hit, and the source of fences.
-// provides: Hit, NO_HIT, NO_ID, WORKGROUP_SIDE, frame, runtime_zero, start_fences
+// provides: Hit, NO_HIT, NO_ID, WORKGROUP_SIDE, frame, iteration_limit, runtime_zero, start_fences
 // needs: FrameParameters
 
 // Distance of a miss. It is not infinite, because WGSL lets implementations assume that infinities do not exist.
@@ -27,10 +27,19 @@ struct Hit {
 // fence instead would take a software device 5 to 9 % of the time of a tree traversal.
 var<private> zero_bits: u32;
 
+// The iteration limit of the frame, which is also read once.
+var<private> most_iterations: u32;
+
 fn start_fences() {
     zero_bits = frame.zero;
+    most_iterations = frame.iteration_limit;
 }
 
 fn runtime_zero() -> u32 {
     return zero_bits;
+}
+
+// Number of loop iterations after which an invocation gives up.
+fn iteration_limit() -> u32 {
+    return most_iterations;
 }

@@ -64,4 +64,6 @@ struct Brick {
     // Index of the first material word in `appearances`, and the mask of its valid bits.
     material_first: u32,
     material_mask: u32,
+    // Index of the first reference in `ids`, if references of a grid are there.
+    first_reference: u32,
 }

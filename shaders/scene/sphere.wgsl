@@ -4,7 +4,7 @@
 // 7 (2019): the discriminant is computed from the foot point (after Hearn and Baker), so that it is not lost in the
 // squared distance, and the roots as q and c/q, so that neither is a difference of nearly equal numbers. Changes: the
 // direction must have unit length, and only the relevant root is computed. A tangent ray hits.
-// provides: Shape, bare, intersect, is_same, no_shape, shape_normal, sphere_normal
+// provides: Shape, intersect, is_same, no_shape, shape_normal, sphere_normal
 // needs: NO_HIT, Ray, fence, fence3
 
 // A sphere: its centre in the scene's frame, and its radius.
@@ -14,14 +14,8 @@ fn no_shape() -> Shape {
     return vec4f(0.0);
 }
 
-// A shape without the marks that a structure stores in it, such as the sign of the radius.
-fn bare(shape: Shape) -> Shape {
-    return vec4f(shape.xyz, abs(shape.w));
-}
-
-// Whether two shapes are equal. The second must have no marks, see `bare`.
 fn is_same(a: Shape, b: Shape) -> bool {
-    return all(a.xyz == b.xyz) && abs(a.w) == b.w;
+    return all(a == b);
 }
 
 struct SphereHit {

@@ -30,10 +30,10 @@ impl Structure {
     /// All structures.
     pub const ALL: &'static [Self] = &[
         Self::List,
-        Self::Grid(ListLayout::Copied),
         Self::Grid(ListLayout::Referenced),
-        Self::NestedGrid(ListLayout::Copied),
+        Self::Grid(ListLayout::Balls),
         Self::NestedGrid(ListLayout::Referenced),
+        Self::NestedGrid(ListLayout::Balls),
         Self::WideTree,
         Self::BinaryTree,
     ];
@@ -42,10 +42,10 @@ impl Structure {
     /// tree is built only if it is asked for.
     pub const AUTOMATIC: &'static [Self] = &[
         Self::List,
-        Self::Grid(ListLayout::Copied),
         Self::Grid(ListLayout::Referenced),
-        Self::NestedGrid(ListLayout::Copied),
+        Self::Grid(ListLayout::Balls),
         Self::NestedGrid(ListLayout::Referenced),
+        Self::NestedGrid(ListLayout::Balls),
         Self::WideTree,
     ];
 
@@ -65,10 +65,10 @@ impl Structure {
     pub const fn name(self) -> &'static str {
         match self {
             Self::List => "list",
-            Self::Grid(ListLayout::Copied) => "grid, spheres copied into cells",
             Self::Grid(ListLayout::Referenced) => "grid, cells refer to spheres",
-            Self::NestedGrid(ListLayout::Copied) => "nested grids, spheres copied into cells",
+            Self::Grid(ListLayout::Balls) => "grid, cells have balls",
             Self::NestedGrid(ListLayout::Referenced) => "nested grids, cells refer to spheres",
+            Self::NestedGrid(ListLayout::Balls) => "nested grids, cells have balls",
             Self::WideTree => "8-wide tree",
             Self::BinaryTree => "binary tree",
         }
@@ -93,8 +93,7 @@ pub enum Index {
 pub struct Brick {
     /// The acceleration structure of the spheres.
     pub index: Index,
-    /// Centre (x, y, z) in the scene's frame, and radius, in the order of the structure. The sign of the radius has a
-    /// meaning only to a grid, where it marks the end of a list.
+    /// Centre (x, y, z) in the scene's frame, and radius, in the order of the structure.
     pub spheres: Vec<[f32; 4]>,
     /// Index of each sphere in input order.
     pub ids: Vec<u32>,

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use super::ball::BALLS_PER_VECTOR;
+
 /// The words of [`Grid::cells`]. The two highest bits of a word are its kind.
 pub(crate) mod word {
     /// The kind of a cell that no sphere overlaps. Bits 3 o to 3 o + 2 are the number of cells ahead, along all three
@@ -46,8 +48,7 @@ pub(crate) mod word {
     }
 }
 
-/// Marks the last element of a list: with `Referenced`, the highest bit of a reference; with `Copied`, the sign of the
-/// radius.
+/// Marks the last reference of a list, and the last ball.
 pub(crate) const LAST: u32 = 1 << 31;
 
 /// The largest number of cells of a brick: cell indices are computed in f32, which is exact up to this number.
@@ -57,12 +58,21 @@ pub(super) const MAX_CELLS: usize = 1 << 24;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ListLayout {
-    /// A list is a range of spheres, so that each sphere is stored once for every cell that it overlaps. A test loads
-    /// one vector.
-    Copied,
-    /// A list is a range of references, and each sphere is stored once. This needs less memory, and one more load for
-    /// each test.
+    /// A list is a range of references to spheres.
     Referenced,
+    /// Beside each reference is a ball of four bytes around the sphere. Only spheres whose balls a ray meets are
+    /// loaded and tested. Lists are filled up to a multiple of four.
+    Balls,
+}
+
+impl ListLayout {
+    /// The number of elements that a list of `len` spheres takes.
+    pub(super) fn elements(self, len: usize) -> usize {
+        match self {
+            Self::Referenced => len,
+            Self::Balls => len.next_multiple_of(BALLS_PER_VECTOR),
+        }
+    }
 }
 
 /// A grid with one or two levels of cells, as plain data. `shaders/accel/grid.wgsl` reads the same words.
@@ -77,8 +87,10 @@ pub struct Grid {
     /// One word for each cell: first those of the first level, x fastest, padded to a multiple of eight; then those of
     /// the grids inside cells, each with 8ᵏ words.
     pub cells: Vec<u32>,
-    /// With [`ListLayout::Referenced`], indices of spheres; the last element of each list has its highest bit set.
-    pub references: Option<Vec<u32>>,
+    /// Indices of spheres, list after list; the last element of each list has its highest bit set.
+    pub references: Vec<u32>,
+    /// With [`ListLayout::Balls`], the ball of each reference; the last of each list has its highest bit set.
+    pub balls: Option<Vec<u32>>,
 }
 
 /// Statistics of a grid.
@@ -106,27 +118,17 @@ impl Grid {
     /// The layout of the lists.
     #[must_use]
     pub fn layout(&self) -> ListLayout {
-        if self.references.is_some() { ListLayout::Referenced } else { ListLayout::Copied }
+        if self.balls.is_some() { ListLayout::Balls } else { ListLayout::Referenced }
     }
 
-    /// The list that starts at `start`, as indices into `spheres`.
-    pub(super) fn list<'a>(
-        &'a self,
-        spheres: &'a [[f32; 4]],
-        start: u32,
-    ) -> impl Iterator<Item = u32> + 'a {
+    /// The list that starts at `start`, as indices into [`Grid::references`].
+    pub(super) fn list(&self, start: u32) -> impl Iterator<Item = usize> {
         let mut next = Some(start as usize);
         std::iter::from_fn(move || {
             let at = next?;
-            let (shape_index, is_last) = match &self.references {
-                Some(references) => {
-                    let reference = *references.get(at)?;
-                    (reference & !LAST, reference & LAST != 0)
-                }
-                None => (at as u32, spheres.get(at)?[3].is_sign_negative()),
-            };
+            let is_last = self.references.get(at)? & LAST != 0;
             next = (!is_last).then_some(at + 1);
-            Some(shape_index)
+            Some(at)
         })
     }
 
@@ -140,12 +142,12 @@ impl Grid {
 
     /// Collects statistics of the grid.
     #[must_use]
-    pub fn statistics(&self, spheres: &[[f32; 4]]) -> GridStatistics {
+    pub fn statistics(&self) -> GridStatistics {
         let mut statistics = GridStatistics { cells: self.cells.len(), ..Default::default() };
         for &cell in &self.cells {
             match cell & word::KIND {
                 word::LIST => {
-                    let len = self.list(spheres, cell & !word::KIND).count();
+                    let len = self.list(cell & !word::KIND).count();
                     statistics.listed += len;
                     statistics.longest_list = statistics.longest_list.max(len);
                 }

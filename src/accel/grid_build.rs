@@ -2,16 +2,18 @@
 
 use glam::Vec3;
 
+use super::ball::BallFrame;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{Grid, LAST, ListLayout, MAX_CELLS, word};
-use super::grid_dense::{DenseCells, inner_lists};
+use super::grid::{Grid, ListLayout, MAX_CELLS, word};
+use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
-use super::grid_sort::{CHUNK, Lists, count, fill, map_ranges, sort_by_cell, total};
+use super::grid_lists::BuiltLists;
+use super::grid_sort::{Lists, count, fill, map_ranges, sort_by_cell, total};
 use crate::parallel::for_each;
 
-/// The cost of a step from cell to cell, in sphere tests. Measured on lavapipe with a million random spheres, where the
-/// time hardly changes between four and eight.
-pub(super) const STEP_COST: f32 = 5.0;
+/// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
+/// the time hardly changes between eight and sixteen.
+pub(super) const STEP_COST: f32 = 12.0;
 
 /// Limits for the size of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +29,7 @@ pub struct GridBudget {
 pub struct BuiltGrid {
     /// The cells.
     pub grid: Grid,
-    /// Centre and radius; with [`ListLayout::Copied`], the radius is negative at the end of each list.
+    /// Centre and radius.
     pub spheres: Vec<[f32; 4]>,
     /// Index of each sphere in input order.
     pub ids: Vec<u32>,
@@ -46,7 +48,7 @@ pub fn build_grid(
     budget: GridBudget,
 ) -> BuiltGrid {
     let (min, max) = bounds(spheres, ids, margin);
-    let mut cells = first_level(spheres, ids, (min, max), budget);
+    let mut cells = first_level(spheres, ids, (min, max), layout, budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.
     while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
@@ -55,7 +57,7 @@ pub fn build_grid(
     let mut counts = count(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
     // cells.
-    while total(&counts) > budget.listed as u64 && cells.len() > 1 {
+    while total(&counts, layout) > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
         counts = count(&sorted, &cells, margin);
     }
@@ -82,11 +84,12 @@ fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
 }
 
 /// Chooses the cell size with the smallest expected cost of a ray: a ray of length L takes about L/size steps, each
-/// with the sphere tests of one cell's list.
+/// with the elements of one cell's list.
 fn first_level(
     spheres: &[[f32; 4]],
     ids: &[u32],
     (min, max): (Vec3, Vec3),
+    layout: ListLayout,
     budget: GridBudget,
 ) -> Cells {
     const SAMPLES: usize = 4096;
@@ -103,8 +106,9 @@ fn first_level(
     for step in 0..=80_u8 {
         let size = longest / (f32::from(step) / 8.0).exp2();
         let overlaps: f32 = radii.iter().map(|r| mean_overlapped_cells(size, *r)).sum();
-        let listed = f64::from(overlaps) / radii.len() as f64 * ids.len() as f64;
+        let overlaps = f64::from(overlaps) / radii.len() as f64 * ids.len() as f64;
         let cells = volume / f64::from(size).powi(3);
+        let listed = expected_elements(layout, overlaps, cells);
         let fits = listed <= budget.listed as f64 * 0.97 && cells <= most_cells * 0.9;
         let cost = (f64::from(STEP_COST) + listed / cells.max(1.0)) / f64::from(size);
         if (fits || step == 0) && best.is_none_or(|(least, _)| cost < least) {
@@ -112,6 +116,15 @@ fn first_level(
         }
     }
     cells_of_size(min, max, best.map_or(longest, |(_, size)| size))
+}
+
+/// The expected number of elements of the lists of cells that spheres overlap so many times.
+fn expected_elements(layout: ListLayout, overlaps: f64, cells: f64) -> f64 {
+    match layout {
+        ListLayout::Referenced => overlaps,
+        // Lists that are filled up have one and a half more on average.
+        ListLayout::Balls => overlaps + 1.5 * cells.min(overlaps),
+    }
 }
 
 fn cells_of_size(min: Vec3, max: Vec3, size: f32) -> Cells {
@@ -130,8 +143,7 @@ struct BuiltCells {
     words: Vec<u32>,
     /// Words of the grids inside cells.
     inner: Vec<u32>,
-    /// Indices of spheres, list after list; the last element of each list is marked.
-    lists: Vec<u32>,
+    lists: BuiltLists,
 }
 
 fn assemble(
@@ -143,14 +155,24 @@ fn assemble(
     lists: &Lists,
 ) -> BuiltGrid {
     let first_level_len = word::in_whole_units(cells.len());
-    let dense =
-        DenseCells::of(cells, &sorted, margin, (&lists.shape_indices, &lists.starts), budget);
+    let dense = DenseCells::of(
+        cells,
+        &sorted,
+        margin,
+        (&lists.shape_indices, &lists.starts),
+        layout,
+        budget,
+    );
+    let frame = |cells: &Cells, cell: usize| {
+        let corner = corner(cells, cell);
+        (layout == ListLayout::Balls).then_some(BallFrame { corner, size: cells.size, margin })
+    };
     let parts = map_ranges(cells.len(), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
         let mut part = BuiltCells {
             words: Vec::with_capacity(range.len()),
             inner: Vec::new(),
-            lists: Vec::with_capacity(listed),
+            lists: BuiltLists::with_capacity(listed, layout),
         };
         let (mut keys, mut list) = (Vec::new(), Vec::new());
         for cell in range {
@@ -158,18 +180,18 @@ fn assemble(
             by_id(&lists.shape_indices[start..end], &sorted_ids, &mut keys, &mut list);
             keep_one_of_the_same(&mut list, &sorted);
             let inner = dense.level(cell).and_then(|level| {
-                Some((level, inner_lists(cells, cell, &list, &sorted, margin, level)?))
+                Some((level, inner_lists(cells, cell, &list, &sorted, margin, level, layout)?))
             });
             let word = match inner {
                 Some((level, inner)) => {
                     let start = word::units(part.inner.len());
-                    for list in inner {
-                        let word = append(&mut part.lists, &list);
-                        part.inner.push(word);
+                    let inside = inner_cells(cells, cell, level);
+                    for (cell, list) in inner.iter().enumerate() {
+                        part.inner.push(part.lists.append(list, &sorted, frame(&inside, cell)));
                     }
                     word::GRID | u32::from(level) << word::LEVEL_SHIFT | start
                 }
-                None => append(&mut part.lists, &list),
+                None => part.lists.append(&list, &sorted, frame(cells, cell)),
             };
             part.words.push(word);
         }
@@ -180,21 +202,13 @@ fn assemble(
         cell_size: cells.size,
         cell_counts: cells.counts,
         cells: Vec::new(),
-        references: None,
+        references: Vec::new(),
+        balls: None,
     };
-    let shape_indices = join(&mut grid.cells, first_level_len, &parts);
+    join(&mut grid, first_level_len, layout, &parts);
     drop(parts);
     mark_empty_surroundings(&mut grid.cells, cells.counts);
-    match layout {
-        ListLayout::Referenced => {
-            grid.references = Some(shape_indices);
-            BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
-        }
-        ListLayout::Copied => {
-            let (spheres, ids) = copies(&shape_indices, &sorted, &sorted_ids);
-            BuiltGrid { grid, spheres, ids }
-        }
-    }
+    BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
 }
 
 /// Sorts a list by id, so that at equal distances the sphere with the smallest id is found first.
@@ -220,38 +234,29 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
     }
 }
 
-/// Appends a list, and returns the word of its cell.
-fn append(lists: &mut Vec<u32>, list: &[u32]) -> u32 {
-    let Some((last, others)) = list.split_last() else {
-        return word::EMPTY;
-    };
-    let start = lists.len() as u32;
-    lists.extend_from_slice(others);
-    lists.push(last | LAST);
-    word::LIST | start
-}
-
-/// Writes the words of all parts into `cells`, and returns their joined lists.
-fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[BuiltCells]) -> Vec<u32> {
-    let listed = parts.iter().map(|part| part.lists.len()).sum();
+/// Joins the words and the lists of all parts.
+fn join(grid: &mut Grid, first_level_len: usize, layout: ListLayout, parts: &[BuiltCells]) {
+    let listed = parts.iter().map(|part| part.lists.references.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
-    let mut shape_indices = vec![0; listed];
-    *cells = vec![word::EMPTY; first_level_len + inner_len];
-    let (first_level, inner) = cells.split_at_mut(first_level_len);
-    let (mut words, mut inner, mut lists) = (first_level, inner, &mut shape_indices[..]);
+    grid.cells = vec![word::EMPTY; first_level_len + inner_len];
+    grid.references = vec![0; listed];
+    let mut balls = vec![0; parts.iter().map(|part| part.lists.balls.len()).sum()];
+    let (mut words, mut inner) = grid.cells.split_at_mut(first_level_len);
+    let (mut references, mut all_balls) = (&mut grid.references[..], &mut balls[..]);
     let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
     let mut tasks = Vec::with_capacity(parts.len());
     for part in parts {
         let target = (
             cut(&mut words, part.words.len()),
             cut(&mut inner, part.inner.len()),
-            cut(&mut lists, part.lists.len()),
+            cut(&mut references, part.lists.references.len()),
+            cut(&mut all_balls, part.lists.balls.len()),
         );
         tasks.push((part, target, list_start, inner_start));
-        list_start += part.lists.len() as u32;
+        list_start += part.lists.references.len() as u32;
         inner_start += word::units(part.inner.len());
     }
-    for_each(tasks, |(part, (words, inner, lists), list_start, inner_start)| {
+    for_each(tasks, |(part, (words, inner, references, balls), list_start, inner_start)| {
         let moved = |cell: &u32| match cell & word::KIND {
             word::LIST => cell + list_start,
             word::GRID => cell + inner_start,
@@ -263,9 +268,10 @@ fn join(cells: &mut Vec<u32>, first_level_len: usize, parts: &[BuiltCells]) -> V
         for (target, cell) in inner.iter_mut().zip(&part.inner) {
             *target = moved(cell);
         }
-        lists.copy_from_slice(&part.lists);
+        references.copy_from_slice(&part.lists.references);
+        balls.copy_from_slice(&part.lists.balls);
     });
-    shape_indices
+    grid.balls = (layout == ListLayout::Balls).then_some(balls);
 }
 
 /// Splits the first elements off a slice.
@@ -273,27 +279,4 @@ fn cut<'a, T>(slice: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     let (first, rest) = std::mem::take(slice).split_at_mut(len);
     *slice = rest;
     first
-}
-
-/// Copies of all listed spheres, one for each element of a list.
-fn copies(
-    shape_indices: &[u32],
-    sorted: &[[f32; 4]],
-    sorted_ids: &[u32],
-) -> (Vec<[f32; 4]>, Vec<u32>) {
-    let mut spheres = vec![[0.0; 4]; shape_indices.len()];
-    let mut ids = vec![0; shape_indices.len()];
-    let parts =
-        spheres.chunks_mut(CHUNK).zip(ids.chunks_mut(CHUNK)).zip(shape_indices.chunks(CHUNK));
-    for_each(parts.collect(), |((spheres, ids), shape_indices)| {
-        for ((sphere, id), shape_index) in spheres.iter_mut().zip(ids).zip(shape_indices) {
-            let at = (shape_index & !LAST) as usize;
-            *sphere = sorted[at];
-            if shape_index & LAST != 0 {
-                sphere[3] = -sphere[3];
-            }
-            *id = sorted_ids[at];
-        }
-    });
-    (spheres, ids)
 }

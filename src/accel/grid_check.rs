@@ -4,6 +4,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::ball::BALLS_PER_VECTOR;
 use super::grid::{Grid, LAST, MAX_CELLS, word};
 use super::grid_geometry::{Cell, Level};
 
@@ -20,9 +21,9 @@ const MAY_LIST: f64 = 2.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// The size of the cells, their number, or the number of words is not valid.
+    /// The size of the cells, their number, or the number of words or balls is not valid.
     #[error(
-        "the first level is not a valid box of cells: its cell size, cell counts or number of words is wrong"
+        "the first level is not a valid box of cells: its cell size, cell counts or number of words or balls is wrong"
     )]
     Shape,
     /// A word has a kind that is not allowed at its index.
@@ -87,6 +88,16 @@ pub enum GridError {
         /// Index in input order.
         id: u32,
     },
+    /// A ball does not contain its sphere, nor its cell.
+    #[error(
+        "the ball of sphere {id} in the list of cell {cell} contains neither the sphere nor the cell"
+    )]
+    Ball {
+        /// Index into [`Grid::cells`].
+        cell: u32,
+        /// Index in input order.
+        id: u32,
+    },
     /// An empty cell states that cells ahead of it are empty, but some of them are not.
     #[error("not all cells ahead of cell {cell} are empty that it states to be empty")]
     Reach {
@@ -97,7 +108,7 @@ pub enum GridError {
 
 impl Grid {
     /// Checks that the grid is valid for kernels: every index is in range, every list has an end and ascending ids, and
-    /// every sphere is listed in exactly the cells that need it.
+    /// every sphere is listed in exactly the cells that need it, with a ball that contains it.
     ///
     /// `spheres` and `ids` are in the order that the grid refers to. `input` are all spheres from which the grid was
     /// built, and `margin` is the distance from a surface within which cells must list it. If several spheres are
@@ -115,7 +126,7 @@ impl Grid {
         self.check_shape()?;
         self.check_shapes(spheres, ids, input)?;
         let check = Check { grid: self, ids, input, margin: f64::from(margin) };
-        let lists = check.lists(spheres)?;
+        let lists = check.lists()?;
         check.check_reach()?;
         for id in 0..input.len() as u32 {
             check.check_listed(&lists, id)?;
@@ -127,7 +138,9 @@ impl Grid {
         let is_length = self.cell_size.is_finite() && self.cell_size > 0.0;
         let count = self.cell_counts.iter().try_fold(1, |all: u32, count| all.checked_mul(*count));
         let is_box = count.is_some_and(|count| (1..=MAX_CELLS as u32).contains(&count));
-        if !is_length || !self.min.is_finite() || !is_box {
+        let has_all_balls =
+            self.balls.as_ref().is_none_or(|balls| balls.len() == self.references.len());
+        if !is_length || !self.min.is_finite() || !is_box || !has_all_balls {
             return Err(GridError::Shape);
         }
         let padded = word::in_whole_units(self.first_level_len());
@@ -141,7 +154,7 @@ impl Grid {
         }
     }
 
-    /// Checks that each index has the sphere of its id; with references, that each id has exactly one index.
+    /// Checks that each index has the sphere of its id, and that each id has exactly one index.
     fn check_shapes(
         &self,
         spheres: &[[f32; 4]],
@@ -155,24 +168,19 @@ impl Grid {
         let mut seen = vec![false; input.len()];
         for (shape_index, (sphere, id)) in spheres.iter().zip(ids).enumerate() {
             let Some(original) = input.get(*id as usize) else { return wrong(shape_index) };
-            let mut plain = *sphere;
-            if self.references.is_none() {
-                plain[3] = plain[3].abs();
-            } else if std::mem::replace(&mut seen[*id as usize], true) {
-                return wrong(shape_index);
-            }
-            if plain.map(f32::to_bits) != original.map(f32::to_bits) {
+            let is_taken = std::mem::replace(&mut seen[*id as usize], true);
+            if is_taken || sphere.map(f32::to_bits) != original.map(f32::to_bits) {
                 return wrong(shape_index);
             }
         }
-        if self.references.is_some() && ids.len() != input.len() {
+        if ids.len() != input.len() {
             return wrong(ids.len());
         }
         Ok(())
     }
 }
 
-/// The range of a cell's list in the references or, without references, in the spheres; empty without a list.
+/// The range of a cell's list in the references; empty without a list.
 type Range = std::ops::Range<usize>;
 
 struct Check<'a> {
@@ -184,14 +192,13 @@ struct Check<'a> {
 
 impl Check<'_> {
     /// The list of every word, after a check that all references are valid.
-    fn lists(&self, spheres: &[[f32; 4]]) -> Result<Vec<Range>, GridError> {
+    fn lists(&self) -> Result<Vec<Range>, GridError> {
         let words = &self.grid.cells;
         let first_level_len = self.grid.first_level_len();
         let padded = word::in_whole_units(first_level_len);
-        let listed = self.grid.references.as_ref().map_or(spheres.len(), Vec::len);
         // Each word after the first level, and each element of a list, must belong to exactly one cell.
         let mut is_inner = vec![false; words.len()];
-        let mut is_listed = vec![false; listed];
+        let mut is_listed = vec![false; self.grid.references.len()];
         for (cell, value) in words.iter().enumerate().take(first_level_len) {
             if value & word::KIND == word::GRID {
                 self.take_inner(cell, padded, &mut is_inner)?;
@@ -205,7 +212,7 @@ impl Check<'_> {
                 // After the first level, empty words say nothing about the cells around them.
                 word::EMPTY if is_first || *value == word::EMPTY => {}
                 word::LIST if is_first || is_inner[index] => {
-                    let list = self.list(spheres, cell, (value & !word::KIND) as usize)?;
+                    let list = self.list(cell, (value & !word::KIND) as usize)?;
                     for at in list.clone() {
                         if std::mem::replace(&mut is_listed[at], true) {
                             return Err(GridError::List { cell });
@@ -242,31 +249,39 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Follows a list to its end, and checks that its elements are in range and their ids ascend.
-    fn list(&self, spheres: &[[f32; 4]], cell: u32, start: usize) -> Result<Range, GridError> {
-        let mut last_id = None;
-        let mut at = start;
-        loop {
-            let out = GridError::List { cell };
-            let is_last = match &self.grid.references {
-                Some(references) => *references.get(at).ok_or(out)? & LAST != 0,
-                None => spheres.get(at).ok_or(out)?[3].is_sign_negative(),
-            };
-            let id = *self.ids.get(self.shape_index(at)).ok_or(out)?;
-            if last_id.is_some_and(|last| last >= id) {
-                return Err(GridError::Order { cell });
+    /// Follows a list to its end, and checks that its elements are in range and their ids ascend. Its last element may
+    /// be repeated to fill up the list of a layout with balls.
+    fn list(&self, cell: u32, start: usize) -> Result<Range, GridError> {
+        let out = GridError::List { cell };
+        let references = &self.grid.references;
+        let is_last = |at: &usize| references[*at] & LAST != 0;
+        let end = (start..references.len()).find(is_last).ok_or(out)? + 1;
+        let list = start..end;
+        if list.clone().any(|at| self.shape_index(at) >= self.ids.len()) {
+            return Err(out);
+        }
+        let mut len = list.len();
+        if let Some(balls) = &self.grid.balls {
+            let ends = list.clone().filter(|at| balls[*at] & LAST != 0);
+            if start % BALLS_PER_VECTOR != 0 || !ends.eq([end - 1]) {
+                return Err(out);
             }
-            last_id = Some(id);
-            at += 1;
-            if is_last {
-                return Ok(start..at);
-            }
+            let repeats = |at: &usize| self.id(*at) == self.id(end - 1);
+            len -= (start..end - 1).rev().take_while(repeats).count();
+        }
+        if self.grid.layout().elements(len) != list.len() {
+            return Err(out);
+        }
+        if (start..start + len).map(|at| self.id(at)).is_sorted_by(|a, b| a < b) {
+            Ok(list)
+        } else {
+            Err(GridError::Order { cell })
         }
     }
 
     /// The index of the sphere that an element of a list refers to.
     fn shape_index(&self, at: usize) -> usize {
-        self.grid.references.as_ref().map_or(at, |references| (references[at] & !LAST) as usize)
+        (self.grid.references[at] & !LAST) as usize
     }
 
     fn id(&self, at: usize) -> u32 {
@@ -397,9 +412,17 @@ impl Check<'_> {
     }
 
     fn check_list_near(&self, cell: &Cell, list: &Range) -> Result<(), GridError> {
-        for id in list.clone().map(|at| self.id(at)) {
-            if !cell.is_near(self.input[id as usize], MAY_LIST * self.margin) {
-                return Err(GridError::Far { cell: cell.index as u32, id });
+        let word = cell.index as u32;
+        for at in list.clone() {
+            let id = self.id(at);
+            let sphere = self.input[id as usize];
+            if !cell.is_near(sphere, MAY_LIST * self.margin) {
+                return Err(GridError::Far { cell: word, id });
+            }
+            if let Some(balls) = &self.grid.balls
+                && !cell.has_in_ball(balls[at], sphere, MUST_LIST * self.margin)
+            {
+                return Err(GridError::Ball { cell: word, id });
             }
         }
         Ok(())

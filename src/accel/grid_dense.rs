@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
+use super::ball::BALLS_PER_VECTOR;
 use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::word;
+use super::grid::{ListLayout, word};
 use super::grid_build::{GridBudget, STEP_COST};
 use crate::parallel::{map_parts, ranges};
 
@@ -49,6 +50,7 @@ impl DenseCells {
         spheres: &[[f32; 4]],
         margin: f32,
         (shape_indices, starts): (&[u32], &[u32]),
+        layout: ListLayout,
         budget: GridBudget,
     ) -> Self {
         let candidates = map_parts(ranges(cells.len(), 1 << 12), |range| {
@@ -72,9 +74,12 @@ impl DenseCells {
         candidates
             .sort_unstable_by_key(|candidate| (std::cmp::Reverse(candidate.len), candidate.cell));
         let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
-        let mut listed_left = budget.listed.saturating_sub(shape_indices.len());
+        let listed: usize =
+            starts.windows(2).map(|ends| layout.elements((ends[1] - ends[0]) as usize)).sum();
+        let mut listed_left = budget.listed.saturating_sub(listed);
         for Candidate { cell, len, level, listed, .. } in candidates {
-            let needed = (1_usize << (3 * level), max_listed(listed).saturating_sub(len as usize));
+            let inner = 1_usize << (3 * level);
+            let needed = (inner, max_listed(listed, inner, layout).saturating_sub(len as usize));
             if needed.0 <= cells_left && needed.1 <= listed_left {
                 cells_left -= needed.0;
                 listed_left -= needed.1;
@@ -92,8 +97,12 @@ impl DenseCells {
 
 /// The largest allowed number of list elements inside a cell, for the number that is expected if spheres are spread
 /// evenly.
-fn max_listed(expected: f32) -> usize {
-    (expected * 2.0) as usize + 64
+fn max_listed(expected: f32, cells: usize, layout: ListLayout) -> usize {
+    let most = (expected * 2.0) as usize + 64;
+    match layout {
+        ListLayout::Referenced => most,
+        ListLayout::Balls => most + (BALLS_PER_VECTOR - 1) * cells.min(most),
+    }
 }
 
 /// The lists of the grid inside a cell: indices of spheres, in the order of the list from which they are made, which is
@@ -105,19 +114,18 @@ pub(super) fn inner_lists(
     spheres: &[[f32; 4]],
     margin: f32,
     level: u8,
+    layout: ListLayout,
 ) -> Option<Vec<Vec<u32>>> {
-    let side = 1_u32 << level;
-    let inner =
-        Cells { min: corner(cells, cell), size: cells.size / side as f32, counts: [side; 3] };
-    let most = max_listed(expected_listed(cells.size, inner.size, list, spheres));
+    let inner = inner_cells(cells, cell, level);
+    let expected = expected_listed(cells.size, inner.size, list, spheres);
+    let most = max_listed(expected, inner.len(), layout);
     let mut lists = vec![Vec::new(); inner.len()];
-    let mut listed = 0;
     for &shape_index in list {
         inner.for_each_near_clipped(&spheres[shape_index as usize], margin, |cell| {
             lists[cell].push(shape_index);
-            listed += 1;
         });
     }
+    let listed: usize = lists.iter().map(|list| layout.elements(list.len())).sum();
     (listed <= most).then_some(lists)
 }
 
@@ -163,7 +171,14 @@ fn expected_listed(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) ->
     list.iter().map(of).sum()
 }
 
-fn corner(cells: &Cells, cell: usize) -> Vec3 {
+/// The cells of the grid inside a cell.
+pub(super) fn inner_cells(cells: &Cells, cell: usize, level: u8) -> Cells {
+    let side = 1_u32 << level;
+    Cells { min: corner(cells, cell), size: cells.size / side as f32, counts: [side; 3] }
+}
+
+/// The corner of a cell with the smallest coordinates.
+pub(super) fn corner(cells: &Cells, cell: usize) -> Vec3 {
     let [width, height, _] = cells.counts.map(|count| count as usize);
     let coordinates = [cell % width, cell / width % height, cell / (width * height)];
     cells.min + cells.size * Vec3::from(coordinates.map(|i| i as f32))

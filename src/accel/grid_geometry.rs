@@ -30,6 +30,25 @@ impl Cell {
     }
 }
 
+/// The rounding errors of a kernel's test of a ball need this much of the square of its radius, in quanta.
+const BALL_SLACK: f64 = 0.5;
+
+impl Cell {
+    /// Whether a ball in this cell contains a sphere inflated by `margin`, or the cell.
+    pub(super) fn has_in_ball(&self, ball: u32, [x, y, z, radius]: [f32; 4], margin: f64) -> bool {
+        let quantum = self.size / 85.0;
+        let center = [0, 1, 2]
+            .map(|axis| self.low[axis] - self.size + f64::from(ball >> (8 * axis) & 255) * quantum);
+        let code = ball >> 24 & 127;
+        let square = (1.0 + f64::from(code & 7) / 8.0) * 2_f64.powi((code >> 3) as i32);
+        let reach = (square - BALL_SLACK).sqrt() * quantum;
+        let [x, y, z] = [x, y, z].map(f64::from);
+        let [i, j, k] = center;
+        let apart = ((x - i).powi(2) + (y - j).powi(2) + (z - k).powi(2)).sqrt();
+        apart + f64::from(radius) + margin <= reach || self.distances(center).1 <= reach
+    }
+}
+
 /// A box of cells whose words are consecutive.
 pub(super) struct Level {
     pub(super) first: usize,

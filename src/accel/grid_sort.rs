@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
+use super::grid::ListLayout;
 use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
 /// The number of spheres or cells that one task handles.
@@ -60,8 +61,11 @@ pub(super) fn count(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> Vec<Ato
     counts
 }
 
-pub(super) fn total(counts: &[AtomicU32]) -> u64 {
-    counts.iter().map(|count| u64::from(count.load(Ordering::Relaxed))).sum()
+/// The number of elements of lists with so many spheres each.
+pub(super) fn total(counts: &[AtomicU32], layout: ListLayout) -> u64 {
+    let elements =
+        |count: &AtomicU32| layout.elements(count.load(Ordering::Relaxed) as usize) as u64;
+    counts.iter().map(elements).sum()
 }
 
 /// The indices of the spheres that overlap each cell, cell by cell, and the start of each cell's list.
@@ -77,7 +81,7 @@ pub(super) fn fill(
     margin: f32,
     counts: Vec<AtomicU32>,
 ) -> Lists {
-    let total = total(&counts) as usize;
+    let total = total(&counts, ListLayout::Referenced) as usize;
     let ends = add_up(counts);
     let shape_indices = zeros(total);
     for_ranges(spheres.len(), |range| {

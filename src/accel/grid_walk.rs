@@ -3,7 +3,8 @@
 
 use glam::{BVec3, Vec3};
 
-use super::grid::{Grid, word};
+use super::ball::PartInCell;
+use super::grid::{Grid, LAST, word};
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::slab::inverse_direction;
 use super::sphere::intersect_sphere;
@@ -76,6 +77,7 @@ impl Grid {
                 let inner_strides = Vec3::new(1.0, side, side * side);
                 let last = Vec3::splat(side - 1.0);
                 let mut inner = ((start + t * speed - cell) * side).floor().clamp(Vec3::ZERO, last);
+                let mut t_enter = t;
                 loop {
                     let mut inner_word = outer;
                     if kind == word::GRID {
@@ -85,11 +87,15 @@ impl Grid {
                     let inner_planes = base + (cell + (inner + ahead) / side) * delta;
                     let t_inner = inner_planes.min_element();
                     if inner_word & word::KIND == word::LIST {
-                        self.test_list(spheres, ray, inner_word & !word::KIND, found);
+                        let from = (start + t_enter * speed - cell) * side - inner;
+                        let length = (t_inner - t_enter) * per_cell * side;
+                        let part = PartInCell::new(from, ray.direction, length);
+                        self.test_list(spheres, ray, &part, inner_word & !word::KIND, found);
                     }
                     if is_done(found, t_inner) || t_inner >= t_leave {
                         break;
                     }
+                    t_enter = t_inner;
                     let crossed: BVec3 = inner_planes.cmple(Vec3::splat(t_inner));
                     inner = Vec3::select(crossed, inner + step, inner);
                 }
@@ -113,11 +119,22 @@ impl Grid {
         self.cells.get(index).copied().unwrap_or(word::EMPTY)
     }
 
-    /// Tests the spheres of a list. Its nearest hit replaces an earlier one at the same distance;
-    /// `shaders/accel/cell_list.wgsl` explains why.
-    fn test_list(&self, spheres: &[[f32; 4]], ray: &RayF32, start: u32, found: &mut Found) {
+    /// Tests the spheres of a list, or, if the list has balls, those whose balls the part of the ray in the cell meets.
+    /// The nearest hit replaces an earlier one at the same distance; `shaders/accel/cell_list.wgsl` explains why.
+    fn test_list(
+        &self,
+        spheres: &[[f32; 4]],
+        ray: &RayF32,
+        part: &PartInCell,
+        start: u32,
+        found: &mut Found,
+    ) {
         let mut best = Found { t: NO_HIT, shape_index: None };
-        for shape_index in self.list(spheres, start) {
+        for at in self.list(start) {
+            if self.balls.as_ref().is_some_and(|balls| !part.meets(balls[at])) {
+                continue;
+            }
+            let shape_index = self.references[at] & !LAST;
             let t = intersect_sphere(ray, spheres[shape_index as usize]);
             if t < best.t {
                 best = Found { t, shape_index: Some(shape_index) };

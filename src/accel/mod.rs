@@ -4,6 +4,7 @@
 //! result, distance and id, is that of testing every sphere, to the bit. The kernels in `shaders/` walk the same data
 //! in the same order. One walk of the 8-wide tree is in f64 and calls the tests of the CPU reference (`wide_tree_visit`).
 
+pub(crate) mod ball;
 pub(crate) mod binary_tree;
 mod binary_tree_trace;
 mod brick;
@@ -16,6 +17,7 @@ pub(crate) mod grid_check;
 mod grid_dense;
 mod grid_empty;
 mod grid_geometry;
+mod grid_lists;
 mod grid_sort;
 mod grid_walk;
 mod leaf;

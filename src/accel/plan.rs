@@ -42,12 +42,9 @@ pub(crate) const LIST_LEN: usize = 3 << 14;
 /// The largest binding on most devices; larger lists could not be indexed with 30 bits.
 const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
-/// The number of spheres up to which lists store copies: faster by a quarter on lavapipe, for about twice the memory.
-const MAX_COPIED: usize = 2_000_000;
-
-/// The number of rays for each sphere below which making copies takes longer than they save: on lavapipe, 80 ns for
+/// The number of rays for each sphere below which making balls takes longer than they save: on lavapipe, 50 ns for
 /// each sphere and 13 ns for each ray of a million random spheres.
-const MIN_RAYS_PER_COPIED: u64 = 6;
+const MIN_RAYS_FOR_BALLS: u64 = 4;
 
 /// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
 const BINARY_BYTES_PER_SPHERE: usize = 32;
@@ -134,9 +131,10 @@ impl AccelPlan {
             // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
             // some memory unused.
             Structure::WideTree | Structure::BinaryTree => per_brick * 72,
-            // Sorted spheres with their ids, and lists of indices, twice.
-            Structure::Grid(_) | Structure::NestedGrid(_) => {
-                per_brick * 24 + 8 * self.budget.listed as u64
+            // Sorted spheres with their ids; lists of indices, twice, and of balls.
+            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
+                let bytes = if layout == ListLayout::Balls { 12 } else { 8 };
+                per_brick * 24 + bytes * self.budget.listed as u64
             }
         };
         structure + building
@@ -190,21 +188,23 @@ impl AccelPlan {
         let bricks = self.brick_count as u64;
         let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
         let listed = self.budget.listed as u64;
-        let shape_indices = match self.structure {
-            Structure::Grid(ListLayout::Copied) => listed,
-            _ => per_brick,
-        };
-        let mut buffers = vec![("spheres", 16 * shape_indices), ("ids", 4 * shape_indices)];
+        let cells = self.budget.cells as u64;
+        let mut buffers = vec![("spheres", 16 * per_brick)];
         match self.structure {
+            Structure::List => buffers.push(("ids", 4 * per_brick)),
             Structure::WideTree | Structure::BinaryTree => {
+                buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));
             }
-            _ => {}
-        }
-        if let Structure::Grid(layout) = self.structure {
-            buffers.push(("cells", 4 * self.budget.cells as u64));
-            if layout == ListLayout::Referenced {
+            Structure::Grid(ListLayout::Referenced)
+            | Structure::NestedGrid(ListLayout::Referenced) => {
+                buffers.push(("ids", 4 * per_brick));
+                buffers.push(("cells", 4 * cells));
                 buffers.push(("references", 4 * listed));
+            }
+            Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
+                buffers.push(("ids, cells and references", 4 * (per_brick + cells + listed)));
+                buffers.push(("balls", 4 * listed));
             }
         }
         buffers
@@ -245,12 +245,10 @@ impl fmt::Display for AccelChoice {
 
 fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Structure, String) {
     let count = statistics.count;
-    let (layout, why) = if count > MAX_COPIED {
-        (ListLayout::Referenced, "too many to copy into cells")
-    } else if rays / MIN_RAYS_PER_COPIED < count as u64 {
-        (ListLayout::Referenced, "too few rays for copies of them in cells to pay")
+    let (layout, why) = if rays / MIN_RAYS_FOR_BALLS < count as u64 {
+        (ListLayout::Referenced, "too few rays for balls in cells to pay")
     } else {
-        (ListLayout::Copied, "few enough to copy into cells")
+        (ListLayout::Balls, "enough rays for balls in cells to pay")
     };
     match choice {
         _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
@@ -276,19 +274,22 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     // In u64, because these products exceed the 32 bits of a browser's addresses.
     let count = count as u64;
     // Small scenes may have more cells and list elements for each sphere, because the total is small.
-    let (listed, cells, bytes) = match structure {
-        Structure::Grid(ListLayout::Copied) => {
-            (count * 17 / 4 + (64 * count).min(1 << 20), count + (256 * count).min(1 << 21), 16)
-        }
-        Structure::Grid(ListLayout::Referenced) => (
-            count * 18 / 5 + (64 * count).min(1 << 16),
-            count * 11 / 20 + (64 * count).min(1 << 16),
-            4,
-        ),
+    let layout = match structure {
+        Structure::Grid(layout) => layout,
         _ => return GridBudget { listed: 0, cells: 0 },
     };
+    let cells = count * 11 / 20 + (64 * count).min(1 << 16);
     // Larger cells are cheaper than a second brick.
-    let listed = listed.min((binding_bytes / bytes).max(count * 10 / 3));
+    let listed = match layout {
+        ListLayout::Referenced => {
+            let most = count * 18 / 5 + (64 * count).min(1 << 16);
+            most.min((binding_bytes / 4).max(count * 10 / 3))
+        }
+        ListLayout::Balls => {
+            let most = count * 13 / 2 + (128 * count).min(1 << 18);
+            most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4))
+        }
+    };
     let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
     GridBudget { listed, cells }
 }
@@ -308,11 +309,12 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     let most = (binding_bytes / 16) as usize;
     let fits = |count: usize| {
         let budget = grid_budget(structure, count, binding_bytes);
-        let listed = match structure {
-            Structure::Grid(ListLayout::Copied) => 16 * budget.listed as u64,
-            _ => 4 * budget.listed as u64,
+        let (listed, cells) = (budget.listed as u64, budget.cells as u64);
+        let words = match structure {
+            Structure::Grid(ListLayout::Balls) => count as u64 + cells + listed,
+            _ => cells.max(listed),
         };
-        let grid = listed.max(4 * budget.cells as u64).max(16 * count as u64);
+        let grid = (4 * words).max(16 * count as u64);
         grid.max(node_bytes(structure, count as u64)) <= binding_bytes
     };
     if structure == Structure::List {

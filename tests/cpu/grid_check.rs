@@ -5,7 +5,7 @@ use pinhole::internals::{BuiltGrid, Grid, GridBudget, GridError, build_grid};
 
 use crate::support::spheres::{self, Spheres};
 
-const LAYOUTS: [ListLayout; 2] = [ListLayout::Copied, ListLayout::Referenced];
+const LAYOUTS: [ListLayout; 2] = [ListLayout::Referenced, ListLayout::Balls];
 
 // What the two highest bits of a word say; here again, so that a change is noticed.
 const KIND: u32 = 3 << 30;
@@ -15,15 +15,19 @@ const GRID: u32 = 2 << 30;
 
 /// What a plan allows in one brick.
 fn budget(layout: ListLayout, spheres: &Spheres) -> GridBudget {
-    let (rays, listed, bytes) = match layout {
-        ListLayout::Copied => (u64::MAX, "spheres", 16),
-        _ => (1, "references", 4),
-    };
+    let rays = if layout == ListLayout::Balls { u64::MAX } else { 1 };
     let plan = AccelPlan::for_rays(spheres, AccelChoice::Grid, 1 << 30, rays);
     assert_eq!((plan.structure, plan.brick_count), (Structure::Grid(layout), 1));
-    let planned =
-        |name: &str| plan.buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
-    GridBudget { listed: planned(listed) as usize / bytes, cells: planned("cells") as usize / 4 }
+    let words = |name: &str| {
+        plan.buffers.iter().find(|buffer| buffer.name == name).map(|of| of.bytes as usize / 4)
+    };
+    match words("balls") {
+        Some(listed) => {
+            let cells = words("ids, cells and references").unwrap() - spheres.len() - listed;
+            GridBudget { listed, cells }
+        }
+        None => GridBudget { listed: words("references").unwrap(), cells: words("cells").unwrap() },
+    }
 }
 
 struct Built {
@@ -50,30 +54,30 @@ impl Built {
         (0..cells.len()).find(|i| is_it(self, *i, cells[*i])).unwrap()
     }
 
-    /// The elements of a cell's list.
+    /// The elements of a cell's list, some of which may repeat the last one.
     fn list(&self, cell: usize) -> std::ops::Range<usize> {
         let start = (self.of.grid.cells[cell] & !KIND) as usize;
-        let is_last = |at: &usize| match &self.of.grid.references {
-            Some(references) => references[*at] >> 31 == 1,
-            None => self.of.spheres[*at][3] < 0.0,
-        };
+        let is_last = |at: &usize| self.of.grid.references[*at] >> 31 == 1;
         start..(start..).find(is_last).unwrap() + 1
     }
 
-    /// The first cell whose list has so many elements or more.
+    /// The first cell whose list has so many spheres or more.
     fn cell_with(&self, len: usize) -> usize {
-        self.find(|built, cell, word| word & KIND == LIST && built.list(cell).len() >= len)
+        self.find(|built, cell, word| {
+            word & KIND == LIST && {
+                let list = &built.of.grid.references[built.list(cell)];
+                let last = list[list.len() - 1] << 1;
+                let others = list.iter().filter(|reference| **reference << 1 != last).count();
+                others + 1 >= len
+            }
+        })
     }
 
     fn mark(&mut self, at: usize, is_last: bool) {
-        match &mut self.of.grid.references {
-            Some(references) => {
-                references[at] = references[at] << 1 >> 1 | u32::from(is_last) << 31;
-            }
-            None => {
-                let radius = &mut self.of.spheres[at][3];
-                *radius = if is_last { -radius.abs() } else { radius.abs() };
-            }
+        let mark = |word: &mut u32| *word = *word << 1 >> 1 | u32::from(is_last) << 31;
+        mark(&mut self.of.grid.references[at]);
+        if let Some(balls) = &mut self.of.grid.balls {
+            mark(&mut balls[at]);
         }
     }
 }
@@ -119,14 +123,14 @@ fn every_scene_has_a_grid_that_a_kernel_may_walk() {
             let Grid { cells, references, .. } = &built.of.grid;
             built.check().unwrap_or_else(|error| panic!("{name}, {layout:?}: {error}"));
             let budget = budget(layout, &input);
-            let listed = references.as_ref().map_or(built.of.spheres.len(), Vec::len);
+            let listed = references.len();
             assert!(cells.len() <= budget.cells, "{name}, {layout:?}: {} cells", cells.len());
             assert!(listed <= budget.listed, "{name}, {layout:?}: {listed} listed");
             if name == "coincident" {
-                let longest = built.of.grid.statistics(&built.of.spheres).longest_list;
+                let longest = built.of.grid.statistics().longest_list;
                 assert!(longest <= 32, "{layout:?}: {longest} of the same in one list");
             }
-            nested += built.of.grid.statistics(&built.of.spheres).grids;
+            nested += built.of.grid.statistics().grids;
         }
     }
     assert!(nested > 0, "no scene has grids inside cells");
@@ -220,7 +224,7 @@ const DAMAGES: &[Damage] = &[
             let cell = built.cell_with(2);
             built.of.grid.cells[cell] += 1;
         },
-        |error| matches!(error, GridError::Missing { .. }),
+        |error| matches!(error, GridError::Missing { .. } | GridError::List { .. }),
     ),
     (
         "a last element dropped",
@@ -229,7 +233,7 @@ const DAMAGES: &[Damage] = &[
             let end = built.list(cell).end;
             built.mark(end - 2, true);
         },
-        |error| matches!(error, GridError::Missing { .. }),
+        |error| matches!(error, GridError::Missing { .. } | GridError::List { .. }),
     ),
     (
         "an end mark cleared",
@@ -243,7 +247,7 @@ const DAMAGES: &[Damage] = &[
     (
         "the last end mark cleared",
         |built| {
-            let listed = built.of.grid.references.as_ref().map_or(built.of.spheres.len(), Vec::len);
+            let listed = built.of.grid.references.len();
             built.mark(listed - 1, false);
         },
         |error| matches!(error, GridError::List { .. }),
@@ -253,23 +257,14 @@ const DAMAGES: &[Damage] = &[
         |built| {
             let cell = built.cell_with(3);
             let start = built.list(cell).start;
-            match &mut built.of.grid.references {
-                Some(references) => references.swap(start, start + 1),
-                None => {
-                    built.of.spheres.swap(start, start + 1);
-                    built.of.ids.swap(start, start + 1);
-                }
-            }
+            built.of.grid.references.swap(start, start + 1);
         },
         |error| matches!(error, GridError::Order { .. }),
     ),
     (
         "ids exchanged",
         |built| {
-            // Copies of one sphere have one id.
-            let ids = &mut built.of.ids;
-            let other = (0..ids.len()).find(|place| ids[*place] != ids[0]).unwrap();
-            ids.swap(0, other);
+            built.of.ids.swap(0, 1);
         },
         |error| matches!(error, GridError::Sphere { shape_index: 0 }),
     ),
@@ -344,21 +339,72 @@ fn planted_damage_is_found() {
     }
 }
 
+/// A damage of balls, for the elements of a list of five spheres, of which the last three repeat the fifth.
+type BallDamage = (&'static str, fn(&mut [u32]), fn(GridError) -> bool);
+
+const BALL_DAMAGES: &[BallDamage] = &[
+    (
+        "a radius two steps smaller",
+        |balls| balls[1] -= 2 << 24,
+        |error| matches!(error, GridError::Ball { .. }),
+    ),
+    (
+        "a ball of another sphere",
+        |balls| balls[0] = balls[1],
+        |error| matches!(error, GridError::Ball { .. }),
+    ),
+    (
+        "a ball that repeats the last, but is elsewhere",
+        |balls| balls[5] ^= 1 << 7,
+        |error| matches!(error, GridError::Ball { .. }),
+    ),
+    (
+        "an end mark too early",
+        |balls| balls[3] |= 1 << 31,
+        |error| matches!(error, GridError::List { .. }),
+    ),
+    ("no end mark", |balls| balls[7] <<= 1, |error| matches!(error, GridError::List { .. })),
+];
+
+#[test]
+fn planted_damage_of_balls_is_found() {
+    for (name, damage, is_right) in BALL_DAMAGES {
+        let mut built = Built::new(mixed(), ListLayout::Balls);
+        let cell = (0..built.of.grid.first_level_len())
+            .find(|cell| {
+                let word = built.of.grid.cells[*cell];
+                let list = if word & KIND == LIST { built.list(*cell) } else { 0..0 };
+                let references = &built.of.grid.references[list];
+                references.len() == 8 && references[4..7].iter().all(|of| *of == references[4])
+            })
+            .unwrap();
+        let list = built.list(cell);
+        damage(&mut built.of.grid.balls.as_mut().unwrap()[list]);
+        match built.check() {
+            Err(error) => assert!(is_right(error), "{name}: {error:?}"),
+            Ok(()) => panic!("{name}: not found"),
+        }
+    }
+    let mut built = Built::new(mixed(), ListLayout::Balls);
+    built.of.grid.balls.as_mut().unwrap().pop();
+    assert_eq!(built.check(), Err(GridError::Shape));
+}
+
 /// What no array is too short for: a sphere too many in a list.
 #[test]
 fn a_sphere_that_is_elsewhere_is_found() {
     let mut built = Built::new(mixed(), ListLayout::Referenced);
     let cell = built.cell_with(2);
     let list = built.list(cell);
-    let listed: Vec<u32> = built.of.grid.references.as_ref().unwrap()[list.clone()].to_vec();
+    let listed: Vec<u32> = built.of.grid.references[list.clone()].to_vec();
     // The greatest id of all is in no other cell than its own, and keeps the list in order.
     let greatest = built.of.ids.iter().position(|id| *id as usize + 1 == built.input.len());
     let greatest = greatest.unwrap() as u32;
     assert!(listed.iter().all(|reference| reference << 1 >> 1 != greatest));
-    built.of.grid.references.as_mut().unwrap()[list.end - 1] = greatest | 1 << 31;
+    built.of.grid.references[list.end - 1] = greatest | 1 << 31;
     // The one that was there is missing; with it back, the other is what is wrong.
     assert!(matches!(built.check(), Err(GridError::Missing { .. })));
-    let references = built.of.grid.references.as_mut().unwrap();
+    let references = &mut built.of.grid.references;
     let start = references.len() as u32;
     references.extend(listed.iter().map(|reference| reference << 1 >> 1));
     references.push(greatest | 1 << 31);
@@ -384,7 +430,7 @@ fn a_tight_budget_is_kept() {
                 let BuiltGrid { grid, spheres, ids } =
                     build_grid(&input, &ids, margin, layout, budget);
                 grid.validate(&spheres, &ids, &input, margin).unwrap();
-                let found = grid.references.as_ref().map_or(spheres.len(), Vec::len);
+                let found = grid.references.len();
                 assert!(found <= budget.listed, "{found} listed, {layout:?}, {budget:?}");
                 assert!(grid.cells.len() <= budget.cells, "{} cells, {budget:?}", grid.cells.len());
             }
@@ -404,7 +450,7 @@ fn a_budget_is_kept_for_spheres_in_step_with_the_cells() {
     for layout in LAYOUTS {
         let BuiltGrid { grid, spheres, ids } = build_grid(&input, &ids, margin, layout, budget);
         grid.validate(&spheres, &ids, &input, margin).unwrap();
-        let listed = grid.references.as_ref().map_or(spheres.len(), Vec::len);
+        let listed = grid.references.len();
         assert!(listed <= budget.listed, "{listed} listed, {layout:?}");
         assert!(grid.cells.len() <= budget.cells, "{} cells, {layout:?}", grid.cells.len());
     }
@@ -430,7 +476,7 @@ fn the_least_grid_is_built_whatever_the_budget() {
     let none = GridBudget { listed: 0, cells: 0 };
     let spheres: Vec<[f32; 4]> = (0..100).map(|i| [i as f32, 0.0, 0.0, 0.6]).collect();
     for ids in [&[][..], &[7], &[1, 5, 99]] {
-        for layout in [ListLayout::Copied, ListLayout::Referenced] {
+        for layout in LAYOUTS {
             let built = build_grid(&spheres, ids, 0.01, layout, none);
             assert_eq!(built.grid.cell_counts, [1; 3]);
             assert_eq!(built.ids.len(), ids.len());

@@ -36,6 +36,11 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("INNER_START", word::INNER_START),
         ("INNER_UNIT", word::INNER_UNIT),
         ("SHAPE_INDEX", !LAST),
+        ("LAST_BALL", LAST),
+        ("BALLS_PER_VECTOR", accel::ball::BALLS_PER_VECTOR as u32),
+        ("COORDINATE_BITS", accel::ball::COORDINATE_BITS),
+        ("RADIUS", accel::ball::RADIUS),
+        ("RADIUS_TO_FLOAT", accel::ball::RADIUS_TO_FLOAT),
         ("LEAF_FIRST", LEAF_FIRST),
         ("LEAF_COUNT_SHIFT", LEAF_COUNT_SHIFT),
         ("WIDE_LEVELS", accel::wide_tree::WIDE_LEVELS),
@@ -82,6 +87,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("NO_ENTRY", NO_ENTRY),
         ("SMALLEST_COMPONENT", accel::slab::SMALLEST_COMPONENT),
         ("PI", std::f32::consts::PI),
+        ("QUANTA", accel::ball::QUANTA),
     ];
     words
         .into_iter()
@@ -97,6 +103,10 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
 /// Constants that only kernels use, and the shadings, which a test of `records.rs` compares.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_SHAPE",
+    "NO_LIST",
+    "AT_ONCE",
+    "COORDINATE",
+    "ONE",
     "NO_PATH",
     "SHADING_FLAT",
     "SHADING_HEADLIGHT",

@@ -24,7 +24,7 @@ pub(in crate::gpu) struct BrickBuffers {
     pub(in crate::gpu) surface_group: BindGroup,
     /// Bind group 3 of kernels that search the brick and shade its shapes.
     pub(in crate::gpu) appearance_group: BindGroup,
-    /// The id of every sphere, in the order of the structure.
+    /// The id of every sphere, in the order of the structure, and after them words of some structures.
     pub(in crate::gpu) ids: Buffer,
     /// The appearance words of the spheres.
     pub(in crate::gpu) appearances: Buffer,
@@ -89,6 +89,8 @@ impl Upload<'_> {
         let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
         let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { ids };
+        // What shares a buffer with the ids, so that a kernel has enough bindings.
+        let mut with_ids: Vec<&[u32]> = vec![ids];
         let mut words: Vec<&[u32]> = Vec::new();
         match index {
             Index::List => {}
@@ -96,8 +98,14 @@ impl Upload<'_> {
                 record.min = grid.min.to_array();
                 record.cell_size = grid.cell_size;
                 record.cell_counts = grid.cell_counts;
-                words.push(&grid.cells);
-                words.extend(grid.references.as_deref());
+                match &grid.balls {
+                    Some(balls) => {
+                        record.first_reference = record.shape_count + grid.cells.len() as u32;
+                        with_ids.extend([&grid.cells[..], &grid.references]);
+                        words.push(balls);
+                    }
+                    None => words.extend([&grid.cells[..], &grid.references]),
+                }
             }
             Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
             Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
@@ -105,6 +113,7 @@ impl Upload<'_> {
         self.first_shape += record.shape_count;
         for (what, bytes) in [
             ("the buffer of spheres", shapes.len()),
+            ("the buffer of ids", with_ids.iter().map(|words| size_of_val(*words)).sum()),
             ("the buffer of colors", size_of_val(&appearances.words[..])),
         ]
         .into_iter()
@@ -116,7 +125,7 @@ impl Upload<'_> {
             let shape_count = record.shape_count;
             let record = self.buffer("pinhole brick", BufferUsages::UNIFORM, &[record]);
             let shapes = self.storage("pinhole shapes", shapes);
-            let ids = self.storage("pinhole ids", ids);
+            let ids = self.joined("pinhole ids", BufferUsages::STORAGE, &with_ids);
             let appearances = self.storage("pinhole appearances", &appearances.words);
             let words: Vec<Buffer> =
                 words.iter().map(|words| self.storage("pinhole structure", words)).collect();
@@ -170,8 +179,19 @@ impl Upload<'_> {
         usage: BufferUsages,
         contents: &[T],
     ) -> Buffer {
-        let contents: &[u8] = bytemuck::cast_slice(contents);
-        let size = contents.len() as u64;
+        self.joined(label, usage, &[contents])
+    }
+
+    /// A buffer of slices, one after another.
+    fn joined<T: bytemuck::Pod>(
+        &mut self,
+        label: &'static str,
+        usage: BufferUsages,
+        slices: &[&[T]],
+    ) -> Buffer {
+        let slices: Vec<&[u8]> = slices.iter().map(|slice| bytemuck::cast_slice(slice)).collect();
+        let size = slices.iter().map(|slice| slice.len() as u64).sum();
+        let mut at = 0;
         let descriptor = |usage, mapped_at_creation| wgpu::BufferDescriptor {
             label: Some(label),
             size,
@@ -184,7 +204,10 @@ impl Upload<'_> {
             let buffer =
                 self.device.create_buffer(&descriptor(usage | BufferUsages::MAP_WRITE, true));
             if let Ok(mut target) = buffer.get_mapped_range_mut(..) {
-                target.copy_from_slice(contents);
+                for slice in slices {
+                    target.slice(at..at + slice.len()).copy_from_slice(slice);
+                    at += slice.len();
+                }
                 drop(target);
                 buffer.unmap();
                 self.bytes += size;
@@ -194,8 +217,11 @@ impl Upload<'_> {
             return buffer;
         }
         let buffer = self.device.create_buffer(&descriptor(usage | BufferUsages::COPY_DST, false));
-        self.queue.write_buffer(&buffer, 0, contents);
-        self.bytes += contents.len() as u64;
+        for slice in slices {
+            self.queue.write_buffer(&buffer, at as u64, slice);
+            at += slice.len();
+        }
+        self.bytes += size;
         buffer
     }
 }

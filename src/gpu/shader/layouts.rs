@@ -124,8 +124,8 @@ fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
         Structure::List => vec![],
         Structure::WideTree | Structure::BinaryTree => vec![storage::<[u32; 4]>(true)],
-        Structure::Grid(ListLayout::Copied) | Structure::NestedGrid(ListLayout::Copied) => {
-            vec![storage::<u32>(true)]
+        Structure::Grid(ListLayout::Balls) | Structure::NestedGrid(ListLayout::Balls) => {
+            vec![storage::<[u32; 4]>(true)]
         }
         Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
             vec![storage::<u32>(true), storage::<u32>(true)]

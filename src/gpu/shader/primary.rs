@@ -90,12 +90,34 @@ pub(in crate::gpu) fn structure_parts(structure: Structure) -> Vec<Part> {
             part!("accel/binary_node.wgsl"),
             part!("accel/binary_tree.wgsl"),
         ],
-        Structure::Grid(layout) => {
-            vec![part!("accel/grid_ray.wgsl"), part!("accel/grid.wgsl"), list_part(layout)]
-        }
-        Structure::NestedGrid(layout) => {
-            vec![part!("accel/grid_ray.wgsl"), part!("accel/nested_grid.wgsl"), list_part(layout)]
-        }
+        Structure::Grid(ListLayout::Referenced) => vec![
+            part!("accel/grid_ray.wgsl"),
+            part!("accel/cell_words.wgsl", "alone"),
+            part!("accel/grid.wgsl"),
+            part!("accel/cell_list.wgsl"),
+        ],
+        Structure::NestedGrid(ListLayout::Referenced) => vec![
+            part!("accel/grid_ray.wgsl"),
+            part!("accel/cell_words.wgsl", "alone"),
+            part!("accel/nested_grid.wgsl"),
+            part!("accel/nested_cell.wgsl"),
+            part!("accel/cell_list.wgsl"),
+        ],
+        Structure::Grid(ListLayout::Balls) => vec![
+            part!("accel/grid_ray.wgsl"),
+            part!("accel/cell_words.wgsl", "with-ids"),
+            part!("accel/ball_grid.wgsl"),
+            part!("accel/balls.wgsl"),
+            part!("accel/ball_list.wgsl"),
+        ],
+        Structure::NestedGrid(ListLayout::Balls) => vec![
+            part!("accel/grid_ray.wgsl"),
+            part!("accel/cell_words.wgsl", "with-ids"),
+            part!("accel/nested_grid.wgsl"),
+            part!("accel/nested_ball_cell.wgsl"),
+            part!("accel/balls.wgsl"),
+            part!("accel/ball_list.wgsl"),
+        ],
     }
 }
 
@@ -146,13 +168,6 @@ pub(in crate::gpu) fn self_test_kernel(probe: Probe) -> Kernel {
     Kernel {
         entry_point,
         parts: vec![part!("self_test/records.wgsl"), part!("math/fence.wgsl"), part],
-    }
-}
-
-fn list_part(layout: ListLayout) -> Part {
-    match layout {
-        ListLayout::Copied => part!("accel/cell_list.wgsl", "copied"),
-        ListLayout::Referenced => part!("accel/cell_list.wgsl", "referenced"),
     }
 }
 

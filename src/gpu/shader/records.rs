@@ -58,7 +58,7 @@ pub(in crate::gpu) struct Brick {
     pub(in crate::gpu) color_mask: u32,
     pub(in crate::gpu) material_first: u32,
     pub(in crate::gpu) material_mask: u32,
-    pub(in crate::gpu) _pad: u32,
+    pub(in crate::gpu) first_reference: u32,
 }
 
 /// The status word, which is nonzero if an invocation reached its iteration limit.

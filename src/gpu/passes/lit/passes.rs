@@ -295,7 +295,7 @@ mod tests {
                     block_on(LitPasses::new(&device, key, &[])).unwrap();
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
-                    let structure = Structure::NestedGrid(ListLayout::Copied);
+                    let structure = Structure::NestedGrid(ListLayout::Balls);
                     for studio in OnePass::ALL {
                         let key = LitKey { structure, one_pass: Some(studio), ..key };
                         if mode == Mode::Studio {

@@ -1,0 +1,163 @@
+//! Balls: a coarse centre and radius of a sphere that is listed in a cell, in 31 bits. A ray that misses the ball needs
+//! no test of the sphere. The WGSL twin is `shaders/accel/balls.wgsl`.
+//!
+//! Lengths are in quanta, of which a side of the cell has [`QUANTA`]. A ball's centre has three coordinates from 0 to
+//! 255, counted from a side's length before the cell's corner, so that it lies in the 27 cells around. The radius is
+//! kept as its square, as a number with 4 bits of exponent and 3 bits of mantissa, from 1 to 61440.
+//!
+//! # Why no sphere is lost
+//! A ball must be met by every ray that, according to the sphere test, hits its sphere at a distance at which the ray is
+//! in the cell. The terms are those of `slab.rs`: u = 2⁻²⁴ D, and the margin m is 64 u. The point P at that distance is
+//! within r + 28 u of the sphere's centre, in the cell up to 8 u, and on the part of the ray between the distances at
+//! which the walk enters and leaves the cell. The ray's position in the cell, start + t · speed − cell, is off by 10 u, the
+//! length of that part by 3 u, and the builder's position of the centre by 4 u. The distance between the ball's centre and
+//! that part of the ray is therefore at most |ball's centre − sphere's centre| + r + m, which is the ball's radius.
+//!
+//! The test itself computes squares of lengths below 2⁹ quanta, since the ray's position is in the cell: v·v − (v·d)² and
+//! the square of what lies beyond the part. Each of its ten roundings, and the direction's length, move the result by
+//! less than 2¹⁸ · 2⁻²³; [`SLACK`] is more than that.
+//!
+//! A sphere whose ball would need a larger radius has a ball that contains the whole cell, so that every ray meets it.
+
+use glam::Vec3;
+
+/// The number of quanta along a side of a cell: three cells have 255.
+pub(crate) const QUANTA: f32 = 85.0;
+
+/// The largest coordinate of a ball's centre.
+const LARGEST: f32 = 255.0;
+
+/// The square of the radius is greater by this, for the rounding errors of the test.
+const SLACK: f32 = 1.0;
+
+/// The number of bits of a coordinate. The radius follows the three coordinates.
+pub(crate) const COORDINATE_BITS: u32 = 8;
+
+/// The largest radius, and the number of bits of its mantissa.
+const LARGEST_RADIUS: u32 = (1 << 7) - 1;
+const MANTISSA_BITS: u32 = 3;
+
+/// The place in an f32 of a radius: the lowest bits of the exponent and the highest of the mantissa.
+const RADIUS_SHIFT: u32 = f32::MANTISSA_DIGITS - 1 - MANTISSA_BITS;
+
+/// By how much a ball is shifted to bring its radius there, and the bits of the radius there.
+pub(crate) const RADIUS_TO_FLOAT: u32 = 3 * COORDINATE_BITS - RADIUS_SHIFT;
+pub(crate) const RADIUS: u32 = LARGEST_RADIUS << RADIUS_SHIFT;
+
+/// The number of balls in a vector of a kernel. A list is filled up to a multiple of it with its last element.
+pub(crate) const BALLS_PER_VECTOR: usize = 4;
+
+/// The cell of a list, by which its balls are made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BallFrame {
+    /// The corner of the cell with the smallest coordinates.
+    pub(super) corner: Vec3,
+    /// The side of the cell.
+    pub(super) size: f32,
+    /// The margin of the scene.
+    pub(super) margin: f32,
+}
+
+impl BallFrame {
+    /// The ball of a sphere.
+    pub(super) fn ball(&self, [x, y, z, radius]: [f32; 4]) -> u32 {
+        let per_length = QUANTA / self.size;
+        let at = (Vec3::new(x, y, z) - self.corner) * per_length + QUANTA;
+        let center = at.round().clamp(Vec3::ZERO, Vec3::splat(LARGEST));
+        let reach = (center - at).length() + (radius + self.margin) * per_length;
+        let squared = reach * reach + SLACK;
+        let one = 1.0_f32.to_bits();
+        // Rounded up. `squared` is at least 1, or not a number if lengths overflowed.
+        let radius = (squared.to_bits() - one).div_ceil(1 << RADIUS_SHIFT);
+        if radius > LARGEST_RADIUS || squared.is_nan() {
+            let middle = Vec3::splat((1.5 * QUANTA).round());
+            return pack(middle, LARGEST_RADIUS);
+        }
+        pack(center, radius)
+    }
+}
+
+fn pack(center: Vec3, radius: u32) -> u32 {
+    // The coordinates are whole numbers up to 255, so the casts are exact.
+    let [x, y, z] = center.to_array().map(|x| x as u32);
+    x | y << COORDINATE_BITS | z << (2 * COORDINATE_BITS) | radius << (3 * COORDINATE_BITS)
+}
+
+/// The centre of a ball, counted from a cell's side before the corner, and the square of its radius, in quanta. The
+/// highest bit has no meaning here.
+pub(super) fn unpack(ball: u32) -> (Vec3, f32) {
+    let coordinate = |axis: u32| (ball >> (axis * COORDINATE_BITS) & 255) as f32;
+    let squared = f32::from_bits((ball >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
+    (Vec3::new(coordinate(0), coordinate(1), coordinate(2)), squared)
+}
+
+/// The part of a ray in a cell, in quanta.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PartInCell {
+    origin: Vec3,
+    direction: Vec3,
+    length: f32,
+}
+
+impl PartInCell {
+    /// The part from a point, in units of the cell's side from its corner, of a length in the same units.
+    pub(super) fn new(from: Vec3, direction: Vec3, length: f32) -> Self {
+        Self { origin: (from + 1.0) * QUANTA, direction, length: length * QUANTA }
+    }
+
+    /// Whether the part meets a ball.
+    pub(super) fn meets(&self, ball: u32) -> bool {
+        let (center, squared_radius) = unpack(ball);
+        let v = center - self.origin;
+        let along = v.dot(self.direction);
+        let beyond = (along - self.length).max(-along).max(0.0);
+        (v.dot(v) - along * along) + beyond * beyond <= squared_radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Spheres of all sizes in and around cells of all sizes: the ball contains the sphere and the margin, or the cell.
+    #[test]
+    fn a_ball_contains_its_sphere() {
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut around_cells = 0;
+        for _ in 0..100_000 {
+            let size = 2_f32.powi(rng.i32(-50..50));
+            let mut up_to = |most: f32| most * rng.f32();
+            let corner = Vec3::new(up_to(9.0), up_to(9.0), up_to(9.0)) * size;
+            let radius = size * 2_f32.powf(up_to(16.0) - 12.0);
+            let spread = 2.0 * (size + radius);
+            let center =
+                corner + Vec3::new(up_to(spread), up_to(spread), up_to(spread)) - 0.5 * spread;
+            let margin = up_to(0.01 * size);
+            let frame = BallFrame { corner, size, margin };
+            let ball = frame.ball([center.x, center.y, center.z, radius]);
+            assert_eq!(ball >> 31, 0);
+            let (at, squared) = unpack(ball);
+            let quantum = f64::from(size) / f64::from(QUANTA);
+            let at = corner.as_dvec3() + (at - QUANTA).as_dvec3() * quantum;
+            let reach = f64::from(squared).sqrt() * quantum;
+            let needed = (at - center.as_dvec3()).length() + f64::from(radius + margin);
+            if reach < needed {
+                let middle = corner.as_dvec3() + 0.5 * f64::from(size);
+                assert!((at - middle).length() + 0.87 * f64::from(size) < reach);
+                around_cells += 1;
+            } else if squared > 64.0 {
+                // The radius is not needlessly large: half a diagonal of a quantum, a sixteenth, and the slack.
+                let inside = center.clamp(corner - size, corner + 2.0 * size) == center;
+                assert!(!inside || reach < 1.08 * (f64::from(radius + margin) + quantum));
+            }
+        }
+        assert!(around_cells > 100 && around_cells < 50_000, "{around_cells}");
+    }
+
+    #[test]
+    fn lengths_that_overflow_give_a_ball_around_the_cell() {
+        let frame = BallFrame { corner: Vec3::ZERO, size: 1e-38, margin: 0.0 };
+        let ball = frame.ball([1e30, 0.0, 0.0, 1e38]);
+        assert_eq!(ball, pack(Vec3::splat(128.0), 127));
+    }
+}
