@@ -81,6 +81,9 @@ pub(super) struct RenderArgs {
     /// How the two pictures of a stereo camera are written [default: side-by-side]
     #[arg(long, value_enum)]
     pub(super) stereo: Option<Stereo>,
+    #[cfg(feature = "gpu")]
+    #[command(flatten)]
+    pub(super) profile: super::profile::ProfileArgs,
     #[command(flatten)]
     pub(super) report: ReportArgs,
 }

@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::{interrupt, self_test};
+use super::{interrupt, profile, self_test};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -103,6 +103,7 @@ impl Device {
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
                 Ok(headless) => {
+                    let _phase = profile::phase("self-test");
                     let warning = interrupt::on_device(|| self_test::quick_warning(&headless))?;
                     Ok(Opened::Device { headless: Box::new(headless), choice: *choice, warning })
                 }
@@ -162,9 +163,13 @@ impl WantedAdapter {
                 Some(Limits::Webgpu) => LimitChoice::WebGpu,
                 Some(Limits::Adapter) | None => LimitChoice::Adapter,
             },
+            profile: profile::of_device(),
             ..HeadlessOptions::default()
         };
-        match interrupt::on_device(|| Headless::open(&options))? {
+        let phase = profile::phase("open device");
+        let opened = interrupt::on_device(|| Headless::open(&options))?;
+        drop(phase);
+        match opened {
             Ok(headless) => Ok(Ok(headless)),
             Err(error @ GpuError::NoAdapter) => Ok(Err(error)),
             Err(error @ GpuError::UnknownAdapter { .. }) => Err(Failure::Usage(error.into())),

@@ -48,6 +48,11 @@ mod picture;
 mod plan;
 mod print_scene;
 mod process;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_profile.rs"]
+mod profile;
+#[cfg(feature = "gpu")]
+mod profile;
 mod progress;
 mod read_file;
 mod render;

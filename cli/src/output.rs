@@ -11,6 +11,7 @@ use tempfile::NamedTempFile;
 use super::failure::Failure;
 use super::input::extension;
 use super::interrupt;
+use super::profile;
 use pinhole::write::{npy, raw};
 
 /// Refuses to use one file for two outputs.
@@ -154,6 +155,7 @@ pub(super) fn unnamed_with(
     path: &Path,
     write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
 ) -> Result<NamedTempFile> {
+    let _phase = profile::phase("write");
     let cannot_write = || format!("{}: cannot be written", path.display());
     let mut file = temporary(path)?;
     write(&mut file).map_err(|error| without_name(&error)).with_context(cannot_write)?;
@@ -166,6 +168,7 @@ pub(super) fn unnamed_with(
 
 /// Gives complete files their final names. If one of them fails, those that did not exist before are removed again.
 pub(super) fn name_all(files: Vec<(&PathBuf, NamedTempFile)>) -> Result<()> {
+    let _phase = profile::phase("write");
     let any = !files.is_empty();
     interrupt::all_or_nothing(any, || name_each(files))
 }

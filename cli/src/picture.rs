@@ -11,6 +11,7 @@ use super::interrupt;
 use super::output::{
     check_distinct, check_not_inputs, check_writable, name_all, unnamed, unnamed_with,
 };
+use super::profile;
 use super::progress;
 use super::speak::answer;
 use pinhole::annotate::Annotations;
@@ -79,6 +80,7 @@ impl Outputs {
 
     /// Encodes the picture as PNG, with its annotations.
     fn png(&self, image: &Image, encoding: &Encoding) -> Result<Vec<u8>, png::PngError> {
+        let _phase = profile::phase("encode");
         png::encode_annotated(image, encoding, &self.annotations)
     }
 
@@ -100,6 +102,7 @@ impl Outputs {
 
     /// Refuses to overwrite an input.
     pub(super) fn check_not_inputs(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
+        profile::check_not_inputs(inputs)?;
         check_not_inputs(self.paths(), inputs)
     }
 
@@ -167,7 +170,10 @@ impl Outputs {
             }
         }
         for (layer, path) in &self.layers {
-            files.push((path, unnamed(path, &npy::encode(image, *layer)?)?));
+            let phase = profile::phase("encode");
+            let array = npy::encode(image, *layer)?;
+            drop(phase);
+            files.push((path, unnamed(path, &array)?));
         }
         Ok(files)
     }

@@ -24,6 +24,7 @@ use super::light::LightFlags;
 use super::memory;
 use super::picture::Outputs;
 use super::print_scene;
+use super::profile;
 use super::progress;
 use super::speak::tell;
 use super::stop_rule::StopRule;
@@ -97,6 +98,15 @@ impl Job {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
+    #[cfg(feature = "gpu")]
+    profile::start(&args.profile)?;
+    run_measured(args)?;
+    #[cfg(feature = "gpu")]
+    profile::finish()?;
+    Ok(())
+}
+
+fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(wanted) = frames::Wanted::new(args)? {
         return frames::run(args, &wanted, Job::new(args, wanted.picture())?);
     }
@@ -241,7 +251,10 @@ fn on_cpu(
     let what = format!("a search tree of {} spheres needs", scene.len());
     memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
     progress::stage("building the search tree");
+    let phase = profile::phase("build");
     let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
+    drop(phase);
+    let _phase = profile::phase("render on the CPU");
     let images = views.try_each(|view| {
         let watch = |part| {
             progress::tracing(part);

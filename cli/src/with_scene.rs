@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::speak::tell;
-use super::{memory, progress};
+use super::{memory, profile, progress};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::gpu::{GpuError, Headless, RenderPlan, Retry, Structures, with_retries};
 use pinhole::scene::Scene;
@@ -19,6 +19,7 @@ pub(super) fn with_structures<T>(
 ) -> Result<Result<(T, Structure), GpuError>, Failure> {
     let plan = |choice| {
         progress::stage("planning");
+        let _phase = profile::phase("plan");
         plan(choice)
     };
     let retrying = |Retry { failed, next }| {
@@ -33,7 +34,9 @@ pub(super) fn with_structures<T>(
             return Ok(Err(error));
         }
         progress::stage(format!("building: {}", plan.accel.structure.name()));
+        let phase = profile::phase("build");
         let structures = plan.build(scene);
+        drop(phase);
         progress::stage("copying to the device");
         Ok(work(structures)?.map(|done| (done, plan.accel.structure)))
     })

@@ -22,6 +22,7 @@ mod host;
 mod kernels;
 mod options;
 pub(crate) mod passes;
+mod profile;
 mod quirks;
 mod scene;
 mod self_test;
@@ -48,6 +49,7 @@ pub use options::{HeadlessOptions, LimitChoice};
 pub use passes::frame::{DataTargets, Frame, Targets};
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::{Query, RendererOptions};
+pub use profile::{PassClock, Profile, ProfilePhase, ProfileSpan, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;
 #[cfg(not(target_arch = "wasm32"))]

@@ -5,6 +5,7 @@ use std::time::Duration;
 use wgpu::Limits;
 
 use crate::gpu::edit::ShaderEdit;
+use crate::gpu::profile::Profile;
 
 /// Options for opening a headless device.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub struct HeadlessOptions {
     /// time than several passes. Only experiments and tests turn it off. The picture is the same,
     /// but for what a device rounds otherwise.
     pub one_pass: bool,
+    /// A record of where time goes, which the device fills in. The picture does not depend on it.
+    pub profile: Option<Profile>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
@@ -50,6 +53,7 @@ impl Default for HeadlessOptions {
             timeout,
             indirect: true,
             one_pass: true,
+            profile: None,
             edits,
         }
     }

@@ -23,6 +23,7 @@ mod parts;
 mod paths;
 mod pictures;
 mod plan;
+mod profile;
 mod scenes;
 mod self_test;
 mod structures;
@@ -49,6 +50,7 @@ fn main() {
             device::trials(),
             structures::trials(),
             plan::trials(),
+            profile::trials(),
             self_test::trials(),
             twin::trials(),
             update::trials(),

@@ -10,6 +10,7 @@ use crate::data::{self, DataOptions, as_usage};
 use crate::failure::Failure;
 use crate::input_format::{Format, data_format};
 use crate::kind_color;
+use crate::profile;
 use crate::progress;
 use pinhole::added::Additions;
 use pinhole::camera::film::Film;
@@ -109,6 +110,7 @@ impl Contents {
 impl Source {
     /// Reads the spheres, but not the image of the sky.
     pub(crate) fn contents(&self) -> Result<Contents, Failure> {
+        let _phase = profile::phase("read");
         let path = &self.path;
         progress::stage(format!("reading {}", path.display()));
         let Format::Data(format) = self.format else {

@@ -7,6 +7,7 @@
 mod harness;
 mod light;
 mod plan;
+mod profile;
 mod program;
 mod render;
 mod verify;
@@ -29,7 +30,13 @@ fn trial_of_signals(name: &str, test: fn(&'static Headless)) -> Trial {
 
 fn main() {
     harness::run(|| {
-        let groups = [light::trials(), plan::trials(), render::trials(), verify::trials()];
+        let groups = [
+            light::trials(),
+            plan::trials(),
+            profile::trials(),
+            render::trials(),
+            verify::trials(),
+        ];
         groups.into_iter().flatten().collect()
     });
 }

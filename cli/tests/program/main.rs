@@ -21,6 +21,8 @@ mod looks;
 mod movie_colors;
 mod pictures;
 #[cfg(feature = "gpu")]
+mod profile;
+#[cfg(feature = "gpu")]
 mod shaders;
 mod snapshots;
 mod stereo;

@@ -72,6 +72,7 @@ impl Headless {
         let bytes = 16 * pixels.len() as u64;
         // These are the width and a part of the height of a film, so they fit into u32.
         let size = [width as u32, rows.len() as u32];
+        let phase = self.phase("create pipelines");
         let checks = Checks::default();
         let (filter, passes, result, back) = checks.create(device, || {
             let vectors = storage::<[f32; 4]>(true);
@@ -123,15 +124,19 @@ impl Headless {
             (filter, passes, result, read)
         });
         checks.passed().await?;
-        let mut encoder = self.encoder();
+        drop(phase);
+        let (mut encoder, mut times) = (self.encoder(), self.pass_times());
         for group in &passes {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                label: None,
+                timestamp_writes: times.writes("denoise"),
+            });
             pass.set_pipeline(&filter);
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
         }
         back.record_copy(&mut encoder, &result);
-        self.run(encoder, &[back.buffer()]).await?;
+        self.run_timed(encoder, times, &[back.buffer()]).await?;
         back.read(|lights: &[[f32; 4]]| lights.to_vec())
     }
 }

@@ -6,6 +6,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::lit::{LitFrame, LitPasses, MAX_DISPATCHES, Moment, Recorder, Step};
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 
@@ -35,6 +36,7 @@ struct Submitted {
     index: SubmissionIndex,
     at: Instant,
     groups: u64,
+    times: PassTimes,
 }
 
 impl<'a> Flow<'a> {
@@ -44,11 +46,13 @@ impl<'a> Flow<'a> {
         passes: &'a LitPasses,
         scene: &'a SceneBuffers,
     ) -> Self {
+        let mut recorder = Recorder::new(frame, passes.advance(), headless.is_indirect());
+        recorder.replace_times(headless.pass_times());
         Self {
             headless,
             frame,
             scene,
-            recorder: Recorder::new(frame, passes.advance(), headless.is_indirect()),
+            recorder,
             encoder: None,
             gathered: 0,
             accumulated: Vec::new(),
@@ -104,7 +108,8 @@ impl<'a> Flow<'a> {
                 self.gathered += whole.count() * weight;
             }
             self.note_samples(step);
-            return match self.gathered >= submission_size {
+            let is_enough = self.gathered >= submission_size || self.headless.submits_one_by_one();
+            return match is_enough {
                 true => self.send(after).await,
                 false => Ok(()),
             };
@@ -143,18 +148,20 @@ impl<'a> Flow<'a> {
 
     /// Submits the recorded commands, and waits until the previous submission has finished.
     async fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
-        let Some(encoder) = self.encoder.take() else {
+        let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
         let queue = self.headless.queue();
         self.frame.queue_parameters(queue, 0, &self.recorder.take_parameters());
+        let times = self.recorder.replace_times(self.headless.pass_times());
+        times.record_copy(&mut encoder);
         let at = Instant::now();
         let index = self.headless.start(encoder);
         for (tile, samples) in self.accumulated.drain(..) {
             self.samples[tile] = samples;
         }
         let groups = std::mem::take(&mut self.gathered);
-        let before = self.submitted.replace(Submitted { index, at, groups });
+        let before = self.submitted.replace(Submitted { index, at, groups, times });
         self.wait_for(before).await?;
         after()
     }
@@ -177,17 +184,20 @@ impl<'a> Flow<'a> {
         self.encoder = None;
         self.accumulated.clear();
         self.recorder.take_parameters();
+        self.recorder.replace_times(self.headless.pass_times());
         let last = self.submitted.take();
         self.wait_for(last).await
     }
 
     async fn wait_for(&mut self, submitted: Option<Submitted>) -> Result<(), GpuError> {
-        let Some(Submitted { index, at, groups }) = submitted else {
+        let Some(Submitted { index, at, groups, times }) = submitted else {
             return Ok(());
         };
-        self.headless.wait(&[], index).await?;
+        self.headless.wait(times.buffer().as_slice(), index).await?;
         // The device began this work when it was submitted, or when the previous submission had finished.
-        let elapsed = at.max(self.last_done).elapsed();
+        let began = at.max(self.last_done);
+        let elapsed = began.elapsed();
+        self.headless.note_passes(times, at, began)?;
         self.last_done = Instant::now();
         let size = [u32::try_from(groups).unwrap_or(u32::MAX), 1];
         self.scene.adapt_submission_size(Groups { first: [0, 0], size }, elapsed);
@@ -208,6 +218,7 @@ impl<'a> Flow<'a> {
             let written = self.recorder.record_noise(encoder, passes.noise(), samples);
             frame.record_copy_variations(encoder);
             self.finish(&[frame.variations_back.buffer()]).await?;
+            let _phase = headless.phase("read back");
             frame.variations_back.read(|found: &[[f32; 2]]| {
                 for [variance, light] in &found[..written] {
                     sums[0] += f64::from(*variance);

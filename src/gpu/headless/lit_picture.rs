@@ -51,9 +51,11 @@ impl Headless {
             done => done?,
         };
         if settings.is_denoised {
+            let _phase = self.phase("denoise");
             image = self.denoise_async(&image).await?;
         }
         if let Some(lines) = settings.studio_parameters().and_then(|studio| studio.outline) {
+            let _phase = self.phase("outline");
             outline::draw(&mut image, &lines);
         }
         image.keep(layers);
@@ -183,6 +185,7 @@ impl Work<'_> {
             let samples = flow.samples[number];
             frame.record_copy_film(flow.encoder(), number);
             flow.finish(&[frame.film_back.buffer()]).await?;
+            let _phase = headless.phase("read back");
             frame.film_back.read(|found| {
                 totals.add(&sums::write(image, tile.tile, found, samples));
             })?;

@@ -11,6 +11,7 @@ use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::headless::timer::{PassTimer, TraceTime};
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::Query;
 use crate::gpu::passes::tiles::{Groups, tiles};
@@ -69,7 +70,9 @@ impl Headless {
                     if let Some(timer) = &timer {
                         timer.record_copy(&mut encoder);
                     }
-                    let elapsed = self.submit_slice(encoder, groups, scene, &timer_buffer).await?;
+                    let elapsed = self
+                        .submit_slice(encoder, PassTimes::default(), groups, scene, &timer_buffer)
+                        .await?;
                     time.pixels += groups.pixels();
                     time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
                 }

@@ -13,6 +13,7 @@ pub(in crate::gpu) mod path_recording;
 pub(in crate::gpu) mod plan;
 pub(in crate::gpu) mod planning;
 pub(in crate::gpu) mod primary;
+pub(in crate::gpu) mod profiler;
 pub(in crate::gpu) mod progress;
 pub(in crate::gpu) mod readable_trace;
 pub(in crate::gpu) mod readback;
@@ -35,11 +36,13 @@ use crate::gpu::adapter;
 use crate::gpu::error::GpuError;
 use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::headless::profiler::Profiler;
 use crate::gpu::headless::progress::{Picture, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::waiting::{Instant, Turns};
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::Groups;
@@ -63,6 +66,7 @@ pub struct Headless {
     is_indirect: bool,
     is_one_pass: bool,
     faults: Arc<Faults>,
+    profiler: Option<Profiler>,
     /// The renderers that were built so far. A turn lasts during a whole render, because faults that wgpu reports cannot
     /// be attributed to a render.
     renderers: Turns<Renderers>,
@@ -122,7 +126,19 @@ impl Headless {
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let renderers = Turns::new(Renderers::new(options.edits.clone()));
         let is_one_pass = options.one_pass;
-        Ok(Self { info, device, queue, timeout, is_indirect, is_one_pass, faults, renderers })
+        let profile = options.profile.clone();
+        let profiler = profile.map(|profile| Profiler::new(profile, &device, &queue));
+        Ok(Self {
+            info,
+            device,
+            queue,
+            timeout,
+            is_indirect,
+            is_one_pass,
+            faults,
+            profiler,
+            renderers,
+        })
     }
 
     /// Returns name, driver and kind of the adapter in use.
@@ -140,6 +156,10 @@ impl Headless {
     /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
     pub(in crate::gpu) fn is_indirect(&self) -> bool {
         self.is_indirect
+    }
+
+    pub(in crate::gpu) fn profiler(&self) -> Option<&Profiler> {
+        self.profiler.as_ref()
     }
 
     /// Whether one pass takes whole samples where it can.
@@ -189,6 +209,7 @@ impl Headless {
             ..RendererOptions::default()
         };
         self.alone(async |_: &mut Renderers| {
+            let _phase = self.phase("upload");
             let renderer = Renderer::new_async(&self.device, &options).await?;
             let (device, queue) = (&self.device, &self.queue);
             let flush = async || {
@@ -241,7 +262,9 @@ impl Headless {
             plan,
             |_| {},
             async |plan: &RenderPlan| {
+                let phase = self.phase("build");
                 let structures = plan.build(scene);
+                drop(phase);
                 let buffers = self.upload_async(scene, &structures).await;
                 drop(structures);
                 Ok(match buffers {
@@ -284,12 +307,13 @@ impl Headless {
     pub(in crate::gpu) async fn submit_slice(
         &self,
         encoder: CommandEncoder,
+        times: PassTimes,
         groups: Groups,
         scene: &SceneBuffers,
         mapped: &[&wgpu::Buffer],
     ) -> Result<Duration, GpuError> {
         let started = Instant::now();
-        self.run(encoder, mapped).await?;
+        self.run_timed(encoder, times, mapped).await?;
         let elapsed = started.elapsed();
         scene.adapt_submission_size(groups, elapsed);
         Ok(elapsed)
@@ -316,7 +340,10 @@ impl Headless {
         work: impl AsyncFnOnce(&Renderer) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(async |renderers: &mut Renderers| {
-            work(renderers.of(&self.device, key).await?).await
+            let phase = self.phase("create pipelines");
+            let renderer = renderers.of(&self.device, key).await?;
+            drop(phase);
+            work(renderer).await
         })
         .await
     }
@@ -328,7 +355,10 @@ impl Headless {
         work: impl AsyncFnOnce(&LitPasses) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         self.alone(async |renderers: &mut Renderers| {
-            work(renderers.lit(&self.device, key).await?).await
+            let phase = self.phase("create pipelines");
+            let passes = renderers.lit(&self.device, key).await?;
+            drop(phase);
+            work(passes).await
         })
         .await
     }
@@ -356,6 +386,7 @@ impl Headless {
 
     /// Submits an encoder without waiting.
     pub(in crate::gpu) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
+        let _phase = self.phase("submit");
         self.queue.submit([encoder.finish()])
     }
 
@@ -369,12 +400,28 @@ impl Headless {
         self.wait(mapped, submission).await
     }
 
+    /// Submits an encoder like [`Headless::run`], and adds its passes to the profile.
+    pub(in crate::gpu) async fn run_timed(
+        &self,
+        mut encoder: CommandEncoder,
+        times: PassTimes,
+        mapped: &[&wgpu::Buffer],
+    ) -> Result<(), GpuError> {
+        times.record_copy(&mut encoder);
+        let submitted = Instant::now();
+        let submission = self.start(encoder);
+        let mapped: Vec<_> = mapped.iter().copied().chain(times.buffer()).collect();
+        self.wait(&mapped, submission).await?;
+        self.note_passes(times, submitted, submitted)
+    }
+
     /// Waits until a submission has finished and the buffers are mapped.
     pub(in crate::gpu) async fn wait(
         &self,
         mapped: &[&wgpu::Buffer],
         submission: wgpu::SubmissionIndex,
     ) -> Result<(), GpuError> {
+        let _phase = self.phase("wait");
         let mut answers = Vec::new();
         for buffer in mapped {
             let (answer, to_answer) = waiting::answer();

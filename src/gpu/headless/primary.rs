@@ -14,6 +14,7 @@ use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_region::traced_pixels;
@@ -69,7 +70,7 @@ impl Headless {
         let mut done = TracedPixels::of(traced_pixels(scene, view, tile_size));
         for tile in tiles(film, tile_size) {
             frame.set_tile(self.queue(), scene, view, tile, primary);
-            let mut encoder = self.encoder();
+            let (mut encoder, mut times) = (self.encoder(), self.pass_times());
             if renderer.keeps_rays {
                 // Pixels that are not traced are recognised by their cleared rays.
                 frame.record_clear(&mut encoder);
@@ -79,21 +80,21 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.band, groups.first);
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    let mut pass = begin_pass(&mut encoder, &mut times, "trace");
                     let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
-                    if left.is_empty() && part.is_last {
+                    if left.is_empty() && part.is_last && !self.submits_one_by_one() {
                         // The last slice of a tile is submitted together with shading and copies.
                         unfinished = groups;
                         break;
                     }
-                    self.submit_slice(encoder, groups, scene, &[]).await?;
+                    self.submit_slice(encoder, times, groups, scene, &[]).await?;
                     done.add(groups, watch)?;
-                    encoder = self.encoder();
+                    (encoder, times) = (self.encoder(), self.pass_times());
                 }
                 if part.is_last_of_band {
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                    let mut pass = begin_pass(&mut encoder, &mut times, "shade");
                     renderer.record_shade(&mut pass, scene, &frame, part.band)?;
                 }
             }
@@ -107,7 +108,8 @@ impl Headless {
                 traced.record_copy(&mut encoder, &frame);
                 mapped.extend(traced.buffers());
             }
-            self.submit_slice(encoder, unfinished, scene, &mapped).await?;
+            self.submit_slice(encoder, times, unfinished, scene, &mapped).await?;
+            let _phase = self.phase("read back");
             if textures.status().read(|words: &[u32]| words[0])? != 0 {
                 return Err(GpuError::Steps);
             }
@@ -119,4 +121,16 @@ impl Headless {
         }
         Ok(())
     }
+}
+
+/// Begins a compute pass, and notes it in `times`.
+fn begin_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    times: &mut PassTimes,
+    name: &'static str,
+) -> wgpu::ComputePass<'a> {
+    encoder.begin_compute_pass(&ComputePassDescriptor {
+        label: None,
+        timestamp_writes: times.writes(name),
+    })
 }

@@ -5,6 +5,7 @@ use wgpu::{BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipelin
 
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::scene::appearance::color_words;
 use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
@@ -102,6 +103,19 @@ impl Recolor {
         scene: &Scene,
         update: &SceneUpdate<'_>,
     ) -> Result<(), GpuError> {
+        let recorded = (encoder, &mut PassTimes::default());
+        self.record_timed((device, queue), recorded, buffers, scene, update).await
+    }
+
+    /// Records the new colours like [`Recolor::record_async`], and notes the passes.
+    pub(in crate::gpu) async fn record_timed(
+        &self,
+        (device, queue): (&Device, &Queue),
+        (encoder, times): (&mut CommandEncoder, &mut PassTimes),
+        buffers: &mut SceneBuffers,
+        scene: &Scene,
+        update: &SceneUpdate<'_>,
+    ) -> Result<(), GpuError> {
         if !buffers.takes_in_place(scene, update) {
             return Err(GpuError::NotInPlace);
         }
@@ -113,7 +127,7 @@ impl Recolor {
             let ids = first..range.end.min(first.saturating_add(max_count));
             let words = color_words(scene.appearance().colors(), ids);
             checks.create(device, || {
-                self.record_range((device, queue), encoder, buffers, first, &words);
+                self.record_range((device, queue), (encoder, times), buffers, first, &words);
             });
         }
         checks.passed().await?;
@@ -124,7 +138,7 @@ impl Recolor {
     fn record_range(
         &self,
         (device, queue): (&Device, &Queue),
-        encoder: &mut CommandEncoder,
+        (encoder, times): (&mut CommandEncoder, &mut PassTimes),
         buffers: &SceneBuffers,
         first: u32,
         words: &[u32],
@@ -156,7 +170,7 @@ impl Recolor {
             });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("pinhole recolor"),
-                timestamp_writes: None,
+                timestamp_writes: times.writes("recolor"),
             });
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);

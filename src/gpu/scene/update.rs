@@ -23,11 +23,11 @@ impl Headless {
             buffers.appearance().is_opaque() && !scene.checked_appearance().is_opaque();
         if buffers.takes_in_place(scene, update) && !loses_opacity {
             let work = async |recolor: &Recolor| {
-                let (device, queue, mut encoder) = (self.device(), self.queue(), self.encoder());
-                let recorded =
-                    recolor.record_async(device, queue, &mut encoder, buffers, scene, update);
-                recorded.await?;
-                self.run(encoder, &[]).await
+                let queues = (self.device(), self.queue());
+                let (mut encoder, mut times) = (self.encoder(), self.pass_times());
+                let recorded = (&mut encoder, &mut times);
+                recolor.record_timed(queues, recorded, buffers, scene, update).await?;
+                self.run_timed(encoder, times, &[]).await
             };
             return self.with_recolor(work).await;
         }

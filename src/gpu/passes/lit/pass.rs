@@ -8,12 +8,15 @@ use wgpu::{
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::shader::Kernel;
 use crate::gpu::shader::pipeline;
 
 /// The pipeline of a kernel, which can be recorded into any encoder of its device.
 #[derive(Debug)]
 pub(in crate::gpu) struct Pass {
+    /// The name of the entry point.
+    name: &'static str,
     pipeline: ComputePipeline,
 }
 
@@ -51,19 +54,21 @@ impl Pass {
         edits: &[ShaderEdit],
         checks: &Checks,
     ) -> Result<Self, GpuError> {
-        Ok(Self { pipeline: pipeline(device, &kernel.edited(edits)?, groups, checks) })
+        let name = kernel.entry_point;
+        Ok(Self { name, pipeline: pipeline(device, &kernel.edited(edits)?, groups, checks) })
     }
 
-    /// Records one dispatch. Nothing is submitted.
+    /// Records one dispatch, and notes it in `times`. Nothing is submitted.
     pub(super) fn record(
         &self,
         encoder: &mut CommandEncoder,
         bound: Bound<'_>,
         extent: Extent<'_>,
+        times: &mut PassTimes,
     ) {
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some("pinhole"),
-            timestamp_writes: None,
+            timestamp_writes: times.writes(self.name),
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bound.frame, &[bound.dispatch]);

@@ -6,6 +6,7 @@ use super::frame::{Area, LitFrame, LitTile};
 use super::pass::{Bound, Extent, Pass};
 use super::records::{DispatchParameters, GROUPS_OF_ONE, PIXELS_PER_VARIATION};
 use super::round::{Step, Work};
+use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::tiles::{Groups, WORKGROUP_SIDE};
 
 /// Number of paths that a workgroup processes.
@@ -24,11 +25,13 @@ pub(in crate::gpu) struct Recorder<'a> {
     /// Whether indirect dispatches are used.
     is_indirect: bool,
     parameters: Vec<DispatchParameters>,
+    times: PassTimes,
 }
 
 impl<'a> Recorder<'a> {
     pub(in crate::gpu) fn new(frame: &'a LitFrame, advance: &'a Pass, is_indirect: bool) -> Self {
-        Self { frame, tile: 0, place: 0, advance, is_indirect, parameters: Vec::new() }
+        let (parameters, times) = (Vec::new(), PassTimes::default());
+        Self { frame, tile: 0, place: 0, advance, is_indirect, parameters, times }
     }
 
     /// The same recorder for the recording with this number among those under way.
@@ -44,6 +47,11 @@ impl<'a> Recorder<'a> {
     /// Returns the parameters of the dispatches, in order, and starts a new submission.
     pub(in crate::gpu) fn take_parameters(&mut self) -> Vec<DispatchParameters> {
         std::mem::take(&mut self.parameters)
+    }
+
+    /// Notes the dispatches of the next submission in `times`, and returns what was noted of the last one.
+    pub(in crate::gpu) fn replace_times(&mut self, times: PassTimes) -> PassTimes {
+        std::mem::replace(&mut self.times, times)
     }
 
     /// The maximum number of workgroups of a dispatch, in each of its [`Step::layers`].
@@ -171,7 +179,7 @@ impl<'a> Recorder<'a> {
         self.parameters.push(dispatch);
         let lighting = self.frame.lighting();
         let bound = Bound { frame: group, dispatch: offset, brick, lighting, last };
-        pass.record(encoder, bound, extent);
+        pass.record(encoder, bound, extent, &mut self.times);
     }
 }
 
