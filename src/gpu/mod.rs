@@ -14,6 +14,7 @@ pub const WGPU_VERSION: &str = "30.0";
 
 pub mod adapter;
 mod checks;
+mod device_shape;
 pub(crate) mod edit;
 mod error;
 mod faults;

@@ -25,6 +25,9 @@ pub struct HeadlessOptions {
     /// time than several passes. Only experiments and tests turn it off. The picture is the same,
     /// but for what a device rounds otherwise.
     pub one_pass: bool,
+    /// The type of device whose sizes of tiles and submissions are used; `None` is the type of the adapter. Only
+    /// experiments and tests choose another. The picture does not depend on this option.
+    pub device_type: Option<wgpu::DeviceType>,
     /// A record of where time goes, which the device fills in. The picture does not depend on it.
     pub profile: Option<Profile>,
     /// Edits of the shader source. Only experiments and tests have any.
@@ -53,6 +56,7 @@ impl Default for HeadlessOptions {
             timeout,
             indirect: true,
             one_pass: true,
+            device_type: None,
             profile: None,
             edits,
         }

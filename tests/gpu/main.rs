@@ -14,6 +14,7 @@ mod appearance;
 mod async_forms;
 mod compute;
 mod device;
+mod device_shape;
 mod embedding;
 mod faults;
 mod host;
@@ -48,6 +49,7 @@ fn main() {
             embedding::trials(),
             host::trials(),
             device::trials(),
+            device_shape::trials(),
             structures::trials(),
             plan::trials(),
             profile::trials(),

@@ -139,7 +139,8 @@ impl Work<'_> {
         let Self { headless, passes, scenes, view, settings, lighting, .. } = *self;
         let (device, queue) = (headless.device(), headless.queue());
         let total = settings.sampling.samples;
-        let sizes = LitSizes::new(&device.limits(), &view.film, lighting.mode, total);
+        let sizes =
+            LitSizes::new(&device.limits(), headless.shape(), &view.film, lighting.mode, total);
         let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
         let tiles = tiles(&view.film, sizes.tile);
         let records = tiles.map(|tile| (tile, scenes.frames(view, region, tile, limit)));

@@ -42,7 +42,8 @@ impl Headless {
         scene: &SceneBuffers,
         view: &View<'_>,
     ) -> Result<TraceTime, GpuError> {
-        let tile_size = tile_size(&self.device().limits(), &view.film, renderer.keeps_rays);
+        let tile_size =
+            tile_size(&self.device().limits(), self.shape(), &view.film, renderer.keeps_rays);
         let textures =
             scoped(self.device(), || TileTextures::new(self.device(), tile_size, false)).await?;
         let mut frame = Frame::new_async(renderer, self.device(), &textures.targets()).await?;

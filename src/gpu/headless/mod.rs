@@ -14,6 +14,7 @@ pub(in crate::gpu) mod plan;
 pub(in crate::gpu) mod planning;
 pub(in crate::gpu) mod primary;
 pub(in crate::gpu) mod profiler;
+pub(in crate::gpu) mod profiling;
 pub(in crate::gpu) mod progress;
 pub(in crate::gpu) mod readable_trace;
 pub(in crate::gpu) mod readback;
@@ -33,19 +34,18 @@ use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 use crate::accel::{Accel, AccelChoice};
 use crate::camera::View;
 use crate::gpu::adapter;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::GpuError;
 use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::profiler::Profiler;
 use crate::gpu::headless::progress::{Picture, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
-use crate::gpu::headless::waiting::{Instant, Turns};
+use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
-use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
@@ -126,6 +126,8 @@ impl Headless {
             options.indirect && downlevel.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION);
         let renderers = Turns::new(Renderers::new(options.edits.clone()));
         let is_one_pass = options.one_pass;
+        let info =
+            AdapterInfo { device_type: options.device_type.unwrap_or(info.device_type), ..info };
         let profile = options.profile.clone();
         let profiler = profile.map(|profile| Profiler::new(profile, &device, &queue));
         Ok(Self {
@@ -151,6 +153,11 @@ impl Headless {
     #[must_use]
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// The order and the amounts of work that suit this device.
+    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
+        DeviceShape::of(self.info.device_type)
     }
 
     /// Whether indirect dispatches are used, which read the number of workgroups from a buffer.
@@ -206,6 +213,7 @@ impl Headless {
         let options = RendererOptions {
             cameras: Vec::new(),
             structures: [accel].into_iter().chain(occluders).map(Accel::structure).collect(),
+            device_type: Some(self.info.device_type),
             ..RendererOptions::default()
         };
         self.alone(async |_: &mut Renderers| {
@@ -302,23 +310,6 @@ impl Headless {
         }
     }
 
-    /// Submits an encoder that traces some workgroups, waits until it has finished and the buffers are mapped, and
-    /// records the elapsed time for the size of the next submission.
-    pub(in crate::gpu) async fn submit_slice(
-        &self,
-        encoder: CommandEncoder,
-        times: PassTimes,
-        groups: Groups,
-        scene: &SceneBuffers,
-        mapped: &[&wgpu::Buffer],
-    ) -> Result<Duration, GpuError> {
-        let started = Instant::now();
-        self.run_timed(encoder, times, mapped).await?;
-        let elapsed = started.elapsed();
-        scene.adapt_submission_size(groups, elapsed);
-        Ok(elapsed)
-    }
-
     pub(in crate::gpu) fn encoder(&self) -> CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
@@ -341,7 +332,7 @@ impl Headless {
     ) -> Result<T, GpuError> {
         self.alone(async |renderers: &mut Renderers| {
             let phase = self.phase("create pipelines");
-            let renderer = renderers.of(&self.device, key).await?;
+            let renderer = renderers.of(&self.device, self.info.device_type, key).await?;
             drop(phase);
             work(renderer).await
         })
@@ -398,21 +389,6 @@ impl Headless {
     ) -> Result<(), GpuError> {
         let submission = self.start(encoder);
         self.wait(mapped, submission).await
-    }
-
-    /// Submits an encoder like [`Headless::run`], and adds its passes to the profile.
-    pub(in crate::gpu) async fn run_timed(
-        &self,
-        mut encoder: CommandEncoder,
-        times: PassTimes,
-        mapped: &[&wgpu::Buffer],
-    ) -> Result<(), GpuError> {
-        times.record_copy(&mut encoder);
-        let submitted = Instant::now();
-        let submission = self.start(encoder);
-        let mapped: Vec<_> = mapped.iter().copied().chain(times.buffer()).collect();
-        self.wait(&mapped, submission).await?;
-        self.note_passes(times, submitted, submitted)
     }
 
     /// Waits until a submission has finished and the buffers are mapped.

@@ -5,6 +5,7 @@ use wgpu::{DeviceType, Limits};
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::camera::View;
 use crate::camera::film::Film;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::tile_textures;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
@@ -91,6 +92,11 @@ pub struct DeviceLimits {
 }
 
 impl DeviceLimits {
+    /// The order and the amounts of work that suit the device.
+    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
+        DeviceShape::of(self.device_type)
+    }
+
     /// Number of bytes of host memory that `bytes` on the device occupy.
     pub(in crate::gpu) fn in_host(&self, bytes: u64) -> u64 {
         if self.device_type == DeviceType::Cpu { bytes } else { 0 }
@@ -127,7 +133,7 @@ impl RenderPlan {
         let PictureRequest { scene, layers, host_bytes_per_pixel, .. } = *request;
         let (limits, film) = (&device.limits, &request.view.film);
         let scene_buffers = scene_buffers(scene, &accel);
-        let tile_size = tile_size(limits, film, keeps_rays);
+        let tile_size = tile_size(limits, device.shape(), film, keeps_rays);
         let band = BandBuffers::new(limits, tile_size, keeps_rays);
         let tile_buffers = band.planned();
         let mut tile_textures = band.planned_read_back();

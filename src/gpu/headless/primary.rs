@@ -61,7 +61,7 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
         let (device, film) = (self.device(), &view.film);
-        let tile_size = tile_size(&device.limits(), film, renderer.keeps_rays);
+        let tile_size = tile_size(&device.limits(), self.shape(), film, renderer.keeps_rays);
         let textures =
             scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
         let mut frame = Frame::new_async(renderer, device, &textures.targets()).await?;

@@ -5,16 +5,15 @@ use std::sync::{Mutex, PoisonError};
 use wgpu::{Device, DeviceType, Features, Queue};
 
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::Headless;
 use crate::gpu::headless::waiting::Instant;
 use crate::gpu::passes::pass_times::{PassTimes, Stamps};
-use crate::gpu::profile::{PassClock, Profile, ProfilePhase};
+use crate::gpu::profile::{PassClock, Profile};
 
 /// A profile, and what a device needs to fill it in.
 #[derive(Debug)]
 pub(in crate::gpu) struct Profiler {
-    profile: Profile,
-    clock: PassClock,
+    pub(in crate::gpu) profile: Profile,
+    pub(in crate::gpu) clock: PassClock,
     nanoseconds_per_tick: f64,
     /// Places for timestamps that no submission uses.
     free: Mutex<Vec<Stamps>>,
@@ -42,7 +41,7 @@ impl Profiler {
     }
 
     /// The place for timestamps of a submission, if the device measures its passes.
-    fn stamps(&self, device: &Device) -> Option<Stamps> {
+    pub(in crate::gpu) fn stamps(&self, device: &Device) -> Option<Stamps> {
         if self.clock != PassClock::Device {
             return None;
         }
@@ -52,7 +51,12 @@ impl Profiler {
 
     /// Adds the passes of a submission that has finished, whose timestamps are mapped. The device may have begun with it
     /// at `began`.
-    fn add(&self, times: PassTimes, submitted: Instant, began: Instant) -> Result<(), GpuError> {
+    pub(in crate::gpu) fn add(
+        &self,
+        times: PassTimes,
+        submitted: Instant,
+        began: Instant,
+    ) -> Result<(), GpuError> {
         if self.clock == PassClock::Device {
             let ticks = times.ticks()?;
             let mut first_tick = self.first_tick.lock().unwrap_or_else(PoisonError::into_inner);
@@ -71,35 +75,5 @@ impl Profiler {
             self.free.lock().unwrap_or_else(PoisonError::into_inner).push(stamps);
         }
         Ok(())
-    }
-}
-
-impl Headless {
-    /// What notes the passes of one submission.
-    pub(in crate::gpu) fn pass_times(&self) -> PassTimes {
-        match self.profiler() {
-            Some(profiler) => PassTimes::new(profiler.stamps(self.device())),
-            None => PassTimes::default(),
-        }
-    }
-
-    /// Whether every pass is submitted by itself, so that the host's clock can measure it.
-    pub(in crate::gpu) fn submits_one_by_one(&self) -> bool {
-        self.profiler().is_some_and(|profiler| profiler.clock == PassClock::Host)
-    }
-
-    /// Adds the passes of a submission to the profile, see [`Profiler::add`].
-    pub(in crate::gpu) fn note_passes(
-        &self,
-        times: PassTimes,
-        submitted: Instant,
-        began: Instant,
-    ) -> Result<(), GpuError> {
-        self.profiler().map_or(Ok(()), |profiler| profiler.add(times, submitted, began))
-    }
-
-    /// Begins a phase of the host, if there is a profile.
-    pub(in crate::gpu) fn phase(&self, name: &'static str) -> Option<ProfilePhase> {
-        self.profiler().map(|profiler| profiler.profile.phase(name))
     }
 }

@@ -61,6 +61,7 @@ impl Renderers {
     pub(in crate::gpu) async fn of(
         &mut self,
         device: &Device,
+        device_type: wgpu::DeviceType,
         key: RendererKey,
     ) -> Result<&Renderer, GpuError> {
         let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = key;
@@ -79,6 +80,7 @@ impl Renderers {
                     query,
                     keeps_rays,
                     indirect: true,
+                    device_type: Some(device_type),
                     edits: self.edits.clone(),
                 };
                 Ok(entry.insert(Renderer::new_async(device, &options).await?))

@@ -2,16 +2,11 @@
 
 use std::time::Duration;
 
+use crate::gpu::device_shape::DeviceShape;
+
 /// The time that a submission should take: so long that the wait between two submissions is negligible, and short
 /// enough for a watchdog, a progress bar and Ctrl-C.
 const TARGET: Duration = Duration::from_millis(60);
-
-/// Number of workgroups of the first submission, which take a software device a few milliseconds.
-const FIRST: u64 = 2048;
-
-/// Maximum number of intersection tests in a submission, for structures in which every ray tests all spheres. They take
-/// a software device less than half a second.
-const MAX_TESTS: u64 = 1 << 27;
 
 /// Number of workgroups of a submission, which adapts from one submission to the next.
 #[derive(Clone, Copy, Debug)]
@@ -22,12 +17,12 @@ pub(in crate::gpu) struct SubmissionSize {
 
 impl SubmissionSize {
     /// The initial size for rays that each test about `tests_per_ray` spheres.
-    pub(in crate::gpu) fn new(tests_per_ray: usize) -> Self {
+    pub(in crate::gpu) fn new(tests_per_ray: usize, shape: DeviceShape) -> Self {
         let tests_per_group = 64 * tests_per_ray.max(1) as u64;
         // A list of spheres costs a thousand times as much as a structure. Moreover, its rays cost either nothing or
         // the full amount, so times that were measured in the background do not predict those of other regions.
-        let max = (MAX_TESTS / tests_per_group).max(1);
-        Self { next: FIRST.min(max / 16).max(1), max }
+        let max = (shape.max_tests / tests_per_group).max(1);
+        Self { next: shape.first_groups.min(max / 16).max(1), max }
     }
 
     /// Number of workgroups that the next submission should have.
@@ -54,9 +49,16 @@ impl SubmissionSize {
 mod tests {
     use super::*;
 
+    const SOFTWARE: wgpu::DeviceType = wgpu::DeviceType::Cpu;
+    const FIRST: u64 = 2048;
+
+    fn initial(tests_per_ray: usize) -> SubmissionSize {
+        SubmissionSize::new(tests_per_ray, DeviceShape::of(SOFTWARE))
+    }
+
     #[test]
     fn a_slow_device_gets_less_and_a_quick_one_more() {
-        let mut submission_size = SubmissionSize::new(1);
+        let mut submission_size = initial(1);
         assert_eq!(submission_size.groups(), FIRST);
         submission_size.adapt(FIRST, Duration::from_millis(600));
         assert_eq!(submission_size.groups(), FIRST / 10);
@@ -70,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_remainder_reduces_the_size_only_if_it_is_slow() {
-        let mut submission_size = SubmissionSize::new(1);
+        let mut submission_size = initial(1);
         submission_size.adapt(1, Duration::from_millis(1));
         assert_eq!(submission_size.groups(), FIRST);
         submission_size.adapt(FIRST / 2, Duration::from_millis(10));
@@ -83,7 +85,7 @@ mod tests {
     /// second.
     #[test]
     fn without_a_structure_submissions_are_short() {
-        let mut submission_size = SubmissionSize::new(3 << 14);
+        let mut submission_size = initial(3 << 14);
         assert_eq!(submission_size.groups(), 2);
         for _ in 0..10 {
             submission_size.adapt(submission_size.groups(), Duration::ZERO);

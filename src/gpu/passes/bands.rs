@@ -5,6 +5,7 @@ use wgpu::Limits;
 
 use crate::accel::PlannedBuffer;
 use crate::camera::film::Film;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::passes::tiles;
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::records;
@@ -59,8 +60,14 @@ pub(in crate::gpu) fn rows_per_band(
 
 /// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
 /// the rays of its last band only.
-pub(in crate::gpu) fn tile_size(limits: &Limits, film: &Film, keeps_rays: bool) -> [u32; 2] {
-    let [width, height] = tiles::tile_size(film, limits.max_texture_dimension_2d);
+pub(in crate::gpu) fn tile_size(
+    limits: &Limits,
+    shape: DeviceShape,
+    film: &Film,
+    keeps_rays: bool,
+) -> [u32; 2] {
+    let side_limit = limits.max_texture_dimension_2d;
+    let [width, height] = tiles::tile_size(film, shape.max_tile_pixels, side_limit);
     let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
     [width, rows]
 }

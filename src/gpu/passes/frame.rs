@@ -266,6 +266,7 @@ impl Frame {
                 records::FrameParameters::new(
                     &camera, space, &view.film, *band, traced, primary, limit,
                 )
+                .in_order_of(scene.shape())
             })
             .collect();
         let mut bytes = vec![0_u8; bands.len() * self.stride];

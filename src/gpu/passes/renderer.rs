@@ -8,6 +8,7 @@ use wgpu::{BindGroupLayout, ComputePipeline, Device};
 use crate::accel::{BrickKind, Primitive};
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::{Query, RendererOptions};
@@ -25,6 +26,7 @@ pub struct Renderer {
     pub(in crate::gpu) data_layers: bool,
     pub(in crate::gpu) keeps_rays: bool,
     pub(in crate::gpu) is_indirect: bool,
+    pub(in crate::gpu) shape: DeviceShape,
     query: Query,
     pub(in crate::gpu) edits: Vec<ShaderEdit>,
     /// Pipelines that can be recorded.
@@ -85,6 +87,7 @@ impl Renderer {
     #[must_use]
     pub fn begin(device: &Device, options: &RendererOptions) -> Self {
         let RendererOptions { color, data_layers, query, keeps_rays, .. } = *options;
+        let device_type = options.device_type.unwrap_or(device.adapter_info().device_type);
         let checks = Checks::default();
         let layouts = checks.create(device, || Layouts::new(device, options));
         let mut remaining = VecDeque::new();
@@ -103,6 +106,7 @@ impl Renderer {
             data_layers,
             keeps_rays,
             is_indirect: options.indirect,
+            shape: DeviceShape::of(device_type),
             query,
             edits: options.edits.clone(),
             built: Vec::new(),

@@ -29,6 +29,9 @@ pub struct RendererOptions {
     /// Whether lit pictures use indirect dispatches, so that the device traces only paths that continue. All adapters
     /// of this crate support them; the pictures do not depend on it.
     pub indirect: bool,
+    /// The type of device whose order and sizes of submissions are used; `None` is the type of the adapter. Only
+    /// experiments and tests choose another. The pictures do not depend on it.
+    pub device_type: Option<wgpu::DeviceType>,
     /// Edits of the shader source. Only experiments and tests have any.
     pub edits: Vec<ShaderEdit>,
 }
@@ -47,6 +50,7 @@ impl Default for RendererOptions {
             query: Query::Nearest,
             keeps_rays: false,
             indirect: true,
+            device_type: None,
             edits: Vec::new(),
         }
     }

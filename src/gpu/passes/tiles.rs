@@ -2,10 +2,6 @@
 
 use crate::camera::film::Film;
 
-/// Maximum number of pixels of a tile of a headless render. The buffers and textures of such a tile take 48 MiB, which
-/// is little compared with a large scene. A picture of 1024² pixels is a single tile.
-pub(in crate::gpu) const MAX_TILE_PIXELS: u64 = 1 << 20;
-
 /// Maximum number of pixels of a band, whose hits share one buffer.
 pub(in crate::gpu) const MAX_BAND_PIXELS: u64 = 1 << 22;
 
@@ -71,11 +67,11 @@ impl Groups {
     }
 }
 
-/// Size of tiles for a device whose textures have sides of at most `side_limit` pixels.
-pub(in crate::gpu) fn tile_size(film: &Film, side_limit: u32) -> [u32; 2] {
+/// Size of tiles of at most `max_pixels` pixels, for a device whose textures have sides of at most `side_limit` pixels.
+pub(in crate::gpu) fn tile_size(film: &Film, max_pixels: u64, side_limit: u32) -> [u32; 2] {
     let (width, height) = (film.width().min(side_limit), film.height().min(side_limit));
     // No device has sides of more than 2^15 pixels, so one row of workgroups always fits.
-    let rows = (MAX_TILE_PIXELS / u64::from(width)) as u32;
+    let rows = (max_pixels / u64::from(width)) as u32;
     [width, height.min((rows / WORKGROUP_SIDE).max(1) * WORKGROUP_SIDE)]
 }
 
@@ -109,7 +105,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         for (width, height) in [(1, 1), (1, 5000), (9000, 3), (4096, 4096), (801, 599)] {
             let film = Film::new(width, height).unwrap();
-            let size = tile_size(&film, 8192);
+            let size = tile_size(&film, 1 << 20, 8192);
             assert!(size[0] <= 8192 && size[1] <= 8192);
             let mut covered = vec![0_u8; film.pixel_count() as usize];
             for tile in tiles(&film, size) {

@@ -9,6 +9,7 @@ use wgpu::{Buffer, Device, Queue};
 
 use crate::accel::{Accel, AccelChoice, AccelPlan, BrickKind, LIST_LEN, Structure};
 use crate::gpu::checks::scoped;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::headless::submission_size::SubmissionSize;
 use crate::gpu::passes::renderer::Renderer;
@@ -61,6 +62,7 @@ pub struct SceneBuffers {
     bytes: u64,
     /// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
     tests_per_ray: usize,
+    shape: DeviceShape,
     /// The submission size at the end of the last picture of the scene.
     submission_size: Mutex<SubmissionSize>,
     /// The spheres that cast shadows in a studio, if some do not and a studio was planned for.
@@ -208,8 +210,14 @@ impl SceneBuffers {
             bytes,
             occluders: None,
             tests_per_ray: tests_per_ray(accel),
-            submission_size: Mutex::new(SubmissionSize::new(tests_per_ray(accel))),
+            shape: renderer.shape,
+            submission_size: Mutex::new(SubmissionSize::new(tests_per_ray(accel), renderer.shape)),
         })
+    }
+
+    /// The order and the amounts of work that suit the device.
+    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
+        self.shape
     }
 
     /// The same scene together with those of its spheres that cast shadows in a studio.

@@ -11,6 +11,7 @@ mod part;
 mod pipeline;
 mod primary;
 pub(super) mod records;
+mod row_order;
 
 pub(super) use kernel::Kernel;
 pub(super) use part::{Part, part};

@@ -6,7 +6,9 @@ use glam::{DVec3, Vec3};
 use crate::camera::View;
 use crate::camera::film::{Film, YAxis};
 use crate::geometry::bounds::Bounds;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::gpu::shader::row_order::row_step;
 use crate::render::{PrimarySettings, Shading};
 use crate::verify::RequestedCamera;
 
@@ -167,6 +169,12 @@ impl FrameParameters {
 }
 
 impl FrameParameters {
+    /// The same record with the order of rows that suits a device.
+    pub(in crate::gpu) fn in_order_of(self, shape: DeviceShape) -> Self {
+        let row_step = if shape.spreads_rows { self.row_step } else { 1 };
+        Self { row_step, ..self }
+    }
+
     /// The record for lit pictures, whose colours depend on other records.
     pub(in crate::gpu) fn of_tile(
         view: &View<'_>,
@@ -178,23 +186,6 @@ impl FrameParameters {
         let (camera, primary) = (RequestedCamera::of(view.camera), PrimarySettings::default());
         Self::new(&camera, scene, &view.film, tile, traced, &primary, iteration_limit)
     }
-}
-
-/// The step between consecutive rows of workgroups. It is about the golden ratio of their number, so that any run of
-/// rows is spread evenly over the picture, and coprime to their number, so that no row is left out.
-fn row_step(row_count: u32) -> u32 {
-    let has_common_factor = |step: u32| {
-        let (mut a, mut b) = (row_count, step);
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
-        a != 1
-    };
-    if row_count <= 1 {
-        return 1;
-    }
-    let golden = (f64::from(row_count) * 0.618_033_988_75) as u32;
-    (golden.max(1)..).find(|step| !has_common_factor(*step)).unwrap_or(1)
 }
 
 #[cfg(test)]
@@ -428,19 +419,6 @@ mod tests {
             );
             let constant = format!("const SHADING_{name}: u32 = {}u;", frame.shading);
             assert!(source.contains(&constant), "shading.wgsl lacks `{constant}`");
-        }
-    }
-
-    #[test]
-    fn rows_are_a_permutation() {
-        for count in (1..300).chain([1024, 4096]) {
-            let step = row_step(count);
-            assert!(count * step < 1 << 24, "the kernel's remainder is exact below 2^24");
-            let mut seen = vec![false; count as usize];
-            for row in 0..count {
-                seen[(row * step % count) as usize] = true;
-            }
-            assert!(seen.iter().all(|s| *s), "{count}");
         }
     }
 }

@@ -10,6 +10,7 @@ use super::renderer::{LitRenderer, lit_key};
 use super::tickets::{AT_ONCE as RECORDINGS, Tickets};
 use crate::camera::View;
 use crate::gpu::checks::scoped;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::{BandBrick, Frame, Targets, iteration_limit};
 use crate::gpu::passes::lit::{
@@ -167,7 +168,7 @@ impl LitPicture {
         self.data.check_film(view)?;
         let (lighting, key) = lit_key(device, scene, view, settings)?;
         let key = if self.caution > Caution::None { LitKey { one_pass: None, ..key } } else { key };
-        let sizes = sizes_of(device, view, &lighting, settings);
+        let sizes = sizes_of(device, scene.shape(), view, &lighting, settings);
         let is_other_look = scene.look() != self.look;
         let mut begins_again = is_other_look || primary_of(settings) != self.primary;
         if key != self.key || sizes != self.frame.sizes {
@@ -388,11 +389,13 @@ fn primary_of(settings: &RenderSettings) -> PrimarySettings {
 
 fn sizes_of(
     device: &Device,
+    shape: DeviceShape,
     view: &View<'_>,
     lighting: &LightingData,
     settings: &RenderSettings,
 ) -> LitSizes {
-    LitSizes::new(&device.limits(), &view.film, lighting.mode, settings.sampling.samples)
+    let (shape, samples) = (shape.of_host(), settings.sampling.samples);
+    LitSizes::new(&device.limits(), shape, &view.film, lighting.mode, samples)
 }
 
 /// The tiles of a picture and their records.
@@ -417,7 +420,7 @@ async fn new_frame(
     view: &View<'_>,
     settings: &RenderSettings,
 ) -> Result<LitFrame, GpuError> {
-    let sizes = sizes_of(device, view, lighting, settings);
+    let sizes = sizes_of(device, scene.shape(), view, lighting, settings);
     let records = frames_of(device, scene, view, settings, sizes)?;
     let by = RecordedBy::Host { at_once: RECORDINGS };
     LitFrame::new((device, queue), passes, sizes, lighting, by, records).await

@@ -102,6 +102,7 @@ impl LitScene<'_> {
         let [scene, occluders] = [self.all, self.occluders].map(SceneBuffers::space);
         [(scene, all), (scene, traced), (occluders, traced)].map(|(space, groups)| {
             FrameParameters::of_tile(view, space, tile, groups, iteration_limit)
+                .in_order_of(self.all.shape())
         })
     }
 }

@@ -31,7 +31,8 @@ impl RenderPlan {
 
         let summary = SceneSummary::of(scene);
         let lighting = LightingData::new(settings, &summary, view.camera);
-        let sizes = LitSizes::new(limits, film, lighting.mode, settings.sampling.samples);
+        let sizes =
+            LitSizes::new(limits, device.shape(), film, lighting.mode, settings.sampling.samples);
         let tile_size = sizes.tile;
         let tile_count = tile_count(film, tile_size);
         let film_bytes = sizes.film_bytes();
@@ -108,6 +109,8 @@ fn shadow_buffers(scene: &Scene, plan: &AccelPlan) -> Vec<PlannedBuffer> {
 mod tests {
     use wgpu::{DeviceType, Limits};
 
+    use crate::gpu::device_shape::DeviceShape;
+
     use super::super::kernels::Mode;
     use super::*;
     use crate::accel::AccelChoice;
@@ -157,7 +160,7 @@ mod tests {
         all.filter(|buffer| buffer.name == name).map(|buffer| buffer.bytes).sum()
     }
 
-    const GPU: DeviceType = DeviceType::DiscreteGpu;
+    const GPU: DeviceType = DeviceType::IntegratedGpu;
 
     #[test]
     fn a_tile_takes_its_paths_and_every_pixel_its_sums() {
@@ -193,6 +196,17 @@ mod tests {
         assert_eq!(at_most(&sky_alone), 112 << 19);
     }
 
+    /// Large GPUs trace more paths together, as many as fit into a binding.
+    #[test]
+    fn a_gpu_with_memory_of_its_own_has_more_paths() {
+        let studio = &RenderSettings::studio();
+        let plan = |device| planned(1.0, 4096, studio, LayerSet::COLOR, device);
+        let [small, large] = [GPU, DeviceType::DiscreteGpu].map(plan);
+        assert!(bytes(&large, "paths") > bytes(&small, "paths"));
+        assert!(large.tile_count < small.tile_count);
+        assert!(bytes(&large, "paths") <= 128 << 20, "the limit of WebGPU");
+    }
+
     #[test]
     fn large_pictures_are_divided_into_tiles() {
         let plan = planned(1.0, 4096, &RenderSettings::studio(), LayerSet::COLOR, GPU);
@@ -201,7 +215,7 @@ mod tests {
         assert!(bytes(&plan, "sums") >= 48 << 24, "those of all tiles stay");
         let low = Limits { max_storage_buffer_binding_size: 1 << 20, ..Limits::default() };
         let film = Film::new(4096, 4096).unwrap();
-        let sizes = LitSizes::new(&low, &film, Mode::Studio, 16);
+        let sizes = LitSizes::new(&low, DeviceShape::of(GPU), &film, Mode::Studio, 16);
         assert!(sizes.path_bytes().max(sizes.film_bytes()) <= 1 << 20, "{sizes:?}");
     }
 

@@ -8,14 +8,16 @@ use super::records::{
     PIXELS_PER_VARIATION, QUEUE_HEAD, STUDIO_SLOTS,
 };
 use crate::camera::film::Film;
+use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::passes::tiles::WORKGROUP_SIDE;
-
-/// Maximum number of paths that are traced at a time. Their state then takes 56 to 80 MiB.
-const MAX_PATHS: u64 = 1 << 19;
 
 /// Number of samples of a pixel that are traced together, if not fewer are left. Each of them then costs less, because
 /// the sums are read and written once for all of them. Tiles become smaller in return.
 const TOGETHER: u32 = 4;
+
+/// Maximum number of workgroups in a row, which every WebGPU device allows. Without indirect dispatches, a dispatch over
+/// a list has one for every workgroup of a tile and each sample in flight.
+const MAX_GROUPS: u64 = 65_535;
 
 /// Sizes of the buffers that all tiles share, and of those of each tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,11 +32,17 @@ pub(in crate::gpu) struct LitSizes {
 
 impl LitSizes {
     /// The sizes for a film with at most `samples` samples of every pixel.
-    pub(in crate::gpu) fn new(limits: &Limits, film: &Film, mode: Mode, samples: u32) -> Self {
+    pub(in crate::gpu) fn new(
+        limits: &Limits,
+        shape: DeviceShape,
+        film: &Film,
+        mode: Mode,
+        samples: u32,
+    ) -> Self {
         let slots = slots(mode);
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_path = 16 * slots.max(FILM_SLOTS);
-        let max_paths = (binding / of_path).clamp(64, MAX_PATHS);
+        let max_paths = (binding / of_path).clamp(64, shape.max_paths);
         let max_pixels = (max_paths / u64::from(samples.clamp(1, TOGETHER))).max(64);
         let width = u64::from(film.width()).min((max_pixels / 8).max(8));
         let rows = (max_pixels / width).max(1);
@@ -43,7 +51,9 @@ impl LitSizes {
         // The tile is not larger than the film, so its sides fit into u32.
         let tile = [width as u32, rows.min(film.height().into()) as u32];
         let pixels = u64::from(tile[0]) * u64::from(tile[1]);
-        let in_flight = (max_paths / pixels).clamp(1, samples.max(1).into());
+        let groups = tile.map(|side| u64::from(side.div_ceil(WORKGROUP_SIDE)));
+        let max_layers = (MAX_GROUPS / (groups[0] * groups[1])).max(1);
+        let in_flight = (max_paths / pixels).clamp(1, samples.max(1).into()).min(max_layers);
         // There are not more than `samples`, so it fits into u32.
         Self { tile, in_flight: in_flight as u32, slots }
     }
@@ -55,7 +65,7 @@ impl LitSizes {
 
     /// Number of paths that the buffers have room for.
     pub(in crate::gpu) fn room(&self) -> u32 {
-        // There are at most MAX_PATHS, or the pixels of a recorded rectangle, so it fits into u32.
+        // There are at most `DeviceShape::max_paths`, or the pixels of a recorded rectangle, so it fits into u32.
         self.paths() as u32
     }
 
