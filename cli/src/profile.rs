@@ -26,7 +26,7 @@ static PROFILING: OnceLock<Profiling> = OnceLock::new();
 #[derive(Debug, Args)]
 pub(super) struct ProfileArgs {
     /// Say at the end where the time went: the phases of the program, and the passes of the device. With a file, also
-    /// write every phase and pass to it, as a trace (JSON) for ui.perfetto.dev or chrome://tracing
+    /// write every phase and pass to it, as a trace in the format of Chrome, for ui.perfetto.dev
     #[arg(
         long,
         value_name = "FILE.json",

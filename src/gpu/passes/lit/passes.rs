@@ -83,7 +83,7 @@ pub(super) enum SamplePasses {
     /// One pass takes whole samples.
     One(Pass),
     /// Several passes take samples step by step.
-    Steps(StepPasses),
+    Steps(Box<StepPasses>),
 }
 
 /// The passes that take samples step by step.
@@ -225,7 +225,7 @@ impl LitPasses {
         };
         let start = kernels::start_kernel(key.camera, key.mode);
         Ok(Self {
-            of_samples: SamplePasses::Steps(StepPasses {
+            of_samples: SamplePasses::Steps(Box::new(StepPasses {
                 start: build(start, &[frame, surfaces, lighting])?,
                 extend: (
                     extend(BrickPass::First)?,
@@ -233,7 +233,7 @@ impl LitPasses {
                 ),
                 shade,
                 accumulate: build(kernels::accumulate_kernel(key.mode), &[film])?,
-            }),
+            })),
             advance: build(kernels::advance_kernel(), &[advance])?,
             noise: build(kernels::noise_kernel(), &[film])?,
             layouts,
