@@ -146,8 +146,19 @@ impl<'a> Flow<'a> {
         self.recorder.record(encoder, step, slice);
     }
 
-    /// Submits the recorded commands, and waits until the previous submission has finished.
+    /// Submits the recorded commands, and waits until the previous submission has finished. Where the host's clock
+    /// measures passes, it waits for this one too, so that the time of a pass never includes that of the next.
     async fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+        self.submit(after).await?;
+        if !self.headless.submits_one_by_one() {
+            return Ok(());
+        }
+        let last = self.submitted.take();
+        self.wait_for(last).await
+    }
+
+    /// Submits the recorded commands, and waits until the previous submission has finished.
+    async fn submit(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -171,7 +182,7 @@ impl<'a> Flow<'a> {
         &mut self,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
-        self.send(&mut || Ok(())).await?;
+        self.submit(&mut || Ok(())).await?;
         let last = self.submitted.take();
         if let Some(Submitted { index, .. }) = &last {
             self.headless.wait(mapped, index.clone()).await?;
