@@ -149,7 +149,7 @@ impl<'a> Flow<'a> {
     /// Submits the recorded commands, and waits until the previous submission has finished. Where the host's clock
     /// measures passes, it waits for this one too, so that the time of a pass never includes that of the next.
     async fn send(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
-        self.submit(after).await?;
+        self.hand_over(after).await?;
         if !self.headless.submits_one_by_one() {
             return Ok(());
         }
@@ -158,7 +158,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Submits the recorded commands, and waits until the previous submission has finished.
-    async fn submit(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
+    async fn hand_over(&mut self, after: &mut After<'_>) -> Result<(), GpuError> {
         let Some(mut encoder) = self.encoder.take() else {
             return Ok(());
         };
@@ -182,7 +182,7 @@ impl<'a> Flow<'a> {
         &mut self,
         mapped: &[&wgpu::Buffer],
     ) -> Result<(), GpuError> {
-        self.submit(&mut || Ok(())).await?;
+        self.hand_over(&mut || Ok(())).await?;
         let last = self.submitted.take();
         if let Some(Submitted { index, .. }) = &last {
             self.headless.wait(mapped, index.clone()).await?;
