@@ -1,6 +1,6 @@
 //! `pinhole bench`: measures acceleration structures on an adapter, and shows whether the automatic choice is fastest.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context;
 
@@ -12,11 +12,13 @@ use super::device::{WantedAdapter, explained};
 use super::failure::Failure;
 use super::input::parse_size;
 use super::speak::{answer, tell};
+use super::with_scene::watch_upload;
 use super::{interrupt, memory, process, progress, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::gpu::{
     GpuError, Headless, PictureRequest, Query, RenderPlan, SceneBuffers, StructurePlans, TraceTime,
+    UploadStep,
 };
 use pinhole::image::LayerSet;
 use pinhole::render::RenderSettings;
@@ -114,15 +116,17 @@ fn measure(
         memory::readable(plan.device_bytes),
         memory::readable(plan.host_bytes),
     ));
-    let structures = plan.build(spheres);
-    let build = started.elapsed();
-    let structure = structures.accel.structure();
-
-    let started = Instant::now();
-    let buffers =
-        interrupt::on_device(|| headless.upload(spheres, &structures))?.map_err(failed)?;
-    drop(structures);
-    let upload = started.elapsed();
+    let mut times =
+        UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
+    let uploaded = interrupt::on_device(|| {
+        headless.upload_planned(spheres, &plan.structures(), &mut |progress| {
+            times.begin(Some(progress.step));
+            watch_upload(plan.accel.structure.name(), progress)
+        })
+    })?;
+    times.begin(None);
+    let buffers = uploaded.map_err(failed)?;
+    let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
 
     progress::stage(format!("{name}: first render, {}", structure.name()));
     let started = Instant::now();
@@ -173,6 +177,26 @@ fn measure(
             .then(|| device_bytes as f64 / spheres.len() as f64),
         peak_memory_bytes: process::peak_bytes(),
     })
+}
+
+/// How long building bricks took, and copying them to the device, each in total. Planning counts as building.
+struct UploadTimes {
+    build: Duration,
+    upload: Duration,
+    started: Instant,
+    step: Option<UploadStep>,
+}
+
+impl UploadTimes {
+    /// Ends a step and begins the next.
+    fn begin(&mut self, next: Option<UploadStep>) {
+        let elapsed = self.started.elapsed();
+        match self.step {
+            Some(UploadStep::Copying) => self.upload += elapsed,
+            _ => self.build += elapsed,
+        }
+        (self.started, self.step) = (Instant::now(), next);
+    }
 }
 
 /// Traces the whole picture several times.

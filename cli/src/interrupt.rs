@@ -41,6 +41,8 @@ enum Phase {
     Free,
     /// Work of a driver, whose threads must not be stopped abruptly.
     Device,
+    /// Work with a driver that has nothing to do for a while, which can be interrupted.
+    Rest,
 }
 
 fn state() -> MutexGuard<'static, State> {
@@ -97,6 +99,17 @@ pub(super) fn on_device<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     let mut state = state();
     state.phase = Phase::Free;
     if state.is_requested { Err(Failure::Stopped) } else { Ok(result) }
+}
+
+/// Says whether the driver has nothing to do during work with it, so that a signal may end the program.
+#[cfg(feature = "gpu")]
+pub(super) fn driver_rests(rests: bool) {
+    let mut state = state();
+    state.phase = match state.phase {
+        Phase::Free => Phase::Free,
+        Phase::Device | Phase::Rest if rests => Phase::Rest,
+        Phase::Device | Phase::Rest => Phase::Device,
+    };
 }
 
 /// Like [`on_device`], but also returns the result if the program was asked to end, and whether it was.

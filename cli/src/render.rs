@@ -34,14 +34,14 @@ use super::structure_flags::StructureFlags;
 use super::threads;
 use super::views::Views;
 #[cfg(feature = "gpu")]
-use super::with_scene::with_structures;
+use super::with_scene::{upload, watch_upload, with_structures};
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
 use pinhole::camera::View;
 use pinhole::cpu::{self, SearchTree};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, RenderPlan};
+use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch, Watch};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 
@@ -277,14 +277,24 @@ fn on_gpu(
     let Input { scene, film, settings, .. } = input;
     let is_lit = !settings.integrator.is_primary();
     let plan = |choice| plan(headless, input, views, layers, choice);
-    let rendered = with_structures(headless, scene, choice, plan, |structures| {
+    let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::on_device_keeping(|| {
-            let buffers = headless.upload(scene, &structures)?;
-            drop(structures);
+            let pixels = film.pixel_count();
+            if let (false, Views::One(view)) = (is_lit, views) {
+                let watching = Watching::new(*stop_rule, 1, pixels, false);
+                let name = plan.accel.structure.name();
+                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) =
+                    (&mut |progress| watch_upload(name, progress), &mut |progress| {
+                        watching.decide(progress)
+                    });
+                let picture =
+                    headless.render_planned(scene, plan, view, settings, layers, watches)?;
+                return Ok(Views::One((picture, watching)));
+            }
+            let buffers = upload(headless, scene, plan)?;
             progress::stage("preparing");
             views.try_each(|view| {
-                let pixels = film.pixel_count();
                 let watching = Watching::new(*stop_rule, views.count(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
                 let picture = headless.render_uploaded(&buffers, view, settings, layers, watch);

@@ -105,7 +105,7 @@ mod recorded {
     use crate::input::Source;
     use crate::speak::tell;
     use crate::verify_report::command_line;
-    use crate::with_scene::with_structures;
+    use crate::with_scene::{upload, with_structures};
     use crate::{interrupt, memory, progress, self_test, verify_lit, verify_paths};
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
@@ -154,10 +154,9 @@ mod recorded {
         let choice = choice(args.accel.accel);
         let encoding = memory::ENCODING_BYTES_PER_PIXEL;
         let plan = |choice| headless.plan_record(scene, view, choice, encoding);
-        let done = with_structures(&headless, scene, choice, plan, |structures| {
+        let done = with_structures(&headless, choice, plan, |plan| {
             interrupt::on_device(|| {
-                let buffers = headless.upload(scene, &structures)?;
-                drop(structures);
+                let buffers = upload(&headless, scene, plan)?;
                 progress::stage("preparing");
                 let watch = &mut |progress: &Progress| {
                     progress::tracing(progress.part);

@@ -64,7 +64,7 @@ mod rendered {
     use crate::failure::Failure;
     use crate::input::Input;
     use crate::views::Views;
-    use crate::with_scene::with_structures;
+    use crate::with_scene::{upload, with_structures};
     use crate::{interrupt, progress, render as job};
     use pinhole::accel::AccelChoice;
     use pinhole::gpu::Headless;
@@ -87,10 +87,9 @@ mod rendered {
         let layers = encoding.layers();
         let (view, views) = (input.view(), Views::of(input));
         let plan = |choice| job::plan(headless, input, &views, layers, choice);
-        let done = with_structures(headless, &input.scene, choice, plan, |structures| {
+        let done = with_structures(headless, choice, plan, |plan| {
             interrupt::on_device(|| {
-                let buffers = headless.upload(&input.scene, &structures)?;
-                drop(structures);
+                let buffers = upload(headless, &input.scene, plan)?;
                 progress::stage("rendering with light");
                 let watch = &mut |_: &_| interrupt::decide();
                 headless.render_uploaded(&buffers, &view, &settings, layers, watch)

@@ -86,7 +86,7 @@ mod recorded {
     use crate::failure::Failure;
     use crate::input::Input;
     use crate::views::Views;
-    use crate::with_scene::with_structures;
+    use crate::with_scene::{upload, with_structures};
     use crate::{interrupt, progress, render};
     use pinhole::accel::AccelChoice;
     use pinhole::gpu::Headless;
@@ -103,9 +103,8 @@ mod recorded {
         let Input { scene, settings, .. } = input;
         let (view, views) = (input.view(), Views::of(input));
         let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
-        let done = with_structures(headless, scene, choice, plan, |structures| {
-            let uploaded = interrupt::on_device(|| headless.upload(scene, &structures))?;
-            drop(structures);
+        let done = with_structures(headless, choice, plan, |plan| {
+            let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
             let buffers = match uploaded {
                 Ok(buffers) => buffers,
                 Err(error) => return Ok(Err(error)),

@@ -49,6 +49,14 @@ impl Structure {
         Self::WideTree,
     ];
 
+    /// The same structure, with nested grids if it is a grid and `is_nested`.
+    pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
+        match self {
+            Self::Grid(layout) if is_nested => Self::NestedGrid(layout),
+            other => other,
+        }
+    }
+
     /// The choice of a user that leads to this structure.
     #[must_use]
     pub const fn choice(self) -> AccelChoice {
@@ -100,6 +108,11 @@ pub struct Brick {
 }
 
 impl Brick {
+    /// Whether the index is a grid of which some cells have grids of their own.
+    pub(crate) fn is_nested(&self) -> bool {
+        matches!(&self.index, Index::Grid(grid) if grid.is_nested())
+    }
+
     /// Updates `nearest` with the nearest sphere of the brick.
     pub fn find_nearest(&self, ray: &RayF32, nearest: &mut Nearest) {
         let Self { index, spheres, ids } = self;

@@ -9,6 +9,7 @@ use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
 use super::grid_lists::BuiltLists;
 use super::grid_sort::{Lists, count, fill, map_ranges, sort_by_cell, total};
+use super::plan::MAX_FIRST_LEVEL;
 use crate::parallel::for_each;
 
 /// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
@@ -100,7 +101,7 @@ fn first_level(
     // Prevents a volume of zero for flat scenes.
     let sides = extent.max(Vec3::splat(longest * 1e-3));
     let volume = f64::from(sides.x) * f64::from(sides.y) * f64::from(sides.z);
-    let most_cells = budget.cells.min(MAX_CELLS / 2) as f64;
+    let most_cells = budget.cells.min(MAX_FIRST_LEVEL) as f64;
     let mut best: Option<(f64, f32)> = None;
     // From one cell to 1024 along the longest side, in steps of an eighth of an octave.
     for step in 0..=80_u8 {

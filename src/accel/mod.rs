@@ -8,6 +8,9 @@ pub(crate) mod ball;
 pub(crate) mod binary_tree;
 mod binary_tree_trace;
 mod brick;
+#[cfg(feature = "gpu")]
+mod brick_bounds;
+mod bricks;
 mod cells;
 mod divide;
 mod extent;
@@ -40,12 +43,17 @@ mod wide_tree_trace;
 pub(crate) mod wide_tree_visit;
 
 pub use brick::{Accel, Brick, Index, Structure};
+#[cfg(feature = "gpu")]
+pub(crate) use brick_bounds::BrickBounds;
+pub use bricks::Bricks;
 pub use grid::ListLayout;
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};
 pub use primitive::{BrickKind, Primitive};
 pub use statistics::SceneStatistics;
+#[cfg(feature = "gpu")]
+pub(crate) use statistics::margin_of;
 
 /// Constants that kernels share, for the test that compares both.
 #[cfg(all(test, feature = "gpu"))]

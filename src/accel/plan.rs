@@ -2,14 +2,12 @@
 
 use std::fmt;
 
-use super::binary_tree::{BinaryNode, BinaryTree};
-use super::brick::{Accel, Brick, Index, Structure};
-use super::divide::{Divided, divide};
-use super::grid::ListLayout;
-use super::grid_build::{BuiltGrid, GridBudget, build_grid};
+use super::binary_tree::BinaryNode;
+use super::brick::Structure;
+use super::grid::{ListLayout, MAX_CELLS};
+use super::grid_build::GridBudget;
 use super::statistics::SceneStatistics;
 use super::wide_node::WideNode;
-use super::wide_tree::WideTree;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
 
 /// The structure that a user chooses.
@@ -41,6 +39,9 @@ pub(crate) const LIST_LEN: usize = 3 << 14;
 
 /// The largest binding on most devices; larger lists could not be indexed with 30 bits.
 const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
+
+/// The largest number of cells of the first level of a grid; the others are left to the second level.
+pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
 
 /// The number of rays for each sphere below which making balls takes longer than they save: on lavapipe, 50 ns for
 /// each sphere and 13 ns for each ray of a million random spheres.
@@ -80,7 +81,7 @@ pub struct AccelPlan {
     /// The number of bricks.
     pub brick_count: usize,
     /// The limits for the grid of one brick.
-    budget: GridBudget,
+    pub(super) budget: GridBudget,
     /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
 }
@@ -121,12 +122,48 @@ impl AccelPlan {
         self.buffers.iter().map(|buffer| buffer.bytes).sum()
     }
 
-    /// The largest number of bytes of host memory that building needs, in addition to the scene itself.
+    /// The largest number of bytes of host memory that [`AccelPlan::build`] needs, in addition to the scene itself.
     #[must_use]
     pub fn host_bytes(&self) -> u64 {
-        let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
-        let structure: u64 = self.device_bytes();
-        let building = match self.structure {
+        self.dividing_bytes().max(self.device_bytes() + self.building_bytes())
+    }
+
+    /// The largest number of bytes of host memory that [`AccelPlan::bricks`] needs, in addition to the scene itself, if
+    /// each brick is dropped before the next is built. `left` is the number of bytes that something else keeps of a
+    /// brick that was dropped, for example a software device, and `copying` of the brick that was built last.
+    #[cfg(feature = "gpu")]
+    #[must_use]
+    pub(crate) fn host_bytes_by_brick(&self, left: u64, copying: u64) -> u64 {
+        let bricks = self.brick_count as u64;
+        let brick = self.device_bytes().div_ceil(bricks);
+        let one = brick + self.building_bytes().max(copying);
+        // The ids of bricks that have not been built.
+        let ids = |left: u64| if bricks > 1 { 4 * self.per_brick() * left } else { 0 };
+        // Each brick adds as much as the one before, so that either the first or the last needs the most.
+        let first = ids(bricks - 1) + one;
+        let last = one + (bricks - 1) * left;
+        self.dividing_bytes().max(first).max(last)
+    }
+
+    fn per_brick(&self) -> u64 {
+        self.statistics.count.div_ceil(self.brick_count) as u64
+    }
+
+    /// The number of bytes that dividing the spheres takes: their ids, and while they are cut in two, two copies of
+    /// them, of which one is in growing vectors.
+    fn dividing_bytes(&self) -> u64 {
+        let ids = 4 * self.statistics.count as u64;
+        match self.structure {
+            Structure::List => 0,
+            _ if self.brick_count == 1 => ids,
+            _ => 3 * ids,
+        }
+    }
+
+    /// The number of bytes that building a brick takes, in addition to the brick.
+    fn building_bytes(&self) -> u64 {
+        let per_brick = self.per_brick();
+        match self.structure {
             Structure::List => 0,
             // The spheres of a brick, their ids twice, and the builder's data for each of them; growing vectors leave
             // some memory unused.
@@ -136,57 +173,12 @@ impl AccelPlan {
                 let bytes = if layout == ListLayout::Balls { 12 } else { 8 };
                 per_brick * 24 + bytes * self.budget.listed as u64
             }
-        };
-        structure + building
-    }
-
-    /// Builds the planned structure; `spheres` must be those of the plan.
-    #[must_use]
-    pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
-        let (min, max) = self.statistics.inflated_bounds();
-        let margin = self.statistics.margin();
-        let per_brick = self.statistics.count.div_ceil(self.brick_count).max(1);
-        let divided = match self.structure {
-            // Without a structure, bricks are consecutive spheres in the order of ids.
-            Structure::List => Divided { parts: Vec::new(), may_part_equals: self.brick_count > 1 },
-            _ => divide(spheres, self.brick_count),
-        };
-        let parts = divided.parts.into_iter().filter(|ids| !ids.is_empty());
-        let bricks: Vec<Brick> = match self.structure {
-            Structure::List => spheres
-                .chunks(per_brick)
-                .zip((0_u32..).step_by(per_brick))
-                .map(|(spheres, first)| Brick {
-                    index: Index::List,
-                    spheres: spheres.to_vec(),
-                    ids: (first..first + spheres.len() as u32).collect(),
-                })
-                .collect(),
-            Structure::Grid(layout) | Structure::NestedGrid(layout) => {
-                let build = |ids: Vec<u32>| {
-                    let BuiltGrid { grid, spheres, ids } =
-                        build_grid(spheres, &ids, margin, layout, self.budget);
-                    Brick { index: Index::Grid(grid), spheres, ids }
-                };
-                parts.map(build).collect()
-            }
-            Structure::WideTree => build_trees(spheres, parts, |spheres| {
-                let tree = WideTree::build(spheres, margin);
-                (tree.ids().to_vec(), Index::WideTree(tree))
-            }),
-            Structure::BinaryTree => build_trees(spheres, parts, |spheres| {
-                let tree = BinaryTree::build(spheres, margin);
-                (tree.ids().to_vec(), Index::BinaryTree(tree))
-            }),
-        };
-        let structure = final_structure(self.structure, &bricks);
-        let bricks = or_empty(bricks);
-        Accel { structure, bricks, min, max, may_part_equals: divided.may_part_equals }
+        }
     }
 
     fn list_buffers(&self) -> Vec<PlannedBuffer> {
         let bricks = self.brick_count as u64;
-        let per_brick = self.statistics.count.div_ceil(self.brick_count) as u64;
+        let per_brick = self.per_brick();
         let listed = self.budget.listed as u64;
         let cells = self.budget.cells as u64;
         let mut buffers = vec![("spheres", 16 * per_brick)];
@@ -315,7 +307,9 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
             _ => cells.max(listed),
         };
         let grid = (4 * words).max(16 * count as u64);
-        grid.max(node_bytes(structure, count as u64)) <= binding_bytes
+        let bytes = grid.max(node_bytes(structure, count as u64));
+        // A grid with fewer cells than suit its spheres has longer lists, which cost more than another brick.
+        bytes <= binding_bytes && budget.cells <= MAX_FIRST_LEVEL
     };
     if structure == Structure::List {
         return LIST_LEN.min(most).max(1);
@@ -329,38 +323,41 @@ fn most_per_brick(structure: Structure, binding_bytes: u64) -> usize {
     low
 }
 
-/// The structure as built: it is nested if the grid of any brick is.
-fn final_structure(planned: Structure, bricks: &[Brick]) -> Structure {
-    let is_nested =
-        bricks.iter().any(|brick| matches!(&brick.index, Index::Grid(grid) if grid.is_nested()));
-    match planned {
-        Structure::Grid(layout) if is_nested => Structure::NestedGrid(layout),
-        planned => planned,
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Builds a tree for each part. `build` returns the order of the given spheres in the tree, and the tree.
-fn build_trees(
-    spheres: &[[f32; 4]],
-    parts: impl Iterator<Item = Vec<u32>>,
-    build: impl Fn(&[[f32; 4]]) -> (Vec<u32>, Index),
-) -> Vec<Brick> {
-    let brick = |ids: Vec<u32>| {
-        let own: Vec<[f32; 4]> = ids.iter().map(|id| spheres[*id as usize]).collect();
-        let (order, index) = build(&own);
-        Brick {
-            index,
-            spheres: order.iter().map(|shape_index| own[*shape_index as usize]).collect(),
-            ids: order.iter().map(|shape_index| ids[*shape_index as usize]).collect(),
+    /// However much a binding holds, bricks are only as large as suits the number of cells of a grid.
+    #[test]
+    fn the_largest_grids_have_as_many_cells_as_suit_them() {
+        for (mebibytes, least) in [(128, 8_300_000), (1024, 15_000_000), (2048, 15_000_000)] {
+            let binding_bytes = mebibytes << 20;
+            for layout in [ListLayout::Referenced, ListLayout::Balls] {
+                let structure = Structure::Grid(layout);
+                let most = most_per_brick(structure, binding_bytes);
+                let budget = grid_budget(structure, most, binding_bytes);
+                let unbound = grid_budget(structure, most, u64::MAX);
+                assert!(budget.cells <= MAX_FIRST_LEVEL, "{most} spheres, {budget:?}");
+                if layout == ListLayout::Referenced {
+                    assert!(most >= least, "{most} spheres in {mebibytes} MiB");
+                    assert_eq!(budget, unbound, "{mebibytes} MiB");
+                }
+            }
         }
-    };
-    parts.map(brick).collect()
-}
-
-/// Adds an empty brick if there are none, because kernels need at least one.
-fn or_empty(mut bricks: Vec<Brick>) -> Vec<Brick> {
-    if bricks.is_empty() {
-        bricks.push(Brick { index: Index::List, spheres: Vec::new(), ids: Vec::new() });
     }
-    bricks
+
+    /// Streaming needs less memory than building all, and no more than all of it for a single brick.
+    #[cfg(feature = "gpu")]
+    #[test]
+    fn one_brick_at_a_time_needs_less_memory() {
+        let spheres: Vec<[f32; 4]> = (0..3000).map(|i| [i as f32, 0.0, 0.0, 0.5]).collect();
+        let plan = |bytes| AccelPlan::new(&spheres, AccelChoice::Tree, bytes);
+        let (one, several) = (plan(1 << 27), plan(16 * 300));
+        assert_eq!(one.host_bytes_by_brick(0, 0), one.host_bytes());
+        assert!(several.brick_count >= 10);
+        assert!(several.host_bytes_by_brick(0, 0) < several.host_bytes() / 2);
+        // A software device keeps what was copied.
+        let brick = several.device_bytes() / several.brick_count as u64;
+        assert!(several.host_bytes_by_brick(brick, 0) > several.device_bytes());
+    }
 }

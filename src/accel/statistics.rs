@@ -68,11 +68,7 @@ impl SceneStatistics {
     /// positions of planes and cells by less than 6 u D; 2⁻¹⁸ D is 32 u D.
     #[must_use]
     pub fn margin(&self) -> f32 {
-        const PART: f32 = 1.0 / (1 << 18) as f32;
-        let diagonal = (self.max - self.min).length();
-        // Coordinates have a rounding error before any arithmetic.
-        let farthest = self.min.abs().max(self.max.abs()).max_element();
-        (diagonal * PART).max(farthest * (1.0 / (1 << 22) as f32))
+        margin_of(self.min, self.max)
     }
 
     /// The box to which rays are moved before they are traced.
@@ -81,6 +77,15 @@ impl SceneStatistics {
         let margin = 2.0 * self.margin();
         (self.min - margin, self.max + margin)
     }
+}
+
+/// The margin of a scene with this box, as [`SceneStatistics::margin`] explains it.
+pub(crate) fn margin_of(min: Vec3, max: Vec3) -> f32 {
+    const PART: f32 = 1.0 / (1 << 18) as f32;
+    let diagonal = (max - min).length();
+    // Coordinates have a rounding error before any arithmetic.
+    let farthest = min.abs().max(max.abs()).max_element();
+    (diagonal * PART).max(farthest * (1.0 / (1 << 22) as f32))
 }
 
 /// Estimates [`SceneStatistics::densest`] from a sample, of which several spheres must be in one cube.

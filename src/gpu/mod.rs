@@ -33,8 +33,11 @@ mod waiting;
 
 pub use error::GpuError;
 pub use headless::Headless;
-pub use headless::plan::{DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans};
-pub use headless::progress::{Decision, Picture, Progress, Watch};
+pub use headless::device_limits::DeviceLimits;
+pub use headless::plan::{HostPeak, PictureRequest, RenderPlan, StructurePlans};
+pub use headless::progress::{
+    Decision, Picture, Progress, UploadProgress, UploadStep, UploadWatch, Watch,
+};
 pub use headless::timer::TraceTime;
 pub use host::composite::{Composite, CompositePicture};
 pub use host::composite_options::{CompositeDepth, CompositeOptions, Coverage, TargetEncoding};
@@ -47,9 +50,10 @@ pub use host::pick::{PickError, Picked, PickedHit, Picker};
 pub use host::target_textures::TargetTextures;
 pub use kernels::{ComposedKernel, composed_kernels};
 pub use options::{HeadlessOptions, LimitChoice};
-pub use passes::frame::{DataTargets, Frame, Targets};
+pub use passes::frame::Frame;
 pub use passes::renderer::Renderer;
 pub use passes::renderer_options::{Query, RendererOptions};
+pub use passes::targets::{DataTargets, Targets};
 pub use profile::{PassClock, Profile, ProfilePhase, ProfileSpan, ProfileTotal, ProfileTrack};
 pub use scene::recolor::Recolor;
 pub use scene::scene_buffers::SceneBuffers;

@@ -38,8 +38,13 @@ pub(crate) struct Host {
 
 impl Host {
     pub(crate) fn new() -> Self {
+        Self::with_limits(wgpu::Limits::default())
+    }
+
+    pub(crate) fn with_limits(required_limits: wgpu::Limits) -> Self {
         let adapter = adapter::choose(None).unwrap();
-        let descriptor = wgpu::DeviceDescriptor::default();
+        let descriptor =
+            wgpu::DeviceDescriptor { required_limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
         Self { device, queue }
     }

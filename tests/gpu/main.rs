@@ -12,6 +12,7 @@ mod support;
 mod agreement;
 mod appearance;
 mod async_forms;
+mod bricks;
 mod compute;
 mod device;
 mod device_shape;
@@ -40,6 +41,7 @@ fn main() {
         let groups = [
             agreement::trials(),
             appearance::trials(),
+            bricks::trials(),
             async_forms::trials(),
             lens::trials(),
             light::trials(),

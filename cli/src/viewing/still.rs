@@ -18,7 +18,7 @@ use crate::device::{Opened, explained};
 use crate::failure::Failure;
 use crate::render;
 use crate::views::Views;
-use crate::with_scene::with_structures;
+use crate::with_scene::{upload, with_structures};
 
 /// Renders what is shown, on a device of its own.
 pub struct StillRenderer {
@@ -156,9 +156,8 @@ fn first_render(
     let input = &shown.input;
     let view = Views::One(input.view());
     let plan = |choice| render::plan(headless, input, &view, layers, choice);
-    let done = with_structures(headless, &input.scene, choice, plan, |structures| {
-        let uploaded = headless.upload(&input.scene, &structures);
-        drop(structures);
+    let done = with_structures(headless, choice, plan, |plan| {
+        let uploaded = upload(headless, &input.scene, plan);
         Ok(uploaded.and_then(|buffers| {
             let picture = render(&buffers)?;
             Ok((buffers, picture))

@@ -7,7 +7,8 @@ use wgpu::Adapter;
 use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::progress::{Picture, Watch};
+use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
+use crate::gpu::headless::progress::{Picture, UploadWatch, Watch};
 use crate::gpu::headless::timer::TraceTime;
 use crate::gpu::options::HeadlessOptions;
 use crate::gpu::passes::renderer_options::Query;
@@ -54,6 +55,22 @@ impl Headless {
         block_on(self.upload_async(scene, structures))
     }
 
+    /// Builds the planned structures of a scene and copies them to the device, brick by brick. Each brick is dropped
+    /// before the next is built, so that this needs less memory than [`Headless::upload`]. `watch` is called before each
+    /// step. The plans come from [`RenderPlan::structures`](crate::gpu::RenderPlan::structures).
+    ///
+    /// # Errors
+    /// If the scene does not fit into the device's memory or limits, or if the device fails; [`GpuError::Stopped`] if
+    /// `watch` stops the copy.
+    pub fn upload_planned(
+        &self,
+        scene: &Scene,
+        plans: &StructurePlans,
+        watch: &mut UploadWatch<'_>,
+    ) -> Result<SceneBuffers, GpuError> {
+        block_on(self.upload_planned_async(scene, plans, watch))
+    }
+
     /// Renders a picture.
     ///
     /// A picture that exceeds the device's limits is rendered in tiles, and a scene that exceeds them is divided into
@@ -71,6 +88,26 @@ impl Headless {
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
         block_on(self.render_async(scene, view, settings, layers))
+    }
+
+    /// Builds the planned structures of a scene and renders one picture, like [`Headless::upload_planned`] and
+    /// [`Headless::render_uploaded`], which call the two callbacks.
+    ///
+    /// If a picture by primary rays is a single tile and the scene has several bricks, each brick is traced as soon as
+    /// it is on the device, and dropped. Bricks that the picture does not show are not built.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
+    pub fn render_planned(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        watches: (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Picture, GpuError> {
+        block_on(self.render_planned_async(scene, plan, view, settings, layers, watches))
     }
 
     /// Renders a picture of a scene that is already on this device. `watch` is called with the progress after every

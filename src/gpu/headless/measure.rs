@@ -59,7 +59,7 @@ impl Headless {
             for part in frame.parts().collect::<Vec<_>>() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
-                    frame.set_first_group(self.queue(), part.band, groups.first);
+                    frame.set_first_group(self.queue(), part.slot, groups.first);
                     let mut encoder = self.encoder();
                     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
                         label: Some("pinhole"),

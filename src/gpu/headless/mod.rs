@@ -6,9 +6,12 @@
 mod blocking;
 pub(in crate::gpu) mod denoise;
 pub(in crate::gpu) mod derived;
+pub(in crate::gpu) mod device_limits;
+pub(in crate::gpu) mod hidden_bricks;
 pub(in crate::gpu) mod lit_flow;
 pub(in crate::gpu) mod lit_picture;
 pub(in crate::gpu) mod measure;
+pub(in crate::gpu) mod one_picture;
 pub(in crate::gpu) mod path_recording;
 pub(in crate::gpu) mod plan;
 pub(in crate::gpu) mod planning;
@@ -23,6 +26,7 @@ pub(in crate::gpu) mod renderers;
 pub(in crate::gpu) mod submission_size;
 pub(in crate::gpu) mod tile_textures;
 pub(in crate::gpu) mod timer;
+pub(in crate::gpu) mod uploading;
 pub(in crate::gpu) mod waiting;
 
 use std::convert::Infallible;
@@ -31,7 +35,7 @@ use std::time::Duration;
 
 use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
 
-use crate::accel::{Accel, AccelChoice};
+use crate::accel::AccelChoice;
 use crate::camera::View;
 use crate::gpu::adapter;
 use crate::gpu::device_shape::DeviceShape;
@@ -39,18 +43,15 @@ use crate::gpu::error::GpuError;
 use crate::gpu::faults::Faults;
 use crate::gpu::headless::plan::RenderPlan;
 use crate::gpu::headless::profiler::Profiler;
-use crate::gpu::headless::progress::{Picture, Watch, go_on};
+use crate::gpu::headless::progress::{Picture, UploadWatch, Watch, go_on};
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::waiting::Turns;
 use crate::gpu::options::{HeadlessOptions, required_limits, wanted_features};
 use crate::gpu::passes::lit::{LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::scene::scene_summary::SceneSummary;
-use crate::gpu::scene::shape_ids::ShapeIds;
-use crate::gpu::scene::structures::{Structures, with_retries_async};
+use crate::gpu::scene::structures::with_retries_async;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use crate::image::{Image, LayerSet};
 use crate::render::RenderSettings;
@@ -199,44 +200,6 @@ impl Headless {
         .await
     }
 
-    /// Copies a scene to the device like [`Headless::upload`], without blocking the thread while the device works.
-    ///
-    /// # Errors
-    /// The same as for [`Headless::upload`].
-    pub async fn upload_async(
-        &self,
-        scene: &Scene,
-        structures: &Structures,
-    ) -> Result<SceneBuffers, GpuError> {
-        let Structures { accel, occluders } = structures;
-        // This renderer only provides the bind group layouts. Equal layouts of one device are compatible.
-        let options = RendererOptions {
-            cameras: Vec::new(),
-            structures: [accel].into_iter().chain(occluders).map(Accel::structure).collect(),
-            device_type: Some(self.info.device_type),
-            ..RendererOptions::default()
-        };
-        self.alone(async |_: &mut Renderers| {
-            let _phase = self.phase("upload");
-            let renderer = Renderer::new_async(&self.device, &options).await?;
-            let (device, queue) = (&self.device, &self.queue);
-            let flush = async || {
-                let submission = queue.submit([]);
-                self.wait(&[], submission).await
-            };
-            let (summary, ids) = (SceneSummary::of(scene), ShapeIds::of_all(scene, accel));
-            let all = SceneBuffers::upload(&renderer, device, queue, summary, accel, &ids, flush);
-            let all = all.await?;
-            let Some(accel) = occluders else {
-                return Ok(all);
-            };
-            let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-            let some = SceneBuffers::upload(&renderer, device, queue, summary, accel, &ids, flush);
-            Ok(all.with_occluders(some.await?))
-        })
-        .await
-    }
-
     /// Renders a picture like [`Headless::render`], without blocking the thread while the device works. Other work of
     /// the device waits for its turn.
     ///
@@ -251,10 +214,20 @@ impl Headless {
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
         let plan = |choice| self.plan(scene, view, settings, layers, choice, 0);
-        let work = async |buffers: &SceneBuffers| {
-            self.render_uploaded_async(buffers, view, settings, layers, &mut go_on).await
-        };
-        Ok(self.with_uploaded(scene, plan, work).await?.image)
+        let done: Result<_, Infallible> = with_retries_async(
+            AccelChoice::Auto,
+            plan,
+            |_| {},
+            async |plan: &RenderPlan| {
+                let watches: (&mut UploadWatch<'_>, &mut Watch<'_>) = (&mut go_on, &mut go_on);
+                Ok(self.render_planned_async(scene, plan, view, settings, layers, watches).await)
+            },
+        )
+        .await;
+        match done {
+            Ok(done) => Ok(done?.image),
+            Err(never) => match never {},
+        }
     }
 
     /// Uploads a scene in the structures that suit it and calls `work` with it. If rays need too many steps in these
@@ -270,12 +243,8 @@ impl Headless {
             plan,
             |_| {},
             async |plan: &RenderPlan| {
-                let phase = self.phase("build");
-                let structures = plan.build(scene);
-                drop(phase);
-                let buffers = self.upload_async(scene, &structures).await;
-                drop(structures);
-                Ok(match buffers {
+                let plans = plan.structures();
+                Ok(match self.upload_planned_async(scene, &plans, &mut go_on).await {
                     Ok(buffers) => work(&buffers).await,
                     Err(error) => Err(error),
                 })
@@ -379,6 +348,12 @@ impl Headless {
     pub(in crate::gpu) fn start(&self, encoder: CommandEncoder) -> wgpu::SubmissionIndex {
         let _phase = self.phase("submit");
         self.queue.submit([encoder.finish()])
+    }
+
+    /// Submits the copies that are queued, and waits until they are done and their memory is free.
+    pub(in crate::gpu) async fn flush(&self) -> Result<(), GpuError> {
+        let submission = self.queue.submit([]);
+        self.wait(&[], submission).await
     }
 
     /// Submits an encoder, and waits until it has finished and the buffers are mapped.

@@ -1,12 +1,12 @@
 //! Planning the memory that a render needs on the device and on the host, before any of it is allocated.
 
-use wgpu::{DeviceType, Limits};
+use wgpu::Limits;
 
 use crate::accel::{AccelPlan, PlannedBuffer, Structure};
 use crate::camera::View;
 use crate::camera::film::Film;
-use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::GpuError;
+use crate::gpu::headless::device_limits::DeviceLimits;
 use crate::gpu::headless::tile_textures;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
 use crate::gpu::passes::emitter_table;
@@ -82,27 +82,6 @@ pub struct StructurePlans {
     pub occluders: Option<AccelPlan>,
 }
 
-/// The properties of a device that bound the size of pictures and scenes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DeviceLimits {
-    /// Limits of the device as wgpu reports them.
-    pub limits: Limits,
-    /// The type of the device. A software device uses host memory as its own.
-    pub device_type: DeviceType,
-}
-
-impl DeviceLimits {
-    /// The order and the amounts of work that suit the device.
-    pub(in crate::gpu) fn shape(&self) -> DeviceShape {
-        DeviceShape::of(self.device_type)
-    }
-
-    /// Number of bytes of host memory that `bytes` on the device occupy.
-    pub(in crate::gpu) fn in_host(&self, bytes: u64) -> u64 {
-        if self.device_type == DeviceType::Cpu { bytes } else { 0 }
-    }
-}
-
 impl RenderPlan {
     /// Plans a picture of primary rays.
     pub(in crate::gpu) fn of_primary(
@@ -141,8 +120,6 @@ impl RenderPlan {
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| device.in_host(bytes);
-        // The copy of one brick is queued at a time.
-        let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
         // Rays, hits and verdicts, of which a second copy exists while parts are joined; and the picture of the second
         // render.
         let judged =
@@ -155,8 +132,8 @@ impl RenderPlan {
         let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let moments = [
-            (HostPeak::Building, accel.host_bytes()),
-            (HostPeak::Uploading, accel.device_bytes() + queued + in_host(scene_bytes)),
+            (HostPeak::Building, device.building_bytes(&accel, &scene_buffers)),
+            (HostPeak::Uploading, device.uploading_bytes(&accel, &scene_buffers)),
             (HostPeak::Checking, checking),
             (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
@@ -295,6 +272,8 @@ pub(in crate::gpu) fn total(buffers: &[PlannedBuffer]) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use wgpu::DeviceType;
+
     use super::*;
     use crate::accel::AccelChoice;
     use crate::camera::PinholeCamera;

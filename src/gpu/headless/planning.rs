@@ -3,7 +3,8 @@
 use crate::accel::{AccelChoice, AccelPlan};
 use crate::camera::View;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::plan::{DeviceLimits, PictureRequest, RenderPlan, StructurePlans};
+use crate::gpu::headless::device_limits::DeviceLimits;
+use crate::gpu::headless::plan::{PictureRequest, RenderPlan, StructurePlans};
 use crate::gpu::quirks;
 use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::image::LayerSet;

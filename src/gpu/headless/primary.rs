@@ -17,7 +17,7 @@ use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::pass_times::PassTimes;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::{Groups, tiles};
-use crate::gpu::passes::visible_region::traced_pixels;
+use crate::gpu::passes::visible_bricks::traced_pixels;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::{Image, LayerSet};
 use crate::render::PrimarySettings;
@@ -79,7 +79,7 @@ impl Headless {
             for part in frame.parts().collect::<Vec<_>>() {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
-                    frame.set_first_group(self.queue(), part.band, groups.first);
+                    frame.set_first_group(self.queue(), part.slot, groups.first);
                     let mut pass = begin_pass(&mut encoder, &mut times, "trace");
                     let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
@@ -124,7 +124,7 @@ impl Headless {
 }
 
 /// Begins a compute pass, and notes it in `times`.
-fn begin_pass<'a>(
+pub(in crate::gpu) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     times: &mut PassTimes,
     name: &'static str,

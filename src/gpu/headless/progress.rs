@@ -37,8 +37,44 @@ pub enum Decision {
 /// Callback that is called with the progress after every submission, and decides how the render continues.
 pub type Watch<'a> = dyn FnMut(&Progress) -> Decision + 'a;
 
-/// A [`Watch`] that always continues.
-pub(in crate::gpu) fn go_on(_: &Progress) -> Decision {
+/// The progress of copying a scene to a device brick by brick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct UploadProgress {
+    /// What is done next.
+    pub step: UploadStep,
+    /// The number of the brick, from 0 on.
+    pub brick: usize,
+    /// How many bricks there are.
+    pub bricks: usize,
+}
+
+/// A step of copying a brick to a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UploadStep {
+    /// The host builds the brick, while the device has nothing to do.
+    Building,
+    /// The brick is copied to the device.
+    Copying,
+}
+
+/// Callback that is called before each step of copying a scene, and decides whether it goes on: [`Decision::Finish`]
+/// and [`Decision::Stop`] end it with an error.
+pub type UploadWatch<'a> = dyn FnMut(&UploadProgress) -> Decision + 'a;
+
+impl UploadProgress {
+    /// Calls `watch`, and returns an error if it stops.
+    pub(in crate::gpu) fn tell(self, watch: &mut UploadWatch<'_>) -> Result<(), GpuError> {
+        match watch(&self) {
+            Decision::GoOn | Decision::MeasureNoise => Ok(()),
+            Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
+        }
+    }
+}
+
+/// A [`Watch`] or an [`UploadWatch`] that always continues.
+pub(in crate::gpu) fn go_on<T>(_: &T) -> Decision {
     Decision::GoOn
 }
 

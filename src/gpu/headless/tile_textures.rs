@@ -6,7 +6,7 @@ use crate::accel::PlannedBuffer;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::derived::Derived;
 use crate::gpu::headless::readback::{ReadableBuffer, ReadableTexture};
-use crate::gpu::passes::frame::{DataTargets, Targets};
+use crate::gpu::passes::targets::{DataTargets, Targets};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records::{self, NO_HIT};

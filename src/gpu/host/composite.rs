@@ -7,7 +7,7 @@ use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::host::composite_options::{CompositeOptions, Coverage, TargetEncoding};
 use crate::gpu::host::host_view::HostView;
-use crate::gpu::passes::frame::Targets;
+use crate::gpu::passes::targets::Targets;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT};
 use crate::gpu::shader::layouts::uniform;
 use crate::gpu::shader::{Kernel, Part, part};

@@ -6,7 +6,7 @@ use crate::camera::{CameraKind, HostCamera};
 use crate::gpu::checks::{Checks, scoped};
 use crate::gpu::error::GpuError;
 use crate::gpu::host::host_view::HostView;
-use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::frame::{BandBrick, Frame, Slot};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::layouts::uniform;
@@ -123,20 +123,22 @@ impl DepthTest {
         found.filter(|_| renderer.continues_hits(camera)).map(|(_, pipeline)| pipeline)
     }
 
-    /// Records a pass over the traced pixels of a band.
+    /// Records a pass over the pixels of a band in which the scene may be visible.
     fn record(
         pipeline: &ComputePipeline,
         pass: &mut ComputePass<'_>,
         frame: &Frame,
-        part: BandBrick,
+        band: usize,
         depth: &HostDepth,
     ) {
-        let [width, height] = part.groups.size;
-        if part.groups.count() == 0 {
+        let slot = Slot::of_scene(band);
+        let groups = frame.traced_groups(slot);
+        if groups.count() == 0 {
             return;
         }
+        let [width, height] = groups.size;
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
+        pass.set_bind_group(0, frame.group(slot), &[]);
         pass.set_bind_group(1, &depth.group, &[]);
         pass.dispatch_workgroups(width, height, 1);
     }
@@ -261,11 +263,11 @@ impl Renderer {
         });
         for part in frame.parts() {
             if let Some(limit) = limit.filter(|_| part.is_first_of_band) {
-                DepthTest::record(limit, &mut pass, frame, part, depth);
+                DepthTest::record(limit, &mut pass, frame, part.band, depth);
             }
             self.record_trace(&mut pass, scene, frame, traced(part))?;
             if part.is_last_of_band {
-                DepthTest::record(&test.hide, &mut pass, frame, part, depth);
+                DepthTest::record(&test.hide, &mut pass, frame, part.band, depth);
                 self.record_shade(&mut pass, scene, frame, part.band)?;
             }
         }

@@ -10,7 +10,7 @@ use crate::camera::View;
 use crate::geometry::ray::Ray;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::frame::Targets;
+use crate::gpu::passes::targets::Targets;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 use crate::image::NO_ID;

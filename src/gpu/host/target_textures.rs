@@ -4,8 +4,8 @@ use wgpu::{Device, TextureFormat, TextureUsages, TextureView};
 
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::frame::{DataTargets, Targets};
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::targets::{DataTargets, Targets};
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;

@@ -1,44 +1,24 @@
 //! The data of primary rays that change from picture to picture: targets, view and settings.
 
-use wgpu::{BindGroup, Buffer, Device, Queue, TextureView};
+use std::collections::HashMap;
+
+use wgpu::{BindGroup, Buffer, Device, Queue};
 
 use crate::camera::{CameraKind, View};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::bands::{BandBuffers, rows_per_band};
-use crate::gpu::passes::order::nearest_first;
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::targets::{Targets, checked_targets, describe_size};
 use crate::gpu::passes::tiles::{self, Groups, Tile};
-use crate::gpu::passes::visible_region::VisibleRegion;
+use crate::gpu::passes::visible_bricks::VisibleBricks;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
-use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
-use crate::gpu::shader::records;
+use crate::gpu::shader::formats::ColorTarget;
+use crate::gpu::shader::records::{self, FrameParameters};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::gpu::waiting::block_on;
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::verify::RequestedCamera;
-
-/// Textures of the caller that a picture is written to. All must be two-dimensional, of the same size, and have the
-/// usage `STORAGE_BINDING`.
-#[derive(Clone, Copy, Debug)]
-pub struct Targets<'a> {
-    /// Texture for the colour, in the format of the renderer's [`ColorTarget`](crate::gpu::ColorTarget).
-    pub color: &'a TextureView,
-    /// Textures for the data layers. They must be given if and only if the renderer was built with `data_layers`.
-    pub data: Option<DataTargets<'a>>,
-}
-
-/// Textures for the data layers.
-#[derive(Clone, Copy, Debug)]
-pub struct DataTargets<'a> {
-    /// Texture for the distance along the ray in scene units, in the format `R32Float`. A miss is 1e30.
-    pub depth: &'a TextureView,
-    /// Texture for the unit normal in world space, which points away from the sphere's centre, in the format
-    /// `Rgba32Float`. A miss is zero.
-    pub normal: &'a TextureView,
-    /// Texture for the index of the sphere in input order, in the format `R32Uint`. A miss is `u32::MAX`.
-    pub id: &'a TextureView,
-}
 
 /// A view that is rendered to a set of targets. A recorded frame must be submitted before its view is set again.
 #[derive(Debug)]
@@ -47,13 +27,15 @@ pub struct Frame {
     data_layers: bool,
     /// The rays of the pixels of a band, if they are kept.
     rays: Option<Buffer>,
-    /// One record for each band, at multiples of `stride` bytes.
+    /// One record for each slot of each band, at multiples of `stride` bytes: first slot 0 of all bands, then slot 1.
     records: Buffer,
     hits: Buffer,
     stride: usize,
     rows_per_band: u32,
-    /// Bind group 0 of every kernel, one for each band. All bands share one buffer of hits.
-    band_groups: Vec<BindGroup>,
+    /// Bind group 0 of every kernel, one for each record. All bands share one buffer of hits.
+    groups: Vec<BindGroup>,
+    /// Number of bands that the targets are divided into.
+    bands: usize,
     target_group: BindGroup,
     size: [u32; 2],
     view: Option<SetView>,
@@ -70,20 +52,42 @@ pub(in crate::gpu) struct SetView {
     pub(in crate::gpu) scene: SceneId,
     /// The sizes of the bands, in the order in which they are rendered.
     pub(in crate::gpu) bands: Vec<[u32; 2]>,
-    records: Vec<records::FrameParameters>,
-    /// The bricks in the order in which they are traced.
-    order: Vec<usize>,
+    records: HashMap<Slot, FrameParameters>,
+    parts: Vec<BandBrick>,
 }
+
+/// The place of a record of a frame. Slot 0 of a band is the record of the region in which the scene may be visible, in
+/// which the first brick is traced and all are shaded. The next bricks of the band have the other slots, as many as
+/// there are, and then slot 0 again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) struct Slot {
+    pub(in crate::gpu) band: usize,
+    number: usize,
+}
+
+/// Number of bricks that have a record of their own in each band of a frame. All have up to 260 million spheres, in
+/// bindings of 128 MiB.
+const SLOTS: usize = 32;
 
 /// The tracing of one brick for one band.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct BandBrick {
     pub(in crate::gpu) band: usize,
     pub(in crate::gpu) brick: usize,
+    /// The record of the workgroups.
+    pub(in crate::gpu) slot: Slot,
+    /// The workgroups, counted from the first of the record.
     pub(in crate::gpu) groups: Groups,
     pub(in crate::gpu) is_first_of_band: bool,
     pub(in crate::gpu) is_last_of_band: bool,
     pub(in crate::gpu) is_last: bool,
+}
+
+impl Slot {
+    /// The record of the region in which the scene may be visible in a band.
+    pub(in crate::gpu) fn of_scene(band: usize) -> Self {
+        Self { band, number: 0 }
+    }
 }
 
 impl Frame {
@@ -121,11 +125,12 @@ impl Frame {
         let band = BandBuffers::new(&limits, size, keeps_rays);
         check_storage_size(device, "the buffer of hits", band.hits)?;
         check_storage_size(device, "the buffer of rays", band.rays.unwrap_or(0))?;
-        let record_size = size_of::<records::FrameParameters>();
+        let record_size = size_of::<FrameParameters>();
         let alignment = limits.min_uniform_buffer_offset_alignment as usize;
         let stride = record_size.next_multiple_of(alignment);
         let bands = size[1].div_ceil(rows_per_band) as usize;
-        let (records, hits, rays, status, band_groups, target_group) = scoped(device, || {
+        let slots = bands * if renderer.several_bricks { SLOTS } else { 1 };
+        let (records, hits, rays, status, groups, target_group) = scoped(device, || {
             let status = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole status"),
                 size: size_of::<records::Status>() as u64,
@@ -136,7 +141,7 @@ impl Frame {
             });
             let records = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("pinhole frame"),
-                size: (bands * stride) as u64,
+                size: (slots * stride) as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
@@ -152,9 +157,9 @@ impl Frame {
             };
             let hits = of_pixels("pinhole hits", band.hits);
             let rays = band.rays.map(|bytes| of_pixels("pinhole rays", bytes));
-            let band_group = |band| {
+            let group = |slot| {
                 let buffers = [&hits, &status].into_iter().chain(&rays);
-                let resources = std::iter::once(part(&records, band * stride, record_size))
+                let resources = std::iter::once(part(&records, slot * stride, record_size))
                     .chain(buffers.map(Buffer::as_entire_binding));
                 let entries: Vec<_> = (0..)
                     .zip(resources)
@@ -166,7 +171,7 @@ impl Frame {
                     entries: &entries,
                 })
             };
-            let band_groups = (0..bands).map(band_group).collect();
+            let groups = (0..slots).map(group).collect();
             let entries: Vec<_> = (0..)
                 .zip(views)
                 .map(|(binding, view)| wgpu::BindGroupEntry {
@@ -179,7 +184,7 @@ impl Frame {
                 layout: &renderer.layouts.targets,
                 entries: &entries,
             });
-            (records, hits, rays, status, band_groups, target_group)
+            (records, hits, rays, status, groups, target_group)
         })
         .await?;
         let Renderer { color, data_layers, .. } = *renderer;
@@ -191,13 +196,14 @@ impl Frame {
             hits,
             stride,
             rows_per_band,
-            band_groups,
+            groups,
+            bands,
             target_group,
             size,
             view: None,
             status,
             iteration_limit: iteration_limit(device),
-            bytes: band.bytes() + (bands * stride) as u64,
+            bytes: band.bytes() + (slots * stride) as u64,
         })
     }
 
@@ -255,63 +261,83 @@ impl Frame {
         tile: Tile,
         primary: &PrimarySettings,
     ) {
-        let (camera, space) = (RequestedCamera::of(view.camera), scene.space());
-        let region = VisibleRegion::of(view, space);
+        let visible = VisibleBricks::of(view, scene.space(), &scene.brick_bounds());
+        self.set_bricks(queue, scene, &visible, view, tile, primary);
+    }
+
+    /// Sets a view like [`Frame::set_tile`], with bricks that need not all be on the device yet.
+    pub(in crate::gpu) fn set_bricks(
+        &mut self,
+        queue: &Queue,
+        scene: &SceneBuffers,
+        visible: &VisibleBricks,
+        view: &View<'_>,
+        tile: Tile,
+        primary: &PrimarySettings,
+    ) {
+        let space = scene.space();
+        let camera = RequestedCamera::of(view.camera);
         let bands: Vec<Tile> = tiles::bands(tile, self.rows_per_band).collect();
-        let limit = self.iteration_limit;
-        let records: Vec<_> = bands
-            .iter()
-            .map(|band| {
-                let traced = region.groups_of(*band);
-                records::FrameParameters::new(
-                    &camera, space, &view.film, *band, traced, primary, limit,
-                )
-                .in_order_of(scene.shape())
-            })
-            .collect();
-        let mut bytes = vec![0_u8; bands.len() * self.stride];
-        for (target, record) in bytes.chunks_mut(self.stride).zip(&records) {
-            target[..size_of::<records::FrameParameters>()]
+        let device_shape = scene.shape();
+        let slots = self.groups.len() / self.bands;
+        let (mut records, mut parts) = (HashMap::new(), Vec::new());
+        for (band, tile) in bands.iter().enumerate() {
+            let of_band = visible.parts_of(*tile);
+            let scene = of_band.first().map_or(Groups::NONE, |(_, groups)| *groups);
+            for (position, (brick, groups)) in of_band.iter().enumerate() {
+                let has_own = position < slots;
+                let slot = Slot { band, number: if has_own { position } else { 0 } };
+                let traced = if has_own { *groups } else { scene };
+                records.entry(slot).or_insert_with(|| {
+                    let limit = self.iteration_limit;
+                    FrameParameters::new(&camera, space, &view.film, *tile, traced, primary, limit)
+                        .in_order_of(device_shape)
+                });
+                let is_last_of_band = position + 1 == of_band.len();
+                parts.push(BandBrick {
+                    band,
+                    brick: *brick,
+                    slot,
+                    groups: Groups { first: [0, 0], size: traced.size },
+                    is_first_of_band: position == 0,
+                    is_last_of_band,
+                    is_last: is_last_of_band && band + 1 == bands.len(),
+                });
+            }
+        }
+        let used = records.keys().map(|slot| self.place(*slot) + 1).max().unwrap_or(0);
+        let mut bytes = vec![0_u8; used * self.stride];
+        for (slot, record) in &records {
+            let start = self.place(*slot) * self.stride;
+            bytes[start..start + size_of::<FrameParameters>()]
                 .copy_from_slice(bytemuck::bytes_of(record));
         }
         queue.write_buffer(&self.records, 0, &bytes);
-        let boxes = scene.bricks().iter().map(|brick| brick.center_box);
-        self.view = Some(SetView {
-            camera: camera.kind,
-            scene: scene.id(),
-            bands: bands.into_iter().map(|band| band.size).collect(),
-            records,
-            order: nearest_first(boxes, view.camera, space),
-        });
+        let bands = bands.into_iter().map(|band| band.size).collect();
+        let (camera, scene) = (camera.kind, scene.id());
+        self.view = Some(SetView { camera, scene, bands, records, parts });
     }
 
-    /// Queues the index of the first workgroup of the slice of a band that is traced next.
-    pub(in crate::gpu) fn set_first_group(&mut self, queue: &Queue, band: usize, first: [u32; 2]) {
-        let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(band)) else {
+    /// The number of a record in the buffer of records.
+    fn place(&self, Slot { band, number }: Slot) -> usize {
+        number * self.bands + band
+    }
+
+    /// Queues the index of the first workgroup of the slice of a part that is traced next.
+    pub(in crate::gpu) fn set_first_group(&mut self, queue: &Queue, slot: Slot, first: [u32; 2]) {
+        let start = (self.place(slot) * self.stride) as u64;
+        let Some(record) = self.view.as_mut().and_then(|view| view.records.get_mut(&slot)) else {
             return;
         };
         if record.first_group != first {
             record.first_group = first;
-            let bytes = bytemuck::bytes_of(record);
-            queue.write_buffer(&self.records, (band * self.stride) as u64, bytes);
+            queue.write_buffer(&self.records, start, bytemuck::bytes_of(record));
         }
     }
 
     /// The bricks and bands to be traced for the view, in order.
     pub(in crate::gpu) fn parts(&self) -> impl Iterator<Item = BandBrick> + '_ {
-        self.view.iter().flat_map(|view| {
-            let (band_count, brick_count) = (view.records.len(), view.order.len());
-            view.records.iter().enumerate().flat_map(move |(band, record)| {
-                view.order.iter().enumerate().map(move |(position, brick)| BandBrick {
-                    band,
-                    brick: *brick,
-                    groups: Groups { first: [0, 0], size: record.traced_size },
-                    is_first_of_band: position == 0,
-                    is_last_of_band: position + 1 == brick_count,
-                    is_last: position + 1 == brick_count && band + 1 == band_count,
-                })
-            })
-        })
+        self.view.iter().flat_map(|view| view.parts.iter().copied())
     }
 
     /// Records commands that clear the hits, and the rays if they are kept.
@@ -372,9 +398,18 @@ impl Frame {
         self.size
     }
 
-    /// Bind group 0 of every kernel, one for each band.
-    pub(in crate::gpu) fn band_groups(&self) -> &[BindGroup] {
-        &self.band_groups
+    /// The workgroups of a record.
+    pub(in crate::gpu) fn traced_groups(&self, slot: Slot) -> Groups {
+        let record = self.view.as_ref().and_then(|view| view.records.get(&slot));
+        record.map_or(Groups::NONE, |record| Groups {
+            first: record.traced_first,
+            size: record.traced_size,
+        })
+    }
+
+    /// Bind group 0 of every kernel, with the record of a slot.
+    pub(in crate::gpu) fn group(&self, slot: Slot) -> &BindGroup {
+        &self.groups[self.place(slot)]
     }
 
     /// Bind group 2 of `shade`.
@@ -394,54 +429,4 @@ pub(in crate::gpu) fn iteration_limit(device: &Device) -> u32 {
         wgpu::DeviceType::Cpu => 64_000 / info.subgroup_max_size.max(8),
         _ => 1 << 24,
     }
-}
-
-/// Returns the targets in the order of their bindings, or an error if the renderer cannot write to them.
-fn checked_targets<'a>(
-    renderer: &Renderer,
-    targets: &Targets<'a>,
-) -> Result<Vec<&'a TextureView>, GpuError> {
-    let mut wanted = vec![("color", targets.color, renderer.color.texture_format())];
-    match targets.data {
-        Some(data) if renderer.data_layers => wanted.extend([
-            ("depth", data.depth, DEPTH_FORMAT),
-            ("normal", data.normal, NORMAL_FORMAT),
-            ("id", data.id, ID_FORMAT),
-        ]),
-        None if !renderer.data_layers => {}
-        found => {
-            let state = |present| if present { "present" } else { "absent" }.to_owned();
-            return Err(GpuError::Target {
-                layer: "data",
-                found: state(found.is_some()),
-                expected: state(renderer.data_layers) + ", as in the renderer's options",
-            });
-        }
-    }
-    let size = targets.color.texture().size();
-    for &(layer, view, format) in &wanted {
-        let texture = view.texture();
-        let refused =
-            |found: String, expected: String| Err(GpuError::Target { layer, found, expected });
-        if texture.format() != format {
-            return refused(format!("{:?}", texture.format()), format!("{format:?}"));
-        }
-        if !texture.usage().contains(wgpu::TextureUsages::STORAGE_BINDING) {
-            return refused(format!("{:?}", texture.usage()), "usable as STORAGE_BINDING".into());
-        }
-        if texture.size() != size {
-            return refused(
-                describe_size([texture.width(), texture.height()]),
-                format!(
-                    "as large as the color target, {}",
-                    describe_size([size.width, size.height])
-                ),
-            );
-        }
-    }
-    Ok(wanted.into_iter().map(|(_, view, _)| view).collect())
-}
-
-fn describe_size([width, height]: [u32; 2]) -> String {
-    format!("{width}x{height}")
 }

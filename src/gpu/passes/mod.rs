@@ -9,5 +9,7 @@ pub(in crate::gpu) mod pass_times;
 pub(in crate::gpu) mod record;
 pub(in crate::gpu) mod renderer;
 pub(in crate::gpu) mod renderer_options;
+pub(in crate::gpu) mod targets;
 pub(in crate::gpu) mod tiles;
+pub(in crate::gpu) mod visible_bricks;
 pub(in crate::gpu) mod visible_region;

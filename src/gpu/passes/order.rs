@@ -2,47 +2,25 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::accel::Brick;
+use crate::accel::BrickBounds;
 use crate::camera::Camera;
 use crate::gpu::shader::records::SceneSpace;
 
-/// Approximate bounding box of the centres of a brick's spheres, in the scene's frame. It is empty for a brick without
-/// spheres.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::gpu) struct CenterBox {
-    min: Vec3,
-    max: Vec3,
-}
-
-impl CenterBox {
-    const EMPTY: Self = Self { min: Vec3::MAX, max: Vec3::MIN };
-
-    /// The box of some of the spheres of a brick. The order needs no more accuracy.
-    pub(in crate::gpu) fn of(brick: &Brick) -> Self {
-        const SAMPLES: usize = 4096;
-        let stride = brick.spheres.len().div_ceil(SAMPLES).max(1);
-        brick.spheres.iter().step_by(stride).fold(Self::EMPTY, |all, [x, y, z, _]| {
-            let center = Vec3::new(*x, *y, *z);
-            Self { min: all.min.min(center), max: all.max.max(center) }
-        })
-    }
-
-    /// Squared distance from a point to the box; 0 for a point inside.
-    fn distance_squared(&self, point: Vec3) -> f32 {
-        (point - point.max(self.min).min(self.max)).length_squared()
-    }
+/// Squared distance from a point to the box of a brick's centres; 0 for a point inside.
+fn distance_squared(brick: &BrickBounds, point: Vec3) -> f32 {
+    (point - point.max(brick.center_min).min(brick.center_max)).length_squared()
 }
 
 /// The indices of boxes, sorted by their distance from the camera, the nearest first. Hits in near bricks then let rays
 /// skip the others. The picture does not depend on the order.
 pub(in crate::gpu) fn nearest_first(
-    boxes: impl Iterator<Item = CenterBox>,
+    boxes: impl Iterator<Item = BrickBounds>,
     camera: &dyn Camera,
     space: &SceneSpace,
 ) -> Vec<usize> {
     let eye = (camera.ray_in_world(DVec2::ZERO).origin - space.origin).as_vec3();
     let mut order: Vec<(f32, usize)> =
-        boxes.map(|center_box| center_box.distance_squared(eye)).zip(0..).collect();
+        boxes.map(|brick| distance_squared(&brick, eye)).zip(0..).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     order.into_iter().map(|(_, brick)| brick).collect()
 }
@@ -52,15 +30,14 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::accel::Index;
     use crate::camera::{OrthographicCamera, PinholeCamera, Pose};
 
     #[test]
     fn from_every_side() {
         // Three boxes along x, with a hundred spheres each between 10 i and 10 i + 9.9.
         let boxes = [2.0_f32, 0.0, 1.0].map(|i| {
-            let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]).collect();
-            CenterBox::of(&Brick { index: Index::List, spheres, ids: Vec::new() })
+            let spheres = (0..100).map(|k| [10.0 * i + 0.1 * k as f32, 0.0, 0.0, 1.0]);
+            BrickBounds::of_spheres(&spheres.collect::<Vec<_>>())
         });
         let space = SceneSpace {
             origin: DVec3::new(1e6, 0.0, 0.0),
@@ -86,8 +63,7 @@ mod tests {
     /// The empty brick, which a scene without spheres has, and a brick with one sphere.
     #[test]
     fn an_empty_brick_is_the_last() {
-        let brick = |spheres| Brick { index: Index::List, spheres, ids: Vec::new() };
-        let boxes = [brick(Vec::new()), brick(vec![[1.0; 4]])].map(|brick| CenterBox::of(&brick));
+        let boxes = [BrickBounds::EMPTY, BrickBounds::of_spheres(&[[1.0; 4]])];
         let pose = Pose::looking_along([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
         let camera = PinholeCamera::with_vertical_fov(pose, 0.5, 1.0).unwrap();
         let space = SceneSpace { origin: DVec3::ZERO, min: Vec3::ZERO, max: Vec3::ONE };

@@ -5,7 +5,7 @@ use wgpu::{ComputePass, ComputePipeline};
 use crate::accel::BrickKind;
 use crate::camera::CameraKind;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::frame::{BandBrick, Frame, Slot};
 use crate::gpu::passes::renderer::{PassKey, Renderer};
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -87,8 +87,8 @@ impl Renderer {
         self.pipeline(PassKey::Trace(camera, kind, brick_pass(part)), kind)
     }
 
-    /// Records the tracing of a brick for a band or for a slice of one. The record of the band must contain the first
-    /// workgroup of the slice.
+    /// Records the tracing of a brick for a band or for a slice of one. The record of its slot must contain the
+    /// first workgroup of the slice.
     pub(in crate::gpu) fn record_trace(
         &self,
         pass: &mut ComputePass<'_>,
@@ -103,7 +103,7 @@ impl Renderer {
         let brick = &scene.bricks()[part.brick];
         let pipeline = self.trace_pipeline(camera, brick.kind, part)?;
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &frame.band_groups()[part.band], &[]);
+        pass.set_bind_group(0, frame.group(part.slot), &[]);
         pass.set_bind_group(1, &brick.trace_group, &[]);
         pass.dispatch_workgroups(part.groups.size[0], part.groups.size[1], 1);
         Ok(())
@@ -120,7 +120,7 @@ impl Renderer {
         let view = frame.view(self, scene)?;
         let camera = view.camera;
         let [width, height] = Groups::of_size(view.bands[band]).size;
-        pass.set_bind_group(0, &frame.band_groups()[band], &[]);
+        pass.set_bind_group(0, frame.group(Slot::of_scene(band)), &[]);
         pass.set_bind_group(2, frame.target_group(), &[]);
         let mut bound = None;
         for brick in scene.bricks() {

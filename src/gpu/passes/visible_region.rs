@@ -1,9 +1,10 @@
 //! The part of a picture in which the scene's box may be visible.
 
-use crate::camera::View;
+use glam::DVec3;
+
 use crate::camera::film::YAxis;
-use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
-use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::camera::{CameraKind, CameraVectors, View};
+use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE};
 use crate::gpu::shader::records::SceneSpace;
 
 /// A rectangle of the film in pixels, which may be empty. No ray of a pixel outside of it hits the scene's box.
@@ -47,6 +48,41 @@ impl VisibleRegion {
         region
     }
 
+    /// The rectangle of [`VisibleRegion::of`], or `None` if the box is behind the camera or beside the film, so that
+    /// only rays beyond the film might hit it.
+    pub(in crate::gpu) fn of_brick(view: &View<'_>, space: &SceneSpace) -> Option<Self> {
+        let camera = view.camera;
+        if camera.kind() != CameraKind::Pinhole || camera.has_lens() {
+            return Some(Self::of(view, space));
+        }
+        let CameraVectors { origin, right, up, forward, .. } = camera.vectors();
+        let volume = right.cross(up).dot(forward);
+        // A point is `x right + y up + depth forward` from the eye, and at (x, y) / depth on the film.
+        let corners = space.corners().map(|corner| {
+            let toward = space.origin + corner - origin;
+            let part = |a: DVec3, b: DVec3| toward.dot(a.cross(b)) / volume;
+            (part(up, forward), part(forward, right), part(right, up))
+        });
+        let edge = |pixels: u32| 1.0 + 2.0 * PIXELS_AROUND / f64::from(pixels);
+        let (right, up) = (edge(view.film.width()), edge(view.film.height()));
+        // All corners are on the other side of a plane through the eye, and so is the box.
+        let is_outside = corners.iter().all(|(.., depth)| *depth <= 0.0)
+            || corners.iter().all(|(x, _, depth)| *x > right * depth)
+            || corners.iter().all(|(x, _, depth)| -x > right * depth)
+            || corners.iter().all(|(_, y, depth)| *y > up * depth)
+            || corners.iter().all(|(_, y, depth)| -y > up * depth);
+        (!is_outside).then(|| Self::of(view, space))
+    }
+
+    /// The part of the region that lies in another.
+    pub(in crate::gpu) fn within(mut self, other: Self) -> Self {
+        for axis in 0..2 {
+            self.first[axis] = self.first[axis].max(other.first[axis]);
+            self.end[axis] = self.end[axis].min(other.end[axis]);
+        }
+        self
+    }
+
     /// The region extended for rays that may be up to `pixels` pixels away from the centres of their pixels.
     pub(in crate::gpu) fn widened(mut self, pixels: f64) -> Self {
         self.first.iter_mut().for_each(|first| *first -= pixels);
@@ -72,18 +108,6 @@ impl VisibleRegion {
         }
         groups
     }
-}
-
-/// Number of pixels of a film that are traced, in whole workgroups, counted once for every brick.
-pub(in crate::gpu) fn traced_pixels(
-    scene: &SceneBuffers,
-    view: &View<'_>,
-    tile_size: [u32; 2],
-) -> u64 {
-    let region = VisibleRegion::of(view, scene.space());
-    let pixels: u64 =
-        tiles(&view.film, tile_size).map(|tile| region.groups_of(tile).pixels()).sum();
-    pixels * scene.bricks().len() as u64
 }
 
 #[cfg(test)]

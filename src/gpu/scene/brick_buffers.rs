@@ -1,11 +1,12 @@
 //! The buffers of a brick on a device, and copying bricks to the device.
 
+use std::sync::Arc;
+
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue};
 
-use crate::accel::{Brick, BrickKind, Index};
+use crate::accel::{Brick, BrickBounds, BrickKind, Index};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
-use crate::gpu::passes::order::CenterBox;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::scene::appearance::AppearanceWords;
 use crate::gpu::shader::records;
@@ -16,8 +17,8 @@ use crate::scene::SceneAppearance;
 pub(in crate::gpu) struct BrickBuffers {
     /// Structure and primitive, which determine the kernels.
     pub(in crate::gpu) kind: BrickKind,
-    /// Approximate bounding box of the centres, by which bricks are sorted.
-    pub(in crate::gpu) center_box: CenterBox,
+    /// The boxes of the shapes, by which bricks are sorted and looked for in pictures.
+    pub(in crate::gpu) bounds: BrickBounds,
     /// Bind group 1 of `trace` and `occluded`.
     pub(in crate::gpu) trace_group: BindGroup,
     /// Bind group 1 of `shade`.
@@ -35,7 +36,7 @@ pub(in crate::gpu) struct BrickBuffers {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::gpu) struct BrickContents<'a> {
     kind: BrickKind,
-    center_box: CenterBox,
+    bounds: BrickBounds,
     /// The shapes in the order of the structure, in the layout that the primitive's WGSL file reads.
     shapes: &'a [u8],
     /// The id of each shape.
@@ -46,8 +47,8 @@ pub(in crate::gpu) struct BrickContents<'a> {
 impl<'a> BrickContents<'a> {
     pub(in crate::gpu) fn of_spheres(brick: &'a Brick, ids: &'a [u32], kind: BrickKind) -> Self {
         let Brick { index, spheres, .. } = brick;
-        let shapes = bytemuck::cast_slice(spheres);
-        Self { kind, center_box: CenterBox::of(brick), shapes, ids, index }
+        let bounds = BrickBounds::of_spheres(spheres);
+        Self { kind, bounds, shapes: bytemuck::cast_slice(spheres), ids, index }
     }
 }
 
@@ -59,7 +60,7 @@ pub(in crate::gpu) struct Upload<'a> {
     pub(in crate::gpu) renderer: &'a Renderer,
     pub(in crate::gpu) device: &'a Device,
     pub(in crate::gpu) queue: &'a Queue,
-    pub(in crate::gpu) appearance: &'a SceneAppearance,
+    pub(in crate::gpu) appearance: Arc<SceneAppearance>,
     pub(in crate::gpu) first_shape: u32,
     pub(in crate::gpu) bytes: u64,
 }
@@ -70,10 +71,10 @@ impl Upload<'_> {
         brick: &BrickContents<'_>,
         palette: &Buffer,
     ) -> Result<BrickBuffers, GpuError> {
-        let BrickContents { kind, center_box, shapes, ids, index } = *brick;
+        let BrickContents { kind, bounds, shapes, ids, index } = *brick;
         let layouts = &self.renderer.layouts;
-        let trace_layout = layouts.brick_of(kind)?;
-        let appearances = AppearanceWords::of(self.appearance, ids);
+        let trace_layout = layouts.brick_like(kind)?;
+        let appearances = AppearanceWords::of(&self.appearance, ids);
         let mut record = records::Brick {
             shape_count: ids.len() as u32,
             first_shape: self.first_shape,
@@ -145,7 +146,7 @@ impl Upload<'_> {
             traced.extend(&words);
             BrickBuffers {
                 kind,
-                center_box,
+                bounds,
                 trace_group: group("pinhole brick", trace_layout, &traced),
                 surface_group: group(
                     "pinhole surface",

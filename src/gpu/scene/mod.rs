@@ -5,6 +5,7 @@ pub(in crate::gpu) mod brick_buffers;
 pub(in crate::gpu) mod recolor;
 pub(in crate::gpu) mod scene_buffers;
 pub(in crate::gpu) mod scene_summary;
+pub(in crate::gpu) mod scene_upload;
 pub(in crate::gpu) mod shape_ids;
 pub(in crate::gpu) mod structures;
 pub(in crate::gpu) mod update;

@@ -1,5 +1,6 @@
 //! The buffers of a scene on a device.
 
+use std::borrow::Borrow;
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -7,16 +8,17 @@ use std::time::Duration;
 
 use wgpu::{Buffer, Device, Queue};
 
-use crate::accel::{Accel, AccelChoice, AccelPlan, BrickKind, LIST_LEN, Structure};
-use crate::gpu::checks::scoped;
+use crate::accel::{
+    Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure,
+};
 use crate::gpu::device_shape::DeviceShape;
-use crate::gpu::error::{GpuError, check_storage_size};
+use crate::gpu::error::GpuError;
 use crate::gpu::headless::submission_size::SubmissionSize;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
-use crate::gpu::scene::appearance;
-use crate::gpu::scene::brick_buffers::{BrickBuffers, BrickContents, Upload};
+use crate::gpu::scene::brick_buffers::BrickBuffers;
 use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::scene::scene_upload::{BrickSource, BrickSpace, SceneUpload, UploadedBricks};
 use crate::gpu::scene::shape_ids::{ExcludeBy, ShapeIds};
 use crate::gpu::shader::records::SceneSpace;
 #[cfg(not(target_arch = "wasm32"))]
@@ -99,8 +101,9 @@ impl SceneBuffers {
     ) -> Result<Self, GpuError> {
         let limit = binding_limit(&device.limits());
         let plan = AccelPlan::new(scene.spheres(), AccelChoice::Auto, limit);
-        let accel = plan.build(scene.spheres());
-        Self::with_accel_async(renderer, device, queue, scene, &accel).await
+        let bricks = BrickSource::from(plan.bricks(scene.spheres()));
+        let ids = ShapeIds::of_all(scene, bricks.may_part_equals);
+        Self::upload(renderer, device, queue, SceneSummary::of(scene), bricks, &ids).await
     }
 
     /// Copies a scene to a device, with a structure that was built for it.
@@ -133,9 +136,8 @@ impl SceneBuffers {
         scene: &Scene,
         accel: &Accel,
     ) -> Result<Self, GpuError> {
-        let ids = ShapeIds::of_all(scene, accel);
-        let summary = SceneSummary::of(scene);
-        Self::upload(renderer, device, queue, summary, accel, &ids, async || Ok(())).await
+        let ids = ShapeIds::of_all(scene, accel.may_part_equals());
+        Self::upload(renderer, device, queue, SceneSummary::of(scene), accel.into(), &ids).await
     }
 
     /// Copies a scene like [`SceneBuffers::new`], with a second structure of the spheres that cast shadows if some do
@@ -166,53 +168,58 @@ impl SceneBuffers {
         let all = Self::new_async(renderer, device, queue, scene).await?;
         let Some(opaque) = scene.opaque() else { return Ok(all) };
         let limit = binding_limit(&device.limits());
-        let accel =
-            AccelPlan::new(opaque.spheres(), AccelChoice::Auto, limit).build(opaque.spheres());
+        let plan = AccelPlan::new(opaque.spheres(), AccelChoice::Auto, limit);
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-        let none = async || Ok(());
-        let some = Self::upload(renderer, device, queue, summary, &accel, &ids, none).await?;
+        let bricks = BrickSource::from(plan.bricks(opaque.spheres()));
+        let some = Self::upload(renderer, device, queue, summary, bricks, &ids).await?;
         Ok(all.with_occluders(some))
     }
 
-    /// Copies a scene like [`SceneBuffers::with_accel`], and calls `flush` after every brick, so that the caller can
-    /// submit the queued copy and free its memory.
-    pub(in crate::gpu) async fn upload(
+    /// Copies a scene like [`SceneBuffers::with_accel`]. All copies are queued.
+    async fn upload<B: Borrow<Brick>>(
         renderer: &Renderer,
         device: &Device,
         queue: &Queue,
         summary: SceneSummary,
-        accel: &Accel,
+        bricks: BrickSource<impl Iterator<Item = B>>,
         ids: &ShapeIds,
-        mut flush: impl AsyncFnMut() -> Result<(), GpuError>,
     ) -> Result<Self, GpuError> {
-        let appearance = &summary.appearance;
-        let mut upload = Upload { renderer, device, queue, appearance, first_shape: 0, bytes: 0 };
-        let palette = appearance::palette(appearance);
-        check_storage_size(device, "the palette", size_of_val(&palette[..]) as u64)?;
-        let palette = scoped(device, || upload.storage("pinhole palette", &palette)).await?;
-        let mut bricks = Vec::new();
-        for brick in accel.bricks() {
-            let ids = ids.of(&brick.ids);
-            let contents = BrickContents::of_spheres(brick, &ids, accel.kind());
-            bricks.push(upload.brick(&contents, &palette).await?);
-            flush().await?;
+        let BrickSource { space, bricks, .. } = bricks;
+        let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, ids).await?;
+        for brick in bricks {
+            upload.brick(brick.borrow()).await?;
         }
-        let bytes = upload.bytes;
-        let (min, max) = accel.bounds();
-        Ok(Self {
+        Ok(Self::new_of(upload.finish()?, summary, ids.exclude_by, renderer.shape))
+    }
+
+    /// The scene of bricks that were copied.
+    pub(in crate::gpu) fn new_of(
+        uploaded: UploadedBricks,
+        summary: SceneSummary,
+        exclude_by: ExcludeBy,
+        shape: DeviceShape,
+    ) -> Self {
+        let UploadedBricks { space: BrickSpace { structure, bounds: (min, max) }, bricks, bytes } =
+            uploaded;
+        let tests_per_ray = match structure {
+            Structure::List => bricks.iter().map(|brick| brick.shape_count as usize).max(),
+            _ => None,
+        };
+        let tests_per_ray = tests_per_ray.unwrap_or(0);
+        Self {
             id: SceneId::new(),
             colors: 0,
             space: SceneSpace { origin: summary.origin, min, max },
             summary,
-            structure: accel.structure(),
-            exclude_by: ids.exclude_by,
+            structure,
+            exclude_by,
             bricks,
             bytes,
             occluders: None,
-            tests_per_ray: tests_per_ray(accel),
-            shape: renderer.shape,
-            submission_size: Mutex::new(SubmissionSize::new(tests_per_ray(accel), renderer.shape)),
-        })
+            tests_per_ray,
+            shape,
+            submission_size: Mutex::new(SubmissionSize::new(tests_per_ray, shape)),
+        }
     }
 
     /// The order and the amounts of work that suit the device.
@@ -223,6 +230,11 @@ impl SceneBuffers {
     /// The same scene together with those of its spheres that cast shadows in a studio.
     pub(in crate::gpu) fn with_occluders(self, occluders: Self) -> Self {
         Self { occluders: Some(Box::new(occluders)), ..self }
+    }
+
+    /// Replaces the bricks by others of the same scene. Views of frames stay valid.
+    pub(in crate::gpu) fn set_bricks(&mut self, bricks: Vec<BrickBuffers>) {
+        self.bricks = bricks;
     }
 
     /// Replaces the summary after the colours in the buffers were changed.
@@ -327,7 +339,9 @@ impl SceneBuffers {
         &self.space
     }
 
-    pub(in crate::gpu) fn structure(&self) -> Structure {
+    /// Returns the structure of the bricks.
+    #[must_use]
+    pub fn structure(&self) -> Structure {
         self.structure
     }
 
@@ -351,19 +365,16 @@ impl SceneBuffers {
     pub(in crate::gpu) fn bricks(&self) -> &[BrickBuffers] {
         &self.bricks
     }
+
+    /// The boxes of the bricks, in the same order.
+    pub(in crate::gpu) fn brick_bounds(&self) -> Vec<BrickBounds> {
+        self.bricks.iter().map(|brick| brick.bounds).collect()
+    }
 }
 
 /// Maximum size of a storage binding in bytes on a device with these limits.
 pub(in crate::gpu) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
-}
-
-/// Number of spheres that a ray tests in one dispatch if the structure is a list; 0 otherwise.
-fn tests_per_ray(accel: &Accel) -> usize {
-    match accel.structure() {
-        Structure::List => accel.bricks().iter().map(|b| b.spheres.len()).max().unwrap_or(0),
-        _ => 0,
-    }
 }
 
 /// A binding of a part of a buffer. `offset` and `size` are in bytes.

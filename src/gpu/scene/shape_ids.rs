@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use crate::accel::Accel;
 use crate::scene::{Duplicates, Scene};
 
 /// How the shape that a ray starts on is excluded from its search.
@@ -28,10 +27,11 @@ pub(in crate::gpu) struct ShapeIds {
 }
 
 impl ShapeIds {
-    /// The ids for a structure of all spheres.
-    pub(in crate::gpu) fn of_all(scene: &Scene, accel: &Accel) -> Self {
+    /// The ids for a structure of all spheres. Spheres with the same centre may be in different bricks if
+    /// `may_part_equals`.
+    pub(in crate::gpu) fn of_all(scene: &Scene, may_part_equals: bool) -> Self {
         // If equal spheres are always in the same brick, their indices in the structure suffice.
-        let duplicates = accel.may_part_equals().then(|| Duplicates::of(scene.spheres()));
+        let duplicates = may_part_equals.then(|| Duplicates::of(scene.spheres()));
         let ids = duplicates.and_then(Duplicates::into_firsts);
         let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
         Self { ids, exclude_by }

@@ -103,7 +103,8 @@ mod tests {
     use crate::accel::AccelPlan;
     use crate::camera::film::Film;
     use crate::camera::{PinholeCamera, Pose, View};
-    use crate::gpu::headless::plan::{DeviceLimits, PictureRequest, StructurePlans};
+    use crate::gpu::headless::device_limits::DeviceLimits;
+    use crate::gpu::headless::plan::{PictureRequest, StructurePlans};
     use crate::image::LayerSet;
     use crate::image::color::LinearRgb;
     use crate::render::RenderSettings;

@@ -2,9 +2,10 @@
 
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::plan::StructurePlans;
+use crate::gpu::headless::progress::go_on;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
-use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
 impl Headless {
@@ -32,11 +33,11 @@ impl Headless {
             return self.with_recolor(work).await;
         }
         let choice = buffers.structure().choice();
-        let accel = self.plan_accel(scene, choice).build(scene.spheres());
+        let accel = self.plan_accel(scene, choice);
         let opaque = (loses_opacity || buffers.has_occluders()).then(|| scene.opaque()).flatten();
-        let occluders =
-            opaque.map(|opaque| self.plan_accel(&opaque, choice).build(opaque.spheres()));
-        let copy = self.upload_async(scene, &Structures { accel, occluders }).await?;
+        let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
+        let plans = StructurePlans { accel, occluders };
+        let copy = self.upload_planned_async(scene, &plans, &mut go_on).await?;
         buffers.replace(copy);
         Ok(())
     }

@@ -81,6 +81,14 @@ impl Layouts {
         found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
     }
 
+    /// Layout of bind group 1 of `trace` and `occluded` for a brick of which it is not known yet whether it will be
+    /// searched as a nested grid. Both kinds of grids have the same bindings.
+    pub(in crate::gpu) fn brick_like(&self, kind: BrickKind) -> Result<&BindGroupLayout, GpuError> {
+        let bound_as = |kind: BrickKind| (kind.structure.with_nested(true), kind.primitive);
+        let found = self.brick.iter().find(|(of, _)| bound_as(*of) == bound_as(kind));
+        found.map(|(_, layout)| layout).ok_or(GpuError::NoStructure { kind })
+    }
+
     /// Layout of bind group 1 of `shade`.
     pub(in crate::gpu) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
         match primitive {

@@ -157,9 +157,9 @@ const RAYS: &[Row] = &[
         "rest_of_a_cell_forgotten",
         Extend,
         scenes::many,
-        "accel/cell_list.wgsl#copied",
-        "if (shapes[at].w < 0.0) {",
-        "if (shapes[at].w < 0.0 || at == start + 1u) {",
+        "accel/ball_list.wgsl",
+        "at = select(at + 1u, NO_LIST, four.w >= LAST_BALL);",
+        "at = NO_LIST;",
     ),
 ];
 

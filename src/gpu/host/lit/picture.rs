@@ -12,12 +12,13 @@ use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::device_shape::DeviceShape;
 use crate::gpu::error::GpuError;
-use crate::gpu::passes::frame::{BandBrick, Frame, Targets, iteration_limit};
+use crate::gpu::passes::frame::{BandBrick, Frame, iteration_limit};
 use crate::gpu::passes::lit::{
     AT_ONCE, Frames, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy,
     Recorder, Round,
 };
 use crate::gpu::passes::renderer::Renderer;
+use crate::gpu::passes::targets::Targets;
 use crate::gpu::passes::tiles::{Groups, Tile, tiles};
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneLook};
 #[cfg(not(target_arch = "wasm32"))]
@@ -307,7 +308,7 @@ impl LitPicture {
         let groups = parts.iter().map(|part| part.groups.count()).sum();
         if cursor.parts == 0 && cursor.left.is_empty() && groups <= budget.groups(1) {
             for part in &parts {
-                data.set_first_group(queue, part.band, part.groups.first);
+                data.set_first_group(queue, part.slot, part.groups.first);
             }
             renderer.record(encoder, scene, data)?;
             budget.take(groups, 1);
@@ -321,7 +322,7 @@ impl LitPicture {
                 cursor.left.push(part.groups);
             }
             let slice = Groups::take(&mut cursor.left, budget.groups(1)).unwrap_or(Groups::NONE);
-            data.set_first_group(queue, part.band, slice.first);
+            data.set_first_group(queue, part.slot, slice.first);
             let descriptor =
                 ComputePassDescriptor { label: Some("pinhole"), timestamp_writes: None };
             let mut pass = encoder.begin_compute_pass(&descriptor);

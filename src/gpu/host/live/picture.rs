@@ -12,12 +12,13 @@ use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::host::lit::progress::LitState;
 use crate::gpu::host::lit::renderer::{LitRenderer, lit_key};
 use crate::gpu::host::lit::tickets::{AT_ONCE, Tickets};
-use crate::gpu::passes::frame::{Frame, Targets, iteration_limit};
+use crate::gpu::passes::frame::{Frame, iteration_limit};
 use crate::gpu::passes::lit::records::DispatchParameters;
 use crate::gpu::passes::lit::{
     LightingBuffers, LightingData, LitScene, LiveKey, LivePasses, LiveView, bind_group, buffer,
     whole,
 };
+use crate::gpu::passes::targets::Targets;
 use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::scene::scene_buffers::{SceneBuffers, SceneId, part};
 use crate::gpu::shader::records::FrameParameters;

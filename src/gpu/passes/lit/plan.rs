@@ -3,9 +3,9 @@
 use super::lighting::LightingData;
 use super::sizes::LitSizes;
 use crate::accel::{AccelPlan, PlannedBuffer};
+use crate::gpu::headless::device_limits::DeviceLimits;
 use crate::gpu::headless::plan::{
-    DeviceLimits, HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count,
-    total,
+    HostPeak, PictureRequest, RenderPlan, StructurePlans, scene_buffers, tile_count, total,
 };
 use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::scene_summary::SceneSummary;
@@ -25,9 +25,9 @@ impl RenderPlan {
         // freed.
         let data = Self::of_primary(&PictureRequest { layers, ..*request }, accel, device);
         let data_bytes = total(&data.tile_buffers) + total(&data.tile_textures);
-        let mut scene_buffers = data.scene_buffers;
+        let all_buffers = data.scene_buffers;
         let shadows = occluders.as_ref().map_or(Vec::new(), |plan| shadow_buffers(scene, plan));
-        scene_buffers.extend(shadows);
+        let scene_buffers = [&all_buffers[..], &shadows].concat();
 
         let summary = SceneSummary::of(scene);
         let lighting = LightingData::new(settings, &summary, view.camera);
@@ -64,14 +64,16 @@ impl RenderPlan {
         let tile_bytes = (total(&tile_buffers) + total(&tile_textures)).max(data_bytes);
 
         let in_host = |bytes| device.in_host(bytes);
-        let occluder_bytes = occluders.as_ref().map_or(0, AccelPlan::device_bytes);
-        // The second structure is built while the first exists, from a copy of its spheres.
-        let building = occluders.as_ref().map_or(0, |plan| {
-            let spheres = 16 * plan.statistics.count as u64;
-            data.accel.device_bytes() + spheres + plan.host_bytes()
+        let phases = [DeviceLimits::building_bytes, DeviceLimits::uploading_bytes];
+        let of_all = phases.map(|bytes| bytes(device, &data.accel, &all_buffers));
+        // The second structure is built from a copy of its spheres and their ids, while the device has the first.
+        let [building, uploading] = [0, 1].map(|phase| {
+            let of_occluders = occluders.as_ref().map_or(0, |plan| {
+                let before = in_host(total(&all_buffers)) + 20 * plan.statistics.count as u64;
+                before + phases[phase](device, plan, &shadows)
+            });
+            of_all[phase].max(of_occluders)
         });
-        let queued: u64 = scene_buffers.iter().map(|buffer| buffer.bytes_per_binding).sum();
-        let uploading = data.accel.device_bytes() + occluder_bytes + queued;
         // The coverage of the outline takes 4 bytes; the memory of the caller is needed later.
         let beside = host_bytes_per_pixel.max(4);
         let per_pixel = layers.bytes_per_pixel().saturating_add(beside);
@@ -79,8 +81,8 @@ impl RenderPlan {
         let picture =
             film.pixel_count().saturating_mul(per_pixel).saturating_add(2 * sky + emitters);
         let moments = [
-            (HostPeak::Building, data.accel.host_bytes().max(building + in_host(scene_bytes))),
-            (HostPeak::Uploading, uploading + in_host(scene_bytes)),
+            (HostPeak::Building, building),
+            (HostPeak::Uploading, uploading),
             (HostPeak::Picture, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
         let worst = moments.into_iter().max_by_key(|(_, bytes)| *bytes);

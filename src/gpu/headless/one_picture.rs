@@ -1,0 +1,178 @@
+//! Rendering one picture of a scene in several bricks. Each brick is built, copied to the device, traced and dropped
+//! before the next, and what the picture does not show is never built.
+
+use crate::accel::{BrickKind, Primitive, Structure};
+use crate::camera::View;
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::derived::Derived;
+use crate::gpu::headless::hidden_bricks::SeenPixels;
+use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::headless::primary::begin_pass;
+use crate::gpu::headless::progress::{
+    Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
+};
+use crate::gpu::headless::readback::{ReadableBuffer, ReadableTexture};
+use crate::gpu::headless::renderers::{RendererKey, Renderers};
+use crate::gpu::headless::tile_textures::TileTextures;
+use crate::gpu::passes::bands::rows_per_band;
+use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::tiles::{Groups, Tile};
+use crate::gpu::passes::visible_bricks::{VisibleBricks, space_of};
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::scene::scene_summary::SceneSummary;
+use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, UploadedBricks};
+use crate::gpu::scene::shape_ids::ShapeIds;
+use crate::image::{Image, LayerSet};
+use crate::render::RenderSettings;
+use crate::scene::Scene;
+
+impl Headless {
+    /// Builds the planned structures and renders one picture like [`Headless::render_planned`], without blocking the
+    /// thread while the device works.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::render_planned`].
+    pub async fn render_planned_async(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Picture, GpuError> {
+        if self.drops_bricks(plan, view, settings) {
+            let watches = (upload_watch, watch);
+            return self.render_by_brick(scene, plan, view, settings, layers, watches).await;
+        }
+        let buffers = self.upload_planned_async(scene, &plan.structures(), upload_watch).await?;
+        self.render_uploaded_async(&buffers, view, settings, layers, watch).await
+    }
+
+    /// Whether the hits of the whole picture are in one buffer, so that no brick is needed twice, and there is a choice
+    /// of bricks.
+    fn drops_bricks(&self, plan: &RenderPlan, view: &View<'_>, settings: &RenderSettings) -> bool {
+        let size = [view.film.width(), view.film.height()];
+        settings.integrator.is_primary()
+            && plan.accel.brick_count > 1
+            && plan.accel.structure != Structure::List
+            && plan.tile_size == size
+            && rows_per_band(&self.device().limits(), size, false) == size[1]
+    }
+
+    async fn render_by_brick(
+        &self,
+        scene: &Scene,
+        plan: &RenderPlan,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        layers: LayerSet,
+        (upload_watch, watch): (&mut UploadWatch<'_>, &mut Watch<'_>),
+    ) -> Result<Picture, GpuError> {
+        let data_layers = layers != LayerSet::COLOR;
+        let (device, queue, film) = (self.device(), self.queue(), &view.film);
+        let device_type = self.info.device_type;
+        let size = [film.width(), film.height()];
+        let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
+        let BrickSource { space: brick_space, mut bricks, .. } =
+            BrickSource::from(plan.accel.bricks(scene.spheres()));
+        let boxes = bricks.boxes();
+        // The nearest of equal spheres has the smallest id in every brick, so the ids of the input do.
+        let ids = ShapeIds::of_all(scene, false);
+        let (summary, no_bricks) = (SceneSummary::of(scene), UploadedBricks::none(brick_space));
+        let kinds = [false, true].map(|nested| brick_space.structure.with_nested(nested));
+        self.alone(async |renderers: &mut Renderers| {
+            let layouts = self.layouts_of(kinds.to_vec()).await?;
+            let mut upload =
+                SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
+            let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
+            let primary = scene.primary_settings(settings)?;
+            let visible = VisibleBricks::of(view, scene.space(), &boxes);
+            let textures = scoped(device, || TileTextures::new(device, size, data_layers)).await?;
+            let key = |structure| RendererKey {
+                kinds: vec![BrickKind { structure, primitive: Primitive::Sphere }],
+                data_layers,
+                several_bricks: true,
+                ..RendererKey::new(&scene, view.camera)
+            };
+            let keys = kinds.map(key);
+            let first = renderers.of(device, device_type, keys[0].clone()).await?;
+            let mut frame = Frame::new_async(first, device, &textures.targets()).await?;
+            let seen_buffer = scoped(device, || {
+                ReadableBuffer::new(device, "pinhole hits read-back", frame.traced().0.size())
+            })
+            .await?;
+            frame.set_bricks(queue, &scene, &visible, view, tile, &primary);
+            let parts: Vec<BandBrick> = frame.parts().collect();
+            bricks.keep(&parts.iter().map(|part| part.brick).collect::<Vec<_>>());
+            let mut done = TracedPixels::of(parts.iter().map(|part| part.groups.pixels()).sum());
+            let mut seen: Option<SeenPixels> = None;
+            for (number, part) in parts.iter().enumerate() {
+                let region = frame.traced_groups(part.slot);
+                let own = space_of(scene.space(), &boxes[part.brick]);
+                if let (Some(seen), Some(own)) = (&seen, &own)
+                    && seen.hide(view, own, region)
+                {
+                    bricks.leave_out();
+                    done.add(part.groups, watch)?;
+                    continue;
+                }
+                let mut tell = |step| {
+                    UploadProgress { step, brick: number, bricks: parts.len() }.tell(upload_watch)
+                };
+                tell(UploadStep::Building)?;
+                let phase = self.phase("build");
+                let Some(brick) = bricks.next() else { break };
+                drop(phase);
+                tell(UploadStep::Copying)?;
+                let phase = self.phase("upload");
+                upload.brick(&brick).await?;
+                self.flush().await?;
+                drop(phase);
+                let key = keys[usize::from(brick.is_nested())].clone();
+                drop(brick);
+                scene.set_bricks(upload.take_bricks());
+                let renderer = renderers.of(device, device_type, key).await?;
+                let mut left = vec![part.groups];
+                while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
+                    frame.set_first_group(queue, part.slot, groups.first);
+                    let (mut encoder, mut times) = (self.encoder(), self.pass_times());
+                    let mut pass = begin_pass(&mut encoder, &mut times, "trace");
+                    let slice = BandBrick { groups, brick: 0, ..*part };
+                    renderer.record_trace(&mut pass, &scene, &frame, slice)?;
+                    drop(pass);
+                    self.submit_slice(encoder, times, groups, &scene, &[]).await?;
+                    done.add(groups, watch)?;
+                }
+                // What a later brick hides will be shaded again.
+                let mut encoder = self.encoder();
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
+                drop(pass);
+                seen_buffer.record_copy(&mut encoder, frame.traced().0);
+                self.run(encoder, &[seen_buffer.buffer()]).await?;
+                seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
+            }
+            let mut encoder = self.encoder();
+            for texture in textures.all() {
+                texture.record_copy(&mut encoder, size);
+            }
+            textures.status().record_copy(&mut encoder, frame.status());
+            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
+            mapped.push(textures.status().buffer());
+            self.run(encoder, &mapped).await?;
+            if textures.status().read(|words: &[u32]| words[0])? != 0 {
+                return Err(GpuError::Steps);
+            }
+            let mut image = Image::new(film.width(), film.height(), layers)?;
+            let derived = Derived { view: *view, appearance: scene.appearance() };
+            textures.read_into(&mut image, tile, &derived)?;
+            // Where nothing is traced, the picture is complete only now.
+            done.add(Groups::NONE, watch)?;
+            Ok(Picture { image, samples: 1, noise: None, hits: None })
+        })
+        .await
+    }
+}

@@ -1,0 +1,255 @@
+//! Tests that pictures of scenes in several bricks are those of one brick, to the bit, wherever the bricks are seen.
+
+use libtest_mimic::Trial;
+use pinhole::accel::{Accel, AccelChoice, AccelPlan};
+use pinhole::camera::{
+    Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera,
+};
+use pinhole::gpu::{
+    ColorTarget, Decision, Frame, GpuError, Headless, PictureRequest, RenderPlan, Renderer,
+    RendererOptions, SceneBuffers, StructurePlans, Targets, UploadProgress, UploadStep, wgpu,
+};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, View};
+
+use crate::embedding::{Host, size_of_film, view_of};
+use crate::support::spheres;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        trial("bricks::every_camera", every_camera),
+        trial("bricks::more_bricks_than_records", many),
+        trial("bricks::bands_of_a_host", bands),
+        trial("bricks::one_picture_of_bricks_that_are_dropped", one_picture),
+        trial("bricks::only_what_is_shown_is_built", built),
+        trial("bricks::an_upload_can_be_stopped", stopped),
+    ]
+}
+
+fn scene() -> Scene {
+    Scene::from_f32(spheres::random(3_000, 7, |_| 0.02), LinearRgb::WHITE).unwrap()
+}
+
+/// The scene in trees: in one brick, and in bricks for a binding of some bytes.
+fn trees(scene: &Scene, bytes: u64) -> [Accel; 2] {
+    [1 << 27, bytes].map(|bytes| {
+        AccelPlan::new(scene.spheres(), AccelChoice::Tree, bytes).build(scene.spheres())
+    })
+}
+
+/// Cameras around and inside of the scene, which is the unit cube. Some see only a part of it.
+fn cameras() -> Vec<Box<dyn Camera>> {
+    let up = [0.0, 1.0, 0.2];
+    let poses = [
+        Pose::looking_at([2.0, 1.5, 3.0], [0.5; 3], up).unwrap(),
+        Pose::looking_at([0.4, 0.6, 0.5], [0.9, 0.1, 0.8], up).unwrap(),
+        Pose::looking_at([0.2, 0.2, 1.5], [0.25, 0.2, 0.0], up).unwrap(),
+        Pose::looking_along([1.2, 0.5, 0.5], [1.0, 0.1, 0.0], up).unwrap(),
+    ];
+    let of = |pose: Pose| -> Vec<Box<dyn Camera>> {
+        let pinhole = |fov| PinholeCamera::with_vertical_fov(pose, fov, 1.5).unwrap();
+        vec![
+            Box::new(pinhole(0.6)),
+            Box::new(pinhole(0.03)),
+            Box::new(pinhole(2.4)),
+            Box::new(OrthographicCamera::new(pose, [0.45, 0.3]).unwrap()),
+            Box::new(ThinLensCamera::new(pinhole(0.6), 0.01, 1.0).unwrap()),
+            Box::new(PanoramaCamera::new(pose)),
+            Box::new(FisheyeCamera::new(pose, 3.0, 1.5).unwrap()),
+        ]
+    };
+    poses.into_iter().flat_map(of).collect()
+}
+
+fn render(headless: &Headless, scene: &Scene, accel: &Accel, view: &View<'_>) -> Image {
+    let buffers = headless.upload(scene, &accel.clone().into()).unwrap();
+    let (settings, go_on) = (RenderSettings::default(), &mut |_: &_| Decision::GoOn);
+    headless.render_uploaded(&buffers, view, &settings, LayerSet::ALL, go_on).unwrap().image
+}
+
+fn every_camera(headless: &'static Headless) {
+    let scene = scene();
+    let accels = trees(&scene, 16 * 300);
+    assert!(accels[1].bricks().len() >= 10);
+    let mut seen = 0;
+    for camera in cameras() {
+        let view = View::new(camera.as_ref(), Film::new(93, 62).unwrap());
+        let [one, several] = accels.each_ref().map(|accel| render(headless, &scene, accel, &view));
+        assert!(one == several, "{:?}", camera.kind());
+        seen += usize::from(one.id().unwrap().iter().any(|id| *id != u32::MAX));
+        // The recording has all rays, and they are legal.
+        let buffers = headless.upload(&scene, &accels[1].clone().into()).unwrap();
+        let settings = RenderSettings::default();
+        let go_on = &mut |_: &_| Decision::GoOn;
+        let recording = headless.record_and_render(&buffers, &view, &settings, go_on).unwrap();
+        let checker = pinhole::verify::Checker::new(&scene).unwrap();
+        assert!(checker.certify(&recording).is_legal(), "{:?}", camera.kind());
+    }
+    assert!(seen >= 20, "{seen}");
+}
+
+fn many(headless: &'static Headless) {
+    let scene = scene();
+    let accels = trees(&scene, 16 * 40);
+    assert!(accels[1].bricks().len() > 64, "{}", accels[1].bricks().len());
+    for camera in cameras() {
+        let view = View::new(camera.as_ref(), Film::new(61, 40).unwrap());
+        let [one, several] = accels.each_ref().map(|accel| render(headless, &scene, accel, &view));
+        assert!(one == several, "{:?}", camera.kind());
+    }
+}
+
+/// A picture whose hits do not fit into one binding of the host.
+fn bands(_: &'static Headless) {
+    let limits =
+        wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..wgpu::Limits::default() };
+    let host = Host::with_limits(limits);
+    let scene = scene();
+    let accels = trees(&scene, 16 * 300);
+    let options = RendererOptions {
+        color: ColorTarget::Linear32,
+        structures: vec![accels[0].structure()],
+        ..RendererOptions::default()
+    };
+    let renderer = Renderer::new(&host.device, &options).unwrap();
+    let film = Film::new(150, 100).unwrap();
+    let color = host.texture(size_of_film(&film), ColorTarget::Linear32.texture_format());
+    let targets = Targets { color: &view_of(&color), data: None };
+    let mut frame = Frame::new(&renderer, &host.device, &targets).unwrap();
+    let uploaded = accels.each_ref().map(|accel| {
+        SceneBuffers::with_accel(&renderer, &host.device, &host.queue, &scene, accel).unwrap()
+    });
+    for camera in cameras() {
+        let pictures = uploaded.each_ref().map(|scene| {
+            let view = View::new(camera.as_ref(), film);
+            frame.set_view(&host.queue, scene, &view, &RenderSettings::default()).unwrap();
+            let mut encoder = host.encoder();
+            renderer.record(&mut encoder, scene, &frame).unwrap();
+            host.submit_and_read(encoder, &color)
+        });
+        assert!(pictures[0] == pictures[1], "{:?}", camera.kind());
+    }
+}
+
+/// A plan with bricks for a binding of some bytes.
+fn planned(
+    headless: &Headless,
+    scene: &Scene,
+    view: &View<'_>,
+    choice: AccelChoice,
+    bytes: u64,
+) -> RenderPlan {
+    let request = PictureRequest {
+        scene,
+        view: *view,
+        settings: &RenderSettings::default(),
+        layers: LayerSet::ALL,
+        host_bytes_per_pixel: 0,
+    };
+    let accel = AccelPlan::for_rays(scene.spheres(), choice, bytes, 1);
+    let structures = StructurePlans { accel, occluders: None };
+    RenderPlan::new(&request, structures, &headless.device_limits())
+}
+
+/// Renders without keeping bricks, and returns the picture and how many bricks were built.
+fn dropped(
+    headless: &Headless,
+    scene: &Scene,
+    view: &View<'_>,
+    plan: &RenderPlan,
+) -> (Image, usize) {
+    let mut built = 0;
+    let count = &mut |progress: &UploadProgress| {
+        built += usize::from(progress.step == UploadStep::Building);
+        Decision::GoOn
+    };
+    let mut parts = Vec::new();
+    let watch = &mut |progress: &pinhole::gpu::Progress| {
+        parts.push(progress.part);
+        Decision::GoOn
+    };
+    let settings = RenderSettings::default();
+    let picture =
+        headless.render_planned(scene, plan, view, &settings, LayerSet::ALL, (count, watch));
+    let picture = picture.unwrap();
+    assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
+    (picture.image, built)
+}
+
+fn one_picture(headless: &'static Headless) {
+    // Some bricks have nested grids, and some have not.
+    let mut clusters = spheres::clusters(10, 200);
+    clusters.extend(spheres::random(2_000, 2, |_| 0.02));
+    let scenes = [spheres::random(3_000, 7, |_| 0.05), clusters, vec![[0.5, 0.5, 0.5, 0.2]; 900]];
+    for spheres in scenes {
+        let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+        let [one, _] = trees(&scene, 16 * 300);
+        for (choice, bytes) in [
+            (AccelChoice::Tree, 16 * 300),
+            (AccelChoice::Grid, 4 * 68 * 600),
+            (AccelChoice::List, 4800),
+        ] {
+            for camera in cameras() {
+                let view = View::new(camera.as_ref(), Film::new(93, 62).unwrap());
+                let plan = planned(headless, &scene, &view, choice, bytes);
+                assert!(plan.accel.brick_count > 1);
+                let (found, built) = dropped(headless, &scene, &view, &plan);
+                assert!(
+                    found == render(headless, &scene, &one, &view),
+                    "{choice} {:?}",
+                    camera.kind()
+                );
+                assert!((1..=plan.accel.brick_count).contains(&built));
+            }
+        }
+    }
+}
+
+/// A slab of spheres hides what is behind it, and a narrow view leaves out what is beside it.
+fn built(headless: &'static Headless) {
+    let mut all = spheres::random(4_000, 7, |_| 0.02);
+    // Large spheres before all others.
+    for i in 0..64_u8 {
+        let [x, y] = [i % 8, i / 8].map(|at| f32::from(at) / 4.0 - 0.375);
+        all.push([x, y, 3.0, 0.3]);
+    }
+    let scene = Scene::from_f32(all, LinearRgb::WHITE).unwrap();
+    let film = Film::new(64, 64).unwrap();
+    let bricks = |eye: [f64; 3], toward: [f64; 3], half: f64| {
+        let pose = Pose::looking_at(eye, toward, [0.0, 1.0, 0.0]).unwrap();
+        let camera = OrthographicCamera::new(pose, [half, half]).unwrap();
+        let view = View::new(&camera, film);
+        let plan = planned(headless, &scene, &view, AccelChoice::Tree, 16 * 300);
+        let (image, built) = dropped(headless, &scene, &view, &plan);
+        let [one, _] = trees(&scene, 16 * 300);
+        assert!(image == render(headless, &scene, &one, &view));
+        (built, plan.accel.brick_count)
+    };
+    let (wide, all) = bricks([0.5, 0.5, -9.0], [0.5, 0.5, 0.0], 1.0);
+    assert!(wide + 1 >= all, "{wide} of {all}");
+    let (hidden, _) = bricks([0.5, 0.5, 9.0], [0.5, 0.5, 0.0], 1.0);
+    assert!(hidden <= 2, "{hidden} of {all}");
+    let (narrow, _) = bricks([0.2, 0.2, -9.0], [0.2, 0.2, 0.0], 0.05);
+    assert!(narrow < all / 2, "{narrow} of {all}");
+}
+
+fn stopped(headless: &'static Headless) {
+    let scene = scene();
+    let accel = AccelPlan::new(scene.spheres(), AccelChoice::Tree, 16 * 300);
+    let plans = StructurePlans { accel, occluders: None };
+    for step in [UploadStep::Building, UploadStep::Copying] {
+        let mut told = Vec::new();
+        let watch = &mut |progress: &UploadProgress| {
+            told.push(*progress);
+            if (progress.step, progress.brick) == (step, 2) {
+                Decision::Stop
+            } else {
+                Decision::GoOn
+            }
+        };
+        let uploaded = headless.upload_planned(&scene, &plans, watch);
+        assert_eq!(uploaded.err(), Some(GpuError::Stopped));
+        assert_eq!(told.len(), if step == UploadStep::Building { 5 } else { 6 });
+        assert!(told.iter().all(|progress| progress.bricks == plans.accel.brick_count));
+    }
+}
