@@ -63,11 +63,9 @@ mod tests {
         let spheres = [[1.0, 2.0, 3.0, -0.5], [-1.0, 2.0, 3.0, 0.25], [9.0, 9.0, 9.0, 1.0]];
         let bounds = BrickBounds::of_spheres(&spheres[..2]);
         assert_eq!(bounds, BrickBounds::of_ids(&spheres, &[1, 0]));
-        assert_eq!(
-            (bounds.min.to_array(), bounds.max.to_array()),
-            ([-1.25, 1.5, 2.5], [1.5, 2.5, 3.5])
-        );
-        assert_eq!(bounds.center_min.to_array(), [-1.0, 2.0, 3.0]);
+        assert_eq!(bounds.min, Vec3::new(-1.25, 1.5, 2.5));
+        assert_eq!(bounds.max, Vec3::new(1.5, 2.5, 3.5));
+        assert_eq!(bounds.center_min, Vec3::new(-1.0, 2.0, 3.0));
         assert!(!bounds.is_empty() && BrickBounds::of_spheres(&[]).is_empty());
     }
 }
