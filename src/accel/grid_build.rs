@@ -166,7 +166,7 @@ fn assemble(
     );
     let frame = |cells: &Cells, cell: usize| {
         let corner = corner(cells, cell);
-        (layout == ListLayout::Balls).then_some(BallFrame { corner, size: cells.size, margin })
+        (layout == ListLayout::Balls).then(|| BallFrame::new(corner, cells.size, margin))
     };
     let parts = map_ranges(cells.len(), |range| {
         let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
