@@ -9,7 +9,8 @@ use super::binary_tree::BinaryTree;
 use super::brick::{Accel, Brick, Index, Structure};
 #[cfg(feature = "gpu")]
 use super::brick_bounds::BrickBounds;
-use super::divide::divide;
+use super::divide::{Divided, divide};
+use super::divide_by_sample::divide_by_sample;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
 use super::wide_tree::WideTree;
@@ -48,7 +49,11 @@ impl AccelPlan {
                 (parts.collect(), self.brick_count > 1)
             }
             _ => {
-                let divided = divide(spheres, self.brick_count);
+                let by_sample = divide_by_sample(spheres, self.brick_count);
+                let divided = by_sample.map_or_else(
+                    || divide(spheres, self.brick_count),
+                    |parts| Divided { parts, may_part_equals: false },
+                );
                 let parts = divided.parts.into_iter().filter(|ids| !ids.is_empty());
                 (parts.map(Part::Ids).collect(), divided.may_part_equals)
             }

@@ -13,6 +13,7 @@ mod brick_bounds;
 mod bricks;
 mod cells;
 mod divide;
+mod divide_by_sample;
 mod extent;
 pub(crate) mod grid;
 pub(crate) mod grid_build;

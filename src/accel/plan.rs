@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::binary_tree::BinaryNode;
 use super::brick::Structure;
+use super::divide_by_sample::largest_part;
 use super::grid::{ListLayout, MAX_CELLS};
 use super::grid_build::GridBudget;
 use super::statistics::SceneStatistics;
@@ -108,8 +109,13 @@ impl AccelPlan {
         let (structure, reason) = decide(&statistics, choice, rays);
         let count = statistics.count;
         let most_per_brick = most_per_brick(structure, binding_bytes);
-        let brick_count = count.div_ceil(most_per_brick).max(1);
-        let budget = grid_budget(structure, count.div_ceil(brick_count), binding_bytes);
+        let mut brick_count = count.div_ceil(most_per_brick).max(1);
+        // Where bricks are not all of the same size, this takes one more brick at most.
+        while most_in_brick(structure, count, brick_count) > most_per_brick {
+            brick_count += 1;
+        }
+        let largest = most_in_brick(structure, count, brick_count);
+        let budget = grid_budget(structure, largest, binding_bytes);
         let mut plan =
             Self { statistics, structure, reason, brick_count, budget, buffers: Vec::new() };
         plan.buffers = plan.list_buffers();
@@ -146,7 +152,7 @@ impl AccelPlan {
     }
 
     fn per_brick(&self) -> u64 {
-        self.statistics.count.div_ceil(self.brick_count) as u64
+        most_in_brick(self.structure, self.statistics.count, self.brick_count) as u64
     }
 
     /// The number of bytes that dividing the spheres takes: their ids, and while they are cut in two, two copies of
@@ -294,6 +300,14 @@ fn node_bytes(structure: Structure, count: u64) -> u64 {
         _ => (0, 0),
     };
     per_sphere as u64 * count + root as u64
+}
+
+/// The largest number of spheres in one of several bricks.
+fn most_in_brick(structure: Structure, count: usize, bricks: usize) -> usize {
+    match structure {
+        Structure::List => count.div_ceil(bricks),
+        _ => largest_part(count, bricks),
+    }
 }
 
 /// The largest number of spheres in a brick whose buffers all fit into a binding.
