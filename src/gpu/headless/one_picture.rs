@@ -76,9 +76,11 @@ impl Headless {
         let device_type = self.info.device_type;
         let size = [film.width(), film.height()];
         let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
+        let phase = self.phase("divide");
         let BrickSource { space: brick_space, mut bricks, .. } =
             BrickSource::from(plan.accel.bricks(scene.spheres()));
         let boxes = bricks.boxes();
+        drop(phase);
         // The nearest of equal spheres has the smallest id in every brick, so the ids of the input do.
         let ids = ShapeIds::of_all(scene, false);
         let (summary, no_bricks) = (SceneSummary::of(scene), UploadedBricks::none(brick_space));

@@ -67,7 +67,9 @@ impl Headless {
         let kinds: Vec<Structure> = kinds.collect();
         self.alone(async |_: &mut Renderers| {
             let renderer = self.layouts_of(kinds).await?;
+            let phase = self.phase("divide");
             let bricks = accel.bricks(scene.spheres()).into();
+            drop(phase);
             let all = self.upload_all(&renderer, scene, bricks, watch).await?;
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
