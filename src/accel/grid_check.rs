@@ -263,7 +263,7 @@ impl Check<'_> {
         let mut len = list.len();
         if let Some(balls) = &self.grid.balls {
             let ends = list.clone().filter(|at| balls[*at] & LAST != 0);
-            if start % BALLS_PER_VECTOR != 0 || !ends.eq([end - 1]) {
+            if !start.is_multiple_of(BALLS_PER_VECTOR) || !ends.eq([end - 1]) {
                 return Err(out);
             }
             let repeats = |at: &usize| self.id(*at) == self.id(end - 1);
