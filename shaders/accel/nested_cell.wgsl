@@ -1,7 +1,7 @@
 // Traversal of a cell of the outer grid, whose lists are references. Twin: src/accel/grid_walk.rs.
 // provides: walk_cell
-// needs: Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, Search, cell_word, least,
-//   spend, test_list
+// needs: Found, GRID, GridRay, INNER_START, INNER_UNIT, KIND, LEVEL, LEVEL_SHIFT, LIST, NO_SHAPE, Search, cell_word,
+//   least, spend, test_list
 
 // Traverses a cell of the outer grid that is not empty. A cell with a list is treated as a grid of one cell.
 fn walk_cell(

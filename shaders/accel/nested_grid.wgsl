@@ -3,9 +3,9 @@
 // Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing" (1987), with a change: distances to planes are
 // computed from the index of the plane instead of being accumulated, so that their error does not grow. The word of an
 // empty cell contains the number of empty cells ahead of it, and the ray crosses all of them in one step.
-// provides: leaving, next_cell, walk
-// needs: EMPTY, Found, GridRay, KIND, NO_SHAPE, REACH, REACH_BITS, Search, brick, cell_word, first_cell, grid_ray, least,
-//   spend, walk_cell
+// provides: walk
+// needs: EMPTY, Found, GridRay, KIND, NO_SHAPE, REACH, REACH_BITS, Search, brick, cell_word, first_cell, grid_ray,
+//   least, spend, walk_cell
 
 fn walk(search: Search, found: ptr<function, Found>, stop_at_first: bool) {
     let along = grid_ray(search.ray, search.inverse);

@@ -230,14 +230,14 @@ impl HostPeak {
 /// The buffers of the structure, and those that shading reads.
 pub(in crate::gpu) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
     let mut buffers = accel.buffers.clone();
-    // A sphere that is stored in several cells has as many copies of its words as of its id.
-    let ids = buffers.iter().find(|buffer| buffer.name == "ids").copied();
+    let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();
     let words = appearance::words_per_sphere(scene.checked_appearance()).count();
-    if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = ids.filter(|_| words > 0) {
+    if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = spheres.filter(|_| words > 0) {
+        // A sphere has four numbers.
         buffers.push(PlannedBuffer {
             name: "colors",
-            bytes: words * bytes,
-            bytes_per_binding: words * bytes_per_binding,
+            bytes: words * (bytes / 4),
+            bytes_per_binding: words * (bytes_per_binding / 4),
         });
     }
     let palette = appearance::palette_length(scene.appearance()) * size_of::<records::Color>();
@@ -253,7 +253,7 @@ pub(in crate::gpu) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 
 fn in_words(name: &str) -> &'static str {
     match name {
         "spheres" => "the buffer of spheres",
-        "ids" => "the buffer of ids",
+        "ids" | "ids, cells and references" => "the buffer of ids",
         "colors" => "the buffer of colors",
         "palette" => "the palette",
         "hits" => "the buffer of hits",
@@ -261,7 +261,7 @@ fn in_words(name: &str) -> &'static str {
         "paths" => "the paths of a tile",
         "tables" => "the tables of lights and materials",
         "sky" | "sky shares" => "the image of the sky",
-        "nodes" | "cells" | "references" => "the buffer of the structure",
+        "nodes" | "cells" | "references" | "balls" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
 }
@@ -342,18 +342,18 @@ mod tests {
         assert_eq!(alpha.tile_textures, data.tile_textures);
     }
 
-    /// Ten million individual colours take four bytes each, and the indices of two surfaces another four bytes each.
+    /// Four million individual colours take four bytes each, and the indices of two surfaces another four bytes each.
     #[test]
     fn an_individual_color_takes_four_bytes_per_sphere() {
-        let count = 10_000_000;
+        let count = 4_000_000;
         let spheres: Vec<[f32; 4]> = (0..count)
             .map(|i| [(i % 215) as f32, (i / 215 % 215) as f32, (i / 46_225) as f32, 0.4])
             .collect();
         let accel = AccelPlan::new(&spheres, AccelChoice::Auto, 1 << 27);
         let colors = (0..count as u32).map(|i| (i | 0xff00_0000).to_le_bytes()).collect();
         let mut appearance = Appearance::new(Colors::Rgba8(colors));
-        let ids = accel.buffers.iter().find(|buffer| buffer.name == "ids").unwrap().bytes;
-        assert_eq!(ids, 4 * count as u64);
+        let stored = accel.buffers.iter().find(|buffer| buffer.name == "spheres").unwrap().bytes;
+        assert_eq!(stored, 16 * count as u64);
         let mut spheres = spheres;
         for words in [1, 2] {
             let scene = Scene::from_parts(SphereArray::F32(spheres), appearance.clone()).unwrap();

@@ -269,7 +269,8 @@ mod tests {
                 color_shift,
                 color_mask,
                 material_first,
-                material_mask
+                material_mask,
+                first_reference
             }),
             layout!(SelfTest { zero, single, outer, inner }),
             layout!(Operands { a, b, p, q, factor, dividend, divisor, radicand, u, v }),
