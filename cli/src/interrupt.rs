@@ -42,6 +42,7 @@ enum Phase {
     /// Work of a driver, whose threads must not be stopped abruptly.
     Device,
     /// Work with a driver that has nothing to do for a while, which can be interrupted.
+    #[cfg(feature = "gpu")]
     Rest,
 }
 
