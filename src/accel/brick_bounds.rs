@@ -18,7 +18,7 @@ impl BrickBounds {
     pub(crate) const EMPTY: Self =
         Self { center_min: Vec3::MAX, center_max: Vec3::MIN, min: Vec3::MAX, max: Vec3::MIN };
 
-    /// The boxes of the spheres of a brick, whose radii may have a sign.
+    /// The boxes of the spheres of a brick.
     pub(crate) fn of_spheres(spheres: &[[f32; 4]]) -> Self {
         Self::joined(map_chunks(spheres, |_, spheres| spheres.iter().fold(Self::EMPTY, Self::with)))
     }
@@ -39,8 +39,8 @@ impl BrickBounds {
         Self {
             center_min: self.center_min.min(center),
             center_max: self.center_max.max(center),
-            min: self.min.min(center - radius.abs()),
-            max: self.max.max(center + radius.abs()),
+            min: self.min.min(center - radius),
+            max: self.max.max(center + radius),
         }
     }
 
@@ -59,8 +59,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sign_of_the_radius_means_nothing() {
-        let spheres = [[1.0, 2.0, 3.0, -0.5], [-1.0, 2.0, 3.0, 0.25], [9.0, 9.0, 9.0, 1.0]];
+    fn boxes_are_those_of_spheres_and_of_ids() {
+        let spheres = [[1.0, 2.0, 3.0, 0.5], [-1.0, 2.0, 3.0, 0.25], [9.0, 9.0, 9.0, 1.0]];
         let bounds = BrickBounds::of_spheres(&spheres[..2]);
         assert_eq!(bounds, BrickBounds::of_ids(&spheres, &[1, 0]));
         assert_eq!(bounds.min, Vec3::new(-1.25, 1.5, 2.5));

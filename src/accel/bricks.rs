@@ -9,8 +9,7 @@ use super::binary_tree::BinaryTree;
 use super::brick::{Accel, Brick, Index, Structure};
 #[cfg(feature = "gpu")]
 use super::brick_bounds::BrickBounds;
-use super::divide::{Divided, divide};
-use super::divide_by_sample::divide_by_sample;
+use super::divide::divide;
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
 use super::wide_tree::WideTree;
@@ -49,11 +48,7 @@ impl AccelPlan {
                 (parts.collect(), self.brick_count > 1)
             }
             _ => {
-                let by_sample = divide_by_sample(spheres, self.brick_count);
-                let divided = by_sample.map_or_else(
-                    || divide(spheres, self.brick_count),
-                    |parts| Divided { parts, may_part_equals: false },
-                );
+                let divided = divide(spheres, self.brick_count);
                 let parts = divided.parts.into_iter().filter(|ids| !ids.is_empty());
                 (parts.map(Part::Ids).collect(), divided.may_part_equals)
             }

@@ -1,5 +1,6 @@
 //! Division of spheres among bricks, on all cores.
 
+use super::divide_by_sample::divide_by_sample;
 use crate::geometry::math::equal_bits;
 use crate::parallel::{both, map_chunks};
 
@@ -11,9 +12,13 @@ pub(super) struct Divided {
     pub(super) may_part_equals: bool,
 }
 
-/// Divides spheres into parts of about the same number, by repeated median cuts across the longest side. The centres of
-/// each part lie in a box that no other part enters.
+/// Divides spheres into parts of about the same number, by repeated median cuts across the longest side: those of a
+/// sample if there are many spheres, otherwise exact ones. The centres of each part lie in a box that no other part
+/// enters.
 pub(super) fn divide(spheres: &[[f32; 4]], parts: usize) -> Divided {
+    if let Some(parts) = divide_by_sample(spheres, parts) {
+        return Divided { parts, may_part_equals: false };
+    }
     cut(spheres, (0..spheres.len() as u32).collect(), parts)
 }
 

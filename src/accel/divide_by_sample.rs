@@ -1,6 +1,9 @@
 //! Division of many spheres among bricks by cuts that halve a sample of them. Each sphere is read twice, whatever the
 //! number of bricks, while exact cuts (`divide`) read it several times for each doubling of that number.
 
+use glam::Vec3A;
+
+use super::extent::Extent;
 use crate::parallel::{for_each, map_parts, ranges, split_mut};
 
 /// The number of spheres from which on a sample is used.
@@ -96,13 +99,9 @@ fn halve(sample: &mut [[f32; 3]], first: usize, parts: usize) -> Node {
     if parts <= 1 || sample.is_empty() {
         return Node::Part(first);
     }
-    let length = |axis: usize| {
-        let sides = sample.iter().map(|center| center[axis]);
-        let (low, high) = sides.fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)));
-        high - low
-    };
-    let lengths = [0, 1, 2].map(length);
-    let axis = (0..3).max_by(|a, b| lengths[*a].total_cmp(&lengths[*b])).unwrap_or(0);
+    let extent =
+        sample.iter().fold(Extent::EMPTY, |all, center| all.with_point(Vec3A::from_array(*center)));
+    let axis = extent.longest_axis();
     let left_parts = parts / 2;
     let middle = sample.len() * left_parts / parts;
     let (_, at, _) = sample.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));

@@ -5,10 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 use std::time::Duration;
 
-#[cfg(not(target_arch = "wasm32"))]
-use std::time::Instant;
-#[cfg(target_arch = "wasm32")]
-use web_time::Instant;
+use crate::gpu::headless::waiting::Instant;
 
 /// Maximum number of spans that are kept one by one. They take 40 MiB; totals count all of them.
 const MAX_SPANS: usize = 1 << 20;

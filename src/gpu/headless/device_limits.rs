@@ -24,6 +24,7 @@ impl DeviceLimits {
     pub(in crate::gpu) fn in_host(&self, bytes: u64) -> u64 {
         if self.device_type == DeviceType::Cpu { bytes } else { 0 }
     }
+
     /// Number of bytes of host memory in use while one of the bricks is built. The device has those before it.
     pub(in crate::gpu) fn building_bytes(
         &self,

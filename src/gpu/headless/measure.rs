@@ -1,17 +1,18 @@
 //! Measuring how long tracing takes.
 
-use wgpu::ComputePassDescriptor;
+use std::time::Duration;
 
 use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::tile_textures::TileTextures;
-use crate::gpu::headless::timer::{PassTimer, TraceTime};
+use crate::gpu::headless::timer::TraceTime;
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
-use crate::gpu::passes::pass_times::PassTimes;
+use crate::gpu::passes::pass_times::{PassTimes, Stamps};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::Query;
 use crate::gpu::passes::tiles::{Groups, tiles};
@@ -47,8 +48,10 @@ impl Headless {
         let textures =
             scoped(self.device(), || TileTextures::new(self.device(), tile_size, false)).await?;
         let mut frame = Frame::new_async(renderer, self.device(), &textures.targets()).await?;
-        let timer = scoped(self.device(), || PassTimer::new(self.device(), self.queue())).await?;
-        let timer_buffer: Vec<_> = timer.iter().map(PassTimer::buffer).collect();
+        let has_clock = self.device().features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let stamps = scoped(self.device(), || has_clock.then(|| Stamps::new(self.device())));
+        let mut stamps = stamps.await?;
+        let nanoseconds_per_tick = Stamps::nanoseconds_per_tick(self.queue());
         // wgpu clears a buffer when it is first used; this must not be measured.
         let mut encoder = self.encoder();
         frame.record_clear(&mut encoder);
@@ -60,31 +63,31 @@ impl Headless {
                 let mut left = vec![part.groups];
                 while let Some(groups) = Groups::take(&mut left, scene.submission_size().groups()) {
                     frame.set_first_group(self.queue(), part.slot, groups.first);
-                    let mut encoder = self.encoder();
-                    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                        label: Some("pinhole"),
-                        timestamp_writes: timer.as_ref().map(PassTimer::writes),
-                    });
+                    let (mut encoder, mut times) = (self.encoder(), PassTimes::new(stamps.take()));
+                    let mut pass = begin_pass(&mut encoder, &mut times, "trace");
                     let slice = BandBrick { groups, ..part };
                     renderer.record_trace(&mut pass, scene, &frame, slice)?;
                     drop(pass);
-                    if let Some(timer) = &timer {
-                        timer.record_copy(&mut encoder);
-                    }
+                    times.record_copy(&mut encoder);
+                    let mapped = times.buffer();
+                    let unnoted = PassTimes::default();
                     let elapsed = self
-                        .submit_slice(encoder, PassTimes::default(), groups, scene, &timer_buffer)
+                        .submit_slice(encoder, unnoted, groups, scene, mapped.as_slice())
                         .await?;
+                    let device = times.ticks()?.first().map(|[start, end]| {
+                        let ticks = end.saturating_sub(*start) as f64;
+                        Duration::from_nanos((ticks * nanoseconds_per_tick) as u64)
+                    });
+                    stamps = times.into_stamps();
                     time.pixels += groups.pixels();
-                    time.add(elapsed, timer.as_ref().map(PassTimer::read).transpose()?);
+                    time.add(elapsed, device);
                 }
             }
         }
         let mut encoder = self.encoder();
         textures.status().record_copy(&mut encoder, frame.status());
         self.run(encoder, &[textures.status().buffer()]).await?;
-        match textures.status().read(|words: &[u32]| words[0])? {
-            0 => Ok(time),
-            _ => Err(GpuError::Steps),
-        }
+        textures.check_steps()?;
+        Ok(time)
     }
 }

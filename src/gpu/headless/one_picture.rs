@@ -13,7 +13,7 @@ use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{
     Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch,
 };
-use crate::gpu::headless::readback::{ReadableBuffer, ReadableTexture};
+use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::passes::bands::rows_per_band;
@@ -149,25 +149,21 @@ impl Headless {
                     done.add(groups, watch)?;
                 }
                 // What a later brick hides will be shaded again.
-                let mut encoder = self.encoder();
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                let (mut encoder, mut times) = (self.encoder(), self.pass_times());
+                let mut pass = begin_pass(&mut encoder, &mut times, "shade");
                 renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
                 drop(pass);
+                if number + 1 == parts.len() {
+                    self.run_timed(encoder, times, &[]).await?;
+                    break;
+                }
                 seen_buffer.record_copy(&mut encoder, frame.traced().0);
-                self.run(encoder, &[seen_buffer.buffer()]).await?;
+                self.run_timed(encoder, times, &[seen_buffer.buffer()]).await?;
                 seen = Some(seen_buffer.read(|hits| SeenPixels::new(size, hits))?);
             }
             let mut encoder = self.encoder();
-            for texture in textures.all() {
-                texture.record_copy(&mut encoder, size);
-            }
-            textures.status().record_copy(&mut encoder, frame.status());
-            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
-            mapped.push(textures.status().buffer());
+            let mapped = textures.record_read_back(&mut encoder, &frame, size);
             self.run(encoder, &mapped).await?;
-            if textures.status().read(|words: &[u32]| words[0])? != 0 {
-                return Err(GpuError::Steps);
-            }
             let mut image = Image::new(film.width(), film.height(), layers)?;
             let derived = Derived { view: *view, appearance: scene.appearance() };
             textures.read_into(&mut image, tile, &derived)?;

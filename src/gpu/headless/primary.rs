@@ -9,7 +9,6 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::derived::Derived;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
 use crate::gpu::headless::readable_trace::ReadableTrace;
-use crate::gpu::headless::readback::ReadableTexture;
 use crate::gpu::headless::renderers::RendererKey;
 use crate::gpu::headless::tile_textures::TileTextures;
 use crate::gpu::passes::bands::tile_size;
@@ -98,21 +97,13 @@ impl Headless {
                     renderer.record_shade(&mut pass, scene, &frame, part.band)?;
                 }
             }
-            for texture in textures.all() {
-                texture.record_copy(&mut encoder, tile.size);
-            }
-            textures.status().record_copy(&mut encoder, frame.status());
-            let mut mapped: Vec<_> = textures.all().map(ReadableTexture::buffer).collect();
-            mapped.push(textures.status().buffer());
+            let mut mapped = textures.record_read_back(&mut encoder, &frame, tile.size);
             if let Some(traced) = &traced {
                 traced.record_copy(&mut encoder, &frame);
                 mapped.extend(traced.buffers());
             }
             self.submit_slice(encoder, times, unfinished, scene, &mapped).await?;
             let _phase = self.phase("read back");
-            if textures.status().read(|words: &[u32]| words[0])? != 0 {
-                return Err(GpuError::Steps);
-            }
             textures.read_into(output.image, tile, &derived)?;
             if let (Some(traced), Some(pixels)) = (&traced, &mut output.pixels) {
                 traced.read_into(pixels, film, tile)?;

@@ -1,11 +1,12 @@
 //! The textures of one tile of a headless render.
 
-use wgpu::{Device, TextureFormat};
+use wgpu::{Buffer, CommandEncoder, Device, TextureFormat};
 
 use crate::accel::PlannedBuffer;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::derived::Derived;
 use crate::gpu::headless::readback::{ReadableBuffer, ReadableTexture};
+use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::targets::{DataTargets, Targets};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
@@ -114,19 +115,43 @@ impl TileTextures {
         &self.status
     }
 
-    pub(in crate::gpu) fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
+    /// Records the copies of the part of a tile, and of the status word of its frame, to the buffers through which the
+    /// host reads them. Returns these buffers, which must be mapped for [`TileTextures::read_into`].
+    pub(in crate::gpu) fn record_read_back(
+        &self,
+        encoder: &mut CommandEncoder,
+        frame: &Frame,
+        size: [u32; 2],
+    ) -> Vec<&Buffer> {
+        for texture in self.all() {
+            texture.record_copy(encoder, size);
+        }
+        self.status.record_copy(encoder, frame.status());
+        self.all().map(ReadableTexture::buffer).chain([self.status.buffer()]).collect()
+    }
+
+    fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
         let data = self.data.as_ref().map(|data| [&data.depth, &data.normal, &data.id]);
         std::iter::once(&self.color).chain(data.into_iter().flatten())
     }
 
+    /// Returns an error if rays took too many steps, according to the mapped status word.
+    pub(in crate::gpu) fn check_steps(&self) -> Result<(), GpuError> {
+        match self.status.read(|words: &[u32]| words[0])? {
+            0 => Ok(()),
+            _ => Err(GpuError::Steps),
+        }
+    }
+
     /// Copies the contents of the mapped buffers, and the layers that are derived from them, to the tile's part of the
-    /// image, and unmaps the buffers.
+    /// image, and unmaps the buffers. Nothing is copied if rays took too many steps.
     pub(in crate::gpu) fn read_into(
         &self,
         image: &mut Image,
         tile: Tile,
         derived: &Derived<'_>,
     ) -> Result<(), GpuError> {
+        self.check_steps()?;
         let [x, y] = tile.origin.map(|start| start as usize);
         let [width, height] = tile.size.map(|side| side as usize);
         let columns = x..x + width;

@@ -4,7 +4,6 @@ use crate::accel::{BrickBounds, margin_of};
 use crate::camera::View;
 use crate::gpu::passes::order::nearest_first;
 use crate::gpu::passes::tiles::{Groups, Tile, tiles};
-
 use crate::gpu::passes::visible_region::VisibleRegion;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
@@ -83,7 +82,7 @@ mod tests {
     fn bricks() -> Vec<BrickBounds> {
         let brick = |i: u8| {
             let x = 10.0 * f32::from(i);
-            BrickBounds::of_spheres(&[[x + 2.0, 2.0, 2.0, 1.0], [x + 8.0, 8.0, 8.0, -1.0]])
+            BrickBounds::of_spheres(&[[x + 2.0, 2.0, 2.0, 1.0], [x + 8.0, 8.0, 8.0, 1.0]])
         };
         (0..8).map(brick).collect()
     }
