@@ -6,6 +6,7 @@ use anyhow::Context;
 
 use super::adapter::AdapterReport;
 use super::args::BenchArgs;
+use super::bench_counts::CountsReport;
 use super::bench_report::{BenchReport, DEVICE_CLOCK, RunReport, SceneReport, Spread};
 use super::bench_scene::{BenchScene, BenchSource, DEFAULT};
 use super::device::{WantedAdapter, explained};
@@ -13,7 +14,7 @@ use super::failure::Failure;
 use super::input::parse_size;
 use super::speak::{answer, tell};
 use super::with_scene::watch_upload;
-use super::{interrupt, memory, process, progress, threads};
+use super::{calibrate, interrupt, memory, prices, process, progress, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::gpu::{
@@ -33,10 +34,16 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     };
     let adapter = WantedAdapter::new(&args.adapter);
     threads::start()?;
-    let headless = adapter.open_any()?;
+    let mut headless = adapter.open_any()?;
+    if args.calibrate {
+        return calibrate::run(&headless, args.json);
+    }
+    let (source, note) = prices::use_measured(&mut headless);
+    note.iter().for_each(|note| tell(format_args!("note: {note}")));
     let mut report = BenchReport {
         version: env!("CARGO_PKG_VERSION"),
         adapter: AdapterReport::of(&headless),
+        prices: source.words(),
         reps: args.reps,
         scenes: Vec::new(),
     };
@@ -81,7 +88,7 @@ fn measure_scene(
     }
     let mut runs = Vec::new();
     for choice in choices {
-        runs.push(measure(headless, scene, choice, args.reps)?);
+        runs.push(measure(headless, scene, choice, args)?);
     }
     Ok(SceneReport::new(scene, runs))
 }
@@ -91,7 +98,7 @@ fn measure(
     headless: &Headless,
     scene: &BenchScene,
     choice: AccelChoice,
-    reps: u32,
+    args: &BenchArgs,
 ) -> Result<RunReport, Failure> {
     let BenchScene { name, scene: spheres, camera, film, .. } = scene;
     let failed = |error: GpuError| explained(headless, &error);
@@ -105,8 +112,10 @@ fn measure(
         layers: LayerSet::COLOR,
         host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
     };
-    // The structure is chosen as for many pictures, not for this one alone.
-    let accel = headless.plan_accel(spheres, choice);
+    // Without the flag, the structure is chosen as for many pictures, not for this one alone.
+    let rays = args.pictures.map_or(u64::MAX, |count| count.saturating_mul(film.pixel_count()));
+    let accel = headless.plan_for_rays(spheres, choice, rays);
+    let reps = args.reps;
     let structures = StructurePlans { accel, occluders: None };
     let plan = RenderPlan::new(&request, structures, &headless.device_limits());
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
@@ -127,6 +136,11 @@ fn measure(
     times.begin(None);
     let buffers = uploaded.map_err(failed)?;
     let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
+    let counts = args.counts.then(|| {
+        let mut candidates = plan.accel.candidates.iter();
+        let planned = candidates.find(|candidate| candidate.structure == plan.accel.structure);
+        CountsReport::of(scene, &plan.accel.build(spheres.spheres()), planned)
+    });
 
     progress::stage(format!("{name}: first render, {}", structure.name()));
     let started = Instant::now();
@@ -176,6 +190,7 @@ fn measure(
         device_bytes_per_sphere: (!spheres.is_empty())
             .then(|| device_bytes as f64 / spheres.len() as f64),
         peak_memory_bytes: process::peak_bytes(),
+        counts,
     })
 }
 

@@ -29,7 +29,9 @@ pub(super) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let is_there = is_there(&scene_file)?;
     threads::start()?;
     let input = source.scene_from_text(SCENE)?;
-    let image = render(&input, LayerSet::COLOR, &device.open()?)?;
+    let opened = device.open()?;
+    opened.note().iter().for_each(|note| tell(format_args!("note: {note}")));
+    let image = render(&input, LayerSet::COLOR, &opened)?;
     outputs.write(&image, &input.encoding, None, (!is_there).then_some((&scene_file, SCENE)))?;
     tell(format_args!(
         "wrote {SCENE_FILE} and {PICTURE_FILE} in {:.1} s; change the scene and run \

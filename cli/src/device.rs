@@ -6,7 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use super::args::{AdapterArgs, Backend, DeviceArgs, Limits, Structure};
 use super::failure::Failure;
 #[cfg(feature = "gpu")]
-use super::{interrupt, profile, self_test};
+use super::{interrupt, prices, profile, self_test};
 use pinhole::accel::AccelChoice;
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, LimitChoice};
@@ -79,6 +79,8 @@ pub(super) enum Opened {
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
         warning: Option<String>,
+        /// A note if measured prices are of no use.
+        note: Option<String>,
     },
 }
 
@@ -93,6 +95,17 @@ impl Opened {
             Self::Cpu => None,
         }
     }
+
+    /// Returns a note on what was opened, if there is one.
+    pub(super) fn note(&self) -> Option<&str> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Device { note, .. } => note.as_deref(),
+            #[cfg(feature = "gpu")]
+            Self::CpuInstead => None,
+            Self::Cpu => None,
+        }
+    }
 }
 
 impl Device {
@@ -102,10 +115,12 @@ impl Device {
             Self::Cpu => Ok(Opened::Cpu),
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match wanted.open()? {
-                Ok(headless) => {
+                Ok(mut headless) => {
                     let _phase = profile::phase("self-test");
                     let warning = interrupt::on_device(|| self_test::quick_warning(&headless))?;
-                    Ok(Opened::Device { headless: Box::new(headless), choice: *choice, warning })
+                    let (_, note) = prices::use_measured(&mut headless);
+                    let (headless, choice) = (Box::new(headless), *choice);
+                    Ok(Opened::Device { headless, choice, warning, note })
                 }
                 Err(_) if *or_cpu => Ok(Opened::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),

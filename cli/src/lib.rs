@@ -19,9 +19,13 @@ mod args;
 #[cfg(feature = "gpu")]
 mod bench;
 #[cfg(feature = "gpu")]
+mod bench_counts;
+#[cfg(feature = "gpu")]
 mod bench_report;
 #[cfg(feature = "gpu")]
 mod bench_scene;
+#[cfg(feature = "gpu")]
+mod calibrate;
 mod camera;
 mod color_flags;
 mod data;
@@ -46,6 +50,8 @@ mod output;
 mod picture;
 #[cfg(feature = "gpu")]
 mod plan;
+#[cfg(feature = "gpu")]
+mod prices;
 mod print_scene;
 mod process;
 #[cfg(not(feature = "gpu"))]

@@ -136,6 +136,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     let (mut input, opened) = job.device.open_beside(|| job.source.load())?;
     job.outputs.check_not_inputs(&input.files)?;
     input.notes.iter().for_each(|text| note(text));
+    opened.note().iter().for_each(|text| note(text));
     let (encoding, annotations) = job.finish(&mut input, note)?;
     let outputs = job.outputs.with_annotations(annotations);
     let layers = outputs.layers(&encoding);
@@ -219,7 +220,7 @@ fn render_views(
             on_cpu(input, stop_rule, views, layers)
         }
         #[cfg(feature = "gpu")]
-        Opened::Device { headless, choice, warning } => {
+        Opened::Device { headless, choice, warning, .. } => {
             warning.iter().for_each(|warning| tell_once(|| warning.clone()));
             on_gpu(headless, input, stop_rule, views, layers, *choice)
         }

@@ -106,7 +106,7 @@ mod recorded {
     use crate::speak::tell;
     use crate::verify_report::command_line;
     use crate::with_scene::{upload, with_structures};
-    use crate::{interrupt, memory, progress, self_test, verify_lit, verify_paths};
+    use crate::{interrupt, memory, prices, progress, self_test, verify_lit, verify_paths};
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
     use pinhole::render::Integrator;
@@ -147,8 +147,10 @@ mod recorded {
                  run `verify` on the scene again",
             );
         }
-        let headless = wanted.open_any()?;
+        let mut headless = wanted.open_any()?;
         self_test::check(&headless)?;
+        let (_, note) = prices::use_measured(&mut headless);
+        note.iter().for_each(|note| tell(format_args!("note: {note}")));
         let (scene, view) = (&input.scene, &input.view());
         let settings = &input.settings.by_primary_rays();
         let choice = choice(args.accel.accel);

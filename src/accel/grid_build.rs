@@ -16,6 +16,9 @@ use crate::parallel::for_each;
 /// the time hardly changes between eight and sixteen.
 pub(super) const STEP_COST: f32 = 12.0;
 
+/// The largest number of spheres whose radii the choice of the cell size looks at.
+pub(super) const RADII: usize = 4096;
+
 /// Limits for the size of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridBudget {
@@ -84,8 +87,7 @@ fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
     (min - margin, max + margin)
 }
 
-/// Chooses the cell size with the smallest expected cost of a ray: a ray of length L takes about L/size steps, each
-/// with the elements of one cell's list.
+/// Chooses the first level of cells for the spheres with the given ids.
 fn first_level(
     spheres: &[[f32; 4]],
     ids: &[u32],
@@ -93,10 +95,20 @@ fn first_level(
     layout: ListLayout,
     budget: GridBudget,
 ) -> Cells {
-    const SAMPLES: usize = 4096;
-    let stride = ids.len().div_ceil(SAMPLES).max(1);
+    let stride = ids.len().div_ceil(RADII).max(1);
     let radii: Vec<f32> = ids.iter().step_by(stride).map(|id| spheres[*id as usize][3]).collect();
-    let extent = max - min;
+    cells_of_size(min, max, first_level_size(&radii, ids.len(), max - min, layout, budget))
+}
+
+/// Chooses the cell size with the smallest expected cost of a ray, for a number of spheres of which a sample has the
+/// given radii: a ray of length L takes about L/size steps, each with the elements of one cell's list.
+pub(super) fn first_level_size(
+    radii: &[f32],
+    count: usize,
+    extent: Vec3,
+    layout: ListLayout,
+    budget: GridBudget,
+) -> f32 {
     let longest = extent.max_element();
     // Prevents a volume of zero for flat scenes.
     let sides = extent.max(Vec3::splat(longest * 1e-3));
@@ -107,7 +119,7 @@ fn first_level(
     for step in 0..=80_u8 {
         let size = longest / (f32::from(step) / 8.0).exp2();
         let overlaps: f32 = radii.iter().map(|r| mean_overlapped_cells(size, *r)).sum();
-        let overlaps = f64::from(overlaps) / radii.len() as f64 * ids.len() as f64;
+        let overlaps = f64::from(overlaps) / radii.len() as f64 * count as f64;
         let cells = volume / f64::from(size).powi(3);
         let listed = expected_elements(layout, overlaps, cells);
         let fits = listed <= budget.listed as f64 * 0.97 && cells <= most_cells * 0.9;
@@ -116,7 +128,7 @@ fn first_level(
             best = Some((cost, size));
         }
     }
-    cells_of_size(min, max, best.map_or(longest, |(_, size)| size))
+    best.map_or(longest, |(_, size)| size)
 }
 
 /// The expected number of elements of the lists of cells that spheres overlap so many times.

@@ -4,6 +4,7 @@
 use glam::{BVec3, Vec3};
 
 use super::ball::PartInCell;
+use super::count::Observer;
 use super::grid::{Grid, LAST, word};
 use super::query::{NO_HIT, Nearest, RayF32};
 use super::slab::inverse_direction;
@@ -26,8 +27,20 @@ impl Grid {
         ray: &RayF32,
         nearest: &mut Nearest,
     ) {
+        self.find_nearest_observed(spheres, ids, ray, nearest, &mut ());
+    }
+
+    /// Like [`Grid::find_nearest`], and tells `observer` what the walk does.
+    pub(super) fn find_nearest_observed(
+        &self,
+        spheres: &[[f32; 4]],
+        ids: &[u32],
+        ray: &RayF32,
+        nearest: &mut Nearest,
+        observer: &mut impl Observer,
+    ) {
         let mut found = Found { t: nearest.t, shape_index: None };
-        self.walk(spheres, ray, &mut found, false);
+        self.walk(spheres, ray, &mut found, false, observer);
         if let Some(shape_index) = found.shape_index {
             nearest.offer(found.t, ids[shape_index as usize]);
         }
@@ -38,11 +51,18 @@ impl Grid {
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
         // A list accepts a hit at the same distance as the nearest so far, so the limit is just below `t_max`.
         let mut found = Found { t: t_max.next_down(), shape_index: None };
-        self.walk(spheres, ray, &mut found, true);
+        self.walk(spheres, ray, &mut found, true, &mut ());
         found.shape_index.is_some()
     }
 
-    fn walk(&self, spheres: &[[f32; 4]], ray: &RayF32, found: &mut Found, stop_at_first: bool) {
+    fn walk(
+        &self,
+        spheres: &[[f32; 4]],
+        ray: &RayF32,
+        found: &mut Found,
+        stop_at_first: bool,
+        observer: &mut impl Observer,
+    ) {
         let forward = ray.direction.cmpge(Vec3::ZERO);
         let ahead = Vec3::select(forward, Vec3::ONE, Vec3::ZERO);
         let step = Vec3::select(forward, Vec3::ONE, Vec3::NEG_ONE);
@@ -66,6 +86,7 @@ impl Grid {
         let mut cell = (start + t * speed).floor().clamp(Vec3::ZERO, counts - 1.0);
         loop {
             let outer = self.word(cell.dot(strides) as usize);
+            observer.step();
             let kind = outer & word::KIND;
             let reach =
                 if kind == word::EMPTY { (outer >> octant & word::REACH) as f32 } else { 0.0 };
@@ -81,6 +102,7 @@ impl Grid {
                 loop {
                     let mut inner_word = outer;
                     if kind == word::GRID {
+                        observer.step();
                         let first = word::first_inner(outer);
                         inner_word = self.word(first + inner.dot(inner_strides) as usize);
                     }
@@ -90,7 +112,14 @@ impl Grid {
                         let from = (start + t_enter * speed - cell) * side - inner;
                         let length = (t_inner - t_enter) * per_cell * side;
                         let part = PartInCell::new(from, ray.direction, length);
-                        self.test_list(spheres, ray, &part, inner_word & !word::KIND, found);
+                        self.test_list(
+                            spheres,
+                            ray,
+                            &part,
+                            inner_word & !word::KIND,
+                            found,
+                            observer,
+                        );
                     }
                     if is_done(found, t_inner) || t_inner >= t_leave {
                         break;
@@ -128,12 +157,15 @@ impl Grid {
         part: &PartInCell,
         start: u32,
         found: &mut Found,
+        observer: &mut impl Observer,
     ) {
         let mut best = Found { t: NO_HIT, shape_index: None };
         for at in self.list(start) {
+            observer.elements(1);
             if self.balls.as_ref().is_some_and(|balls| !part.meets(balls[at])) {
                 continue;
             }
+            observer.sphere();
             let shape_index = self.references[at] & !LAST;
             let t = intersect_sphere(ray, spheres[shape_index as usize]);
             if t < best.t {

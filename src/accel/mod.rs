@@ -12,8 +12,12 @@ mod brick;
 mod brick_bounds;
 mod bricks;
 mod cells;
+mod count;
+mod decide;
 mod divide;
 mod divide_by_sample;
+mod expected;
+mod expected_cost;
 mod extent;
 pub(crate) mod grid;
 pub(crate) mod grid_build;
@@ -27,6 +31,7 @@ mod grid_walk;
 mod leaf;
 pub(crate) mod list;
 mod plan;
+mod prices;
 mod primitive;
 pub(crate) mod query;
 pub(crate) mod slab;
@@ -47,10 +52,13 @@ pub use brick::{Accel, Brick, Index, Structure};
 #[cfg(feature = "gpu")]
 pub(crate) use brick_bounds::BrickBounds;
 pub use bricks::Bricks;
+pub use count::Counts;
+pub use expected::Expected;
 pub use grid::ListLayout;
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};
+pub use prices::{Candidate, Prices, StructurePrices};
 pub use primitive::{BrickKind, Primitive};
 pub use statistics::SceneStatistics;
 #[cfg(feature = "gpu")]

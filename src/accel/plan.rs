@@ -4,9 +4,11 @@ use std::fmt;
 
 use super::binary_tree::BinaryNode;
 use super::brick::Structure;
+use super::decide::{candidates, decide};
 use super::divide_by_sample::largest_part;
 use super::grid::{ListLayout, MAX_CELLS};
 use super::grid_build::GridBudget;
+use super::prices::{Candidate, Prices};
 use super::statistics::SceneStatistics;
 use super::wide_node::WideNode;
 use super::wide_tree_build::WIDE_BYTES_PER_SPHERE;
@@ -28,12 +30,6 @@ pub enum AccelChoice {
     List,
 }
 
-/// The number of spheres up to which no structure is worth its cost.
-const FEW: usize = 32;
-
-/// The number of spheres, in a cube of about the smallest cell of a nested grid, above which a tree is better.
-const MAX_IN_A_CUBE: f32 = 256.0;
-
 /// The number of spheres that one dispatch tests without a structure: below the 65,535 iterations after which lavapipe
 /// in Mesa 22.3 silently leaves a loop.
 pub(crate) const LIST_LEN: usize = 3 << 14;
@@ -43,10 +39,6 @@ const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
 /// The largest number of cells of the first level of a grid; the others are left to the second level.
 pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
-
-/// The number of rays for each sphere below which making balls takes longer than they save: on lavapipe, 50 ns for
-/// each sphere and 13 ns for each ray of a million random spheres.
-const MIN_RAYS_FOR_BALLS: u64 = 4;
 
 /// An upper limit for the bytes of nodes per sphere: a node of 64 bytes has two leaves of three or four spheres.
 const BINARY_BYTES_PER_SPHERE: usize = 32;
@@ -85,6 +77,9 @@ pub struct AccelPlan {
     pub(super) budget: GridBudget,
     /// The buffers for the whole scene on the device.
     pub buffers: Vec<PlannedBuffer>,
+    /// The structures that were compared, with what they are expected to cost; none for very few spheres, or if a
+    /// structure was asked for that never competes.
+    pub candidates: Vec<Candidate>,
 }
 
 impl AccelPlan {
@@ -96,7 +91,7 @@ impl AccelPlan {
     }
 
     /// Makes a plan like [`AccelPlan::new`], for a known number of rays in all pictures together: if there are few, a
-    /// structure that is slower to trace but faster to build may be better.
+    /// structure that is slower to trace but faster to build may be better. The prices are [`Prices::SOFTWARE`].
     #[must_use]
     pub fn for_rays(
         spheres: &[[f32; 4]],
@@ -104,10 +99,46 @@ impl AccelPlan {
         binding_bytes: u64,
         rays: u64,
     ) -> Self {
+        Self::with_prices(spheres, choice, binding_bytes, rays, &Prices::SOFTWARE)
+    }
+
+    /// Makes a plan like [`AccelPlan::for_rays`] for a device with these prices: of the structures that the choice
+    /// allows, the one in which building, copying and tracing take the least time. [`u64::MAX`] rays stand for many
+    /// pictures, for which only the time of a ray counts.
+    #[must_use]
+    pub fn with_prices(
+        spheres: &[[f32; 4]],
+        choice: AccelChoice,
+        binding_bytes: u64,
+        rays: u64,
+        prices: &Prices,
+    ) -> Self {
         let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
-        let (structure, reason) = decide(&statistics, choice, rays);
-        let count = statistics.count;
+        let candidates = candidates(spheres, &statistics, choice, binding_bytes, prices);
+        let (structure, reason) = decide(&statistics, choice, &candidates, rays);
+        Self { candidates, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
+    }
+
+    /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels.
+    #[must_use]
+    pub fn of(spheres: &[[f32; 4]], structure: Structure, binding_bytes: u64) -> Self {
+        let structure = match structure {
+            Structure::NestedGrid(layout) => Structure::Grid(layout),
+            structure => structure,
+        };
+        let (statistics, reason) = (SceneStatistics::of(spheres), "asked for".to_owned());
+        Self::of_structure(statistics, structure, reason, binding_bytes.min(MAX_BINDING_BYTES))
+    }
+
+    /// The plan of a structure that has been decided on.
+    pub(super) fn of_structure(
+        statistics: SceneStatistics,
+        structure: Structure,
+        reason: String,
+        binding_bytes: u64,
+    ) -> Self {
+        let (count, candidates) = (statistics.count, Vec::new());
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
         // Where bricks are not all of the same size, this takes one more brick at most.
@@ -116,8 +147,9 @@ impl AccelPlan {
         }
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
+        let buffers = Vec::new();
         let mut plan =
-            Self { statistics, structure, reason, brick_count, budget, buffers: Vec::new() };
+            Self { statistics, structure, reason, brick_count, budget, buffers, candidates };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -238,33 +270,6 @@ impl fmt::Display for AccelChoice {
             Self::BinaryTree => "binary-tree",
             Self::List => "list",
         })
-    }
-}
-
-fn decide(statistics: &SceneStatistics, choice: AccelChoice, rays: u64) -> (Structure, String) {
-    let count = statistics.count;
-    let (layout, why) = if rays / MIN_RAYS_FOR_BALLS < count as u64 {
-        (ListLayout::Referenced, "too few rays for balls in cells to pay")
-    } else {
-        (ListLayout::Balls, "enough rays for balls in cells to pay")
-    };
-    match choice {
-        _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
-        AccelChoice::List => (Structure::List, "asked for".to_owned()),
-        AccelChoice::Tree => (Structure::WideTree, "asked for".to_owned()),
-        AccelChoice::BinaryTree => (Structure::BinaryTree, "asked for".to_owned()),
-        AccelChoice::Auto if count <= FEW => {
-            (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
-        }
-        AccelChoice::Auto if statistics.densest > MAX_IN_A_CUBE => (
-            Structure::WideTree,
-            format!(
-                "about {:.0} spheres lie in a cube of 1/4096 of the scene's side, too close together for two levels of cells",
-                statistics.densest
-            ),
-        ),
-        AccelChoice::Auto => (Structure::Grid(layout), format!("{count} spheres, {why}")),
-        AccelChoice::Grid => (Structure::Grid(layout), format!("asked for; {why}")),
     }
 }
 

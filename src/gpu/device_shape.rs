@@ -2,11 +2,13 @@
 
 use wgpu::DeviceType;
 
+use crate::accel::Prices;
+
 /// The order and the amounts of work that suit a type of device.
 ///
 /// Those of software devices were measured with Mesa's lavapipe. Those of GPUs follow from how GPUs work: no GPU has
 /// been measured yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::gpu) struct DeviceShape {
     /// Whether rows of workgroups are taken in an order that spreads any run of them over the picture. Software devices
     /// give each thread a contiguous run of workgroups, and none should get only background. GPUs give workgroups one by
@@ -24,6 +26,8 @@ pub(in crate::gpu) struct DeviceShape {
     /// take a software device less than half a second, and a small GPU, at ten thousand million tests per second, a
     /// tenth of a second.
     pub(in crate::gpu) max_tests: u64,
+    /// The prices by which structures are chosen.
+    pub(in crate::gpu) prices: Prices,
 }
 
 /// Maximum number of paths where memory is scarce.
@@ -39,6 +43,7 @@ impl DeviceShape {
                 max_paths: FEW_PATHS,
                 first_groups: 2048,
                 max_tests: 1 << 27,
+                prices: Prices::SOFTWARE,
             },
             DeviceType::DiscreteGpu | DeviceType::VirtualGpu => {
                 Self { max_tile_pixels: 1 << 22, max_paths: 1 << 21, ..Self::of_small_gpu() }
@@ -60,6 +65,7 @@ impl DeviceShape {
             max_paths: FEW_PATHS,
             first_groups: 1 << 14,
             max_tests: 1 << 30,
+            prices: Prices::GPU,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Grids are what their check says, and the check finds what is planted.
 
-use pinhole::accel::{AccelChoice, AccelPlan, ListLayout, SceneStatistics, Structure};
+use pinhole::accel::{AccelPlan, ListLayout, SceneStatistics, Structure};
 use pinhole::internals::{BuiltGrid, Grid, GridBudget, GridError, build_grid};
 
 use crate::support::spheres::{self, Spheres};
@@ -15,8 +15,7 @@ const GRID: u32 = 2 << 30;
 
 /// What a plan allows in one brick.
 fn budget(layout: ListLayout, spheres: &Spheres) -> GridBudget {
-    let rays = if layout == ListLayout::Balls { u64::MAX } else { 1 };
-    let plan = AccelPlan::for_rays(spheres, AccelChoice::Grid, 1 << 30, rays);
+    let plan = AccelPlan::of(spheres, Structure::Grid(layout), 1 << 30);
     assert_eq!((plan.structure, plan.brick_count), (Structure::Grid(layout), 1));
     let words = |name: &str| {
         plan.buffers.iter().find(|buffer| buffer.name == name).map(|of| of.bytes as usize / 4)

@@ -2,7 +2,7 @@
 //! takes more memory than was planned.
 
 use fastrand::Rng;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, ListLayout, Structure};
 use pinhole::glam::Vec3;
 use pinhole::internals::{NO_HIT, RayF32, intersect_sphere};
 
@@ -24,17 +24,16 @@ const TINY_FOR_REFERENCES: u64 = 300 * 68 * 4;
 /// Every structure of the spheres, with its plan.
 fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
     let kinds = [
-        (AccelChoice::List, u64::MAX, TINY),
-        (AccelChoice::Grid, u64::MAX, TINY_FOR_COPIES),
-        // For so few rays, no copies are made.
-        (AccelChoice::Grid, 1, TINY_FOR_REFERENCES),
-        (AccelChoice::Tree, u64::MAX, TINY),
-        (AccelChoice::BinaryTree, u64::MAX, TINY),
+        (Structure::List, TINY),
+        (Structure::Grid(ListLayout::Balls), TINY_FOR_COPIES),
+        (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
+        (Structure::WideTree, TINY),
+        (Structure::BinaryTree, TINY),
     ];
     let mut all = Vec::new();
-    for (choice, rays, tiny) in kinds {
+    for (structure, tiny) in kinds {
         for binding_bytes in [ROOMY, tiny] {
-            let plan = AccelPlan::for_rays(spheres, choice, binding_bytes, rays);
+            let plan = AccelPlan::of(spheres, structure, binding_bytes);
             check_bindings(&plan, binding_bytes);
             let accel = plan.build(spheres);
             let name = format!("{} in {}", accel.structure().name(), accel.bricks().len());
@@ -273,9 +272,9 @@ fn far_and_very_long_and_very_short() {
 #[test]
 fn many_small_bricks() {
     let spheres = spheres::random(60, 22, |_| 0.1);
-    for rays_planned in [u64::MAX, 1] {
+    for layout in [ListLayout::Balls, ListLayout::Referenced] {
         let binding_bytes = TINY / 4;
-        let plan = AccelPlan::for_rays(&spheres, AccelChoice::Grid, binding_bytes, rays_planned);
+        let plan = AccelPlan::of(&spheres, Structure::Grid(layout), binding_bytes);
         check_bindings(&plan, binding_bytes);
         let accel = plan.build(&spheres);
         assert!(accel.bricks().len() >= 15, "{}", accel.bricks().len());
@@ -283,6 +282,50 @@ fn many_small_bricks() {
         let mut rng = Rng::with_seed(22);
         for ray in rays(&mut rng, &spheres, 800) {
             assert_same(accel.find_nearest(&ray), brute(&spheres, &ray), "many bricks", &ray);
+        }
+    }
+}
+
+/// What rays are expected to do is near what they do, in every structure.
+#[test]
+fn expected_counts_are_near() {
+    use pinhole::accel::Counts;
+    use pinhole::generate::Kind;
+
+    for (kind, number) in
+        [(Kind::Random, 30_000), (Kind::Lattice, 32_000), (Kind::Clusters, 20_000)]
+    {
+        let spheres = kind.spheres(number, 1).unwrap();
+        let plan = AccelPlan::new(&spheres, AccelChoice::Auto, ROOMY);
+        assert_eq!(plan.candidates.len(), 3);
+        for candidate in &plan.candidates {
+            let accel = AccelPlan::of(&spheres, candidate.structure, ROOMY).build(&spheres);
+            let mut rng = Rng::with_seed(24);
+            let (mut counts, mut number) = (Counts::default(), 0.0);
+            let (low, high) = accel.bounds();
+            // From one side through random points: isotropic enough for a factor.
+            for _ in 0..4_000 {
+                let [mut at, to] =
+                    [0, 1].map(|_| low + (high - low) * Vec3::new(rng.f32(), rng.f32(), rng.f32()));
+                at[rng.usize(..3)] = low[0];
+                at = at.max(low);
+                let ray = RayF32 { origin: at, direction: (to - at) / (to - at).length() };
+                let found = accel.find_nearest(&ray);
+                assert_eq!(accel.count_nearest(&ray, &mut counts), found);
+                number += 1.0;
+            }
+            let (counted, expected) = (counts.times(1.0 / number), candidate.expected);
+            for (counted, expected) in [
+                (counted.steps, expected.steps),
+                (counted.elements, expected.elements),
+                (counted.spheres, expected.spheres),
+            ] {
+                let ratio = (expected + 0.1) / (counted + 0.1);
+                assert!(
+                    (0.4..2.5).contains(&ratio),
+                    "{kind:?}, {candidate:?}: {counts:?} of {number} rays"
+                );
+            }
         }
     }
 }
@@ -303,16 +346,19 @@ fn every_structure_is_met() {
 fn coincident(count: usize) {
     let spheres = spheres::coincident(count);
     let few = spheres::coincident(1);
-    for choice in [AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree] {
-        for rays_planned in [u64::MAX, 1] {
-            let plan = AccelPlan::for_rays(&spheres, choice, ROOMY, rays_planned);
-            let accel = plan.build(&spheres);
-            let name = format!("{count} coincident, {}", accel.structure().name());
-            check_memory(&name, &plan, &accel);
-            let mut rng = Rng::with_seed(23);
-            for ray in rays(&mut rng, &few, 24) {
-                assert_same(accel.find_nearest(&ray), brute(&few, &ray), &name, &ray);
-            }
+    for structure in [
+        Structure::Grid(ListLayout::Balls),
+        Structure::Grid(ListLayout::Referenced),
+        Structure::WideTree,
+        Structure::BinaryTree,
+    ] {
+        let plan = AccelPlan::of(&spheres, structure, ROOMY);
+        let accel = plan.build(&spheres);
+        let name = format!("{count} coincident, {}", accel.structure().name());
+        check_memory(&name, &plan, &accel);
+        let mut rng = Rng::with_seed(23);
+        for ray in rays(&mut rng, &few, 24) {
+            assert_same(accel.find_nearest(&ray), brute(&few, &ray), &name, &ray);
         }
     }
 }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use libtest_mimic::Trial;
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, ListLayout, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, DataTargets, Decision, Frame, GpuError, Headless, HeadlessOptions, LimitChoice,
@@ -92,15 +92,14 @@ pub(crate) fn trials() -> Vec<Trial> {
 /// All structures, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
     let kinds = [
-        (AccelChoice::Grid, u64::MAX, TINY_FOR_COPIES),
-        // The plan makes no copies of spheres for so few rays.
-        (AccelChoice::Grid, 1, TINY_FOR_REFERENCES),
-        (AccelChoice::Tree, u64::MAX, TINY),
-        (AccelChoice::BinaryTree, u64::MAX, TINY),
-        (AccelChoice::List, u64::MAX, TINY),
+        (Structure::Grid(ListLayout::Balls), TINY_FOR_COPIES),
+        (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
+        (Structure::WideTree, TINY),
+        (Structure::BinaryTree, TINY),
+        (Structure::List, TINY),
     ];
-    let build = |(choice, rays, tiny)| {
-        [ROOMY, tiny].map(|bytes| AccelPlan::for_rays(spheres, choice, bytes, rays).build(spheres))
+    let build = |(structure, tiny)| {
+        [ROOMY, tiny].map(|bytes| AccelPlan::of(spheres, structure, bytes).build(spheres))
     };
     kinds.into_iter().flat_map(build).collect()
 }

@@ -121,6 +121,7 @@ pub(crate) fn run(args: &RenderArgs, wanted: &Wanted, job: Job) -> Result<(), Fa
         outputs.renamed(|path| numbered(path, *number)).check_not_inputs(&input.files)?;
     }
     input.notes.drain(..).for_each(|note| notes.tell(note));
+    opened.note().iter().for_each(|note| notes.tell((*note).to_owned()));
     let encoding = annotation.apply_to(encoding.apply_to(input.encoding));
     let encoding = encoding.with_background(input.settings.visible_background());
     input.settings.is_transparent = encoding.transparent();

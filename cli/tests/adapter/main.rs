@@ -7,6 +7,7 @@
 mod harness;
 mod light;
 mod plan;
+mod prices;
 mod profile;
 mod program;
 mod render;
@@ -33,6 +34,7 @@ fn main() {
         let groups = [
             light::trials(),
             plan::trials(),
+            prices::trials(),
             profile::trials(),
             render::trials(),
             verify::trials(),

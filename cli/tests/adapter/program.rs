@@ -8,6 +8,9 @@ use pinhole::gpu::Headless;
 /// A command that runs `pinhole` in a folder, with arguments that are separated by spaces.
 pub(crate) fn command(folder: impl AsRef<Path>, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+    // The prices that the user measured are not those of the tests.
+    let caches = std::path::absolute(folder.as_ref().join("no-cache")).unwrap();
+    command.env("XDG_CACHE_HOME", caches);
     command.current_dir(folder).args(arguments.split(' '));
     command
 }

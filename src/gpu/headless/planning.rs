@@ -72,10 +72,12 @@ impl Headless {
         self.plan_for_rays(scene, choice, u64::MAX)
     }
 
-    fn plan_for_rays(&self, scene: &Scene, choice: AccelChoice, rays: u64) -> AccelPlan {
+    /// Plans the structure of a scene for this device, its prices, and a number of rays in all pictures together.
+    #[must_use]
+    pub fn plan_for_rays(&self, scene: &Scene, choice: AccelChoice, rays: u64) -> AccelPlan {
         let binding = binding_limit(&self.device().limits());
         quirks::plan(self.adapter_info(), scene, choice, |choice| {
-            AccelPlan::for_rays(scene.spheres(), choice, binding, rays)
+            AccelPlan::with_prices(scene.spheres(), choice, binding, rays, self.prices())
         })
     }
 
