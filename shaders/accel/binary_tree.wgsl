@@ -20,7 +20,7 @@ fn offer_child(search: Search, child: BinaryChild, nearest: ptr<function, Neares
 fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
     var stack: array<vec2u, BINARY_LEVELS>;
     var top = 0u;
-    let slab = SlabRay(search.ray.origin, search.inverse);
+    let slab = SlabRay(search.ray.origin, search.inverse, 0.0);
     var next = vec2u(0u, 0u);
     var near = BinaryChild();
     var far = BinaryChild();
@@ -58,7 +58,7 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
 fn find_any(search: Search, t_max: f32) -> bool {
     var stack: array<u32, BINARY_LEVELS>;
     var top = 0u;
-    let slab = SlabRay(search.ray.origin, search.inverse);
+    let slab = SlabRay(search.ray.origin, search.inverse, 0.0);
     var node = 0u;
     loop {
         if (!spend(11u)) {

@@ -5,4 +5,6 @@ struct SlabRay {
     origin: vec3f,
     // Reciprocals of the direction's components.
     inverse: vec3f,
+    // By how much boxes are wider for this ray than they are.
+    wider: f32,
 }

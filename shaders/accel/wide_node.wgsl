@@ -28,19 +28,21 @@ fn planes(cells: u32, step: f32, start: f32) -> vec4f {
 
 struct QuantizedRay {
     step: vec3f,
-    start: vec3f,
+    // Distances to the grid's origin, less and more by how much boxes are wider.
+    near: vec3f,
+    far: vec3f,
     t_max: f32,
 }
 
 // The hit bits of four slots, from the quantized near and far planes of each axis.
 fn four_hits(ray: QuantizedRay, near: vec3u, far: vec3u) -> u32 {
     let entry = max(
-        max(planes(near.x, ray.step.x, ray.start.x), planes(near.y, ray.step.y, ray.start.y)),
-        max(planes(near.z, ray.step.z, ray.start.z), vec4f(0.0)),
+        max(planes(near.x, ray.step.x, ray.near.x), planes(near.y, ray.step.y, ray.near.y)),
+        max(planes(near.z, ray.step.z, ray.near.z), vec4f(0.0)),
     );
     let exit = min(
-        min(planes(far.x, ray.step.x, ray.start.x), planes(far.y, ray.step.y, ray.start.y)),
-        min(planes(far.z, ray.step.z, ray.start.z), vec4f(ray.t_max)),
+        min(planes(far.x, ray.step.x, ray.far.x), planes(far.y, ray.step.y, ray.far.y)),
+        min(planes(far.z, ray.step.z, ray.far.z), vec4f(ray.t_max)),
     );
     return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), entry <= exit), vec4u(1u));
 }
@@ -57,7 +59,8 @@ fn wide_node(ray: SlabRay, index: u32, t_max: f32) -> WideNode {
     let exponents = (vec3u(grid.w) >> vec3u(0u, 8u, 16u)) & vec3u(0xffu);
     let cell = bitcast<vec3f>(exponents << vec3u(23u));
     let start = (bitcast<vec3f>(grid.xyz) - ray.origin) * ray.inverse;
-    let in_grid = QuantizedRay(cell * ray.inverse, start, t_max);
+    let wider = ray.wider * abs(ray.inverse);
+    let in_grid = QuantizedRay(cell * ray.inverse, start - wider, start + wider, t_max);
 
     let backward = ray.inverse < vec3f(0.0);
     let low_0 = vec3u(a.x, a.z, b.x);

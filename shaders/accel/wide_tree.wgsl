@@ -1,11 +1,18 @@
 // Traversal of the compressed 8-wide tree in octant order. Twin: src/accel/wide_tree_trace.rs.
 // provides: find_any, find_nearest
-// needs: LEAF_COUNT_SHIFT, LEAF_FIRST, Nearest, Search, SlabRay, WIDE_ROOT, WideNode, any_in_leaf, first_of_group,
-//   octant_of, octant_order, offer_leaf, rest_of_group, spend, wide_node
+// needs: LEAF_COUNT_SHIFT, LEAF_FIRST, Nearest, Search, SlabRay, WIDE_ROOT, WideNode, any_in_leaf, brick,
+//   first_of_group, octant_of, octant_order, offer_leaf, rest_of_group, spend, wide_node
 
 // Maximum depth of the tree and size of the stack. The remaining children of a node are one entry, and the root leaves
 // none, so a tree of WIDE_LEVELS levels needs one entry less. The host builds no deeper tree.
 const WIDE_LEVELS: u32 = 16u;
+
+// By how much boxes are wider for a ray with this origin: errors grow with the distance to a sphere, and the spheres of a
+// crowd have a margin for rays that start near it. Twin: `NearRays::widening` in src/accel/outliers.rs.
+fn widening(origin: vec3f) -> f32 {
+    let farthest = length(max(abs(origin - brick.crowd_min), abs(brick.crowd_max - origin)));
+    return max(0x1p-18 * farthest - brick.crowd_margin, 0.0);
+}
 
 // Counts the iterations of a node: one for the node, and at most four for each leaf, including the loop over leaves.
 fn spend_on_node(leaves: u32) -> bool {
@@ -20,7 +27,7 @@ fn leaf_byte(node: WideNode, slot: u32) -> u32 {
 fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
     var stack: array<vec2u, WIDE_LEVELS>;
     var top = 0u;
-    let slab = SlabRay(search.ray.origin, search.inverse);
+    let slab = SlabRay(search.ray.origin, search.inverse, widening(search.ray.origin));
     let octant = octant_of(slab);
     var group = WIDE_ROOT;
     var leaves = 0u;
@@ -56,7 +63,7 @@ fn find_nearest(search: Search, nearest: ptr<function, Nearest>) {
 fn find_any(search: Search, t_max: f32) -> bool {
     var stack: array<vec2u, WIDE_LEVELS>;
     var top = 0u;
-    let slab = SlabRay(search.ray.origin, search.inverse);
+    let slab = SlabRay(search.ray.origin, search.inverse, widening(search.ray.origin));
     var group = WIDE_ROOT;
     var leaves = 0u;
     loop {

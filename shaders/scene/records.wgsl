@@ -66,4 +66,9 @@ struct Brick {
     material_mask: u32,
     // Index of the first reference in `ids`, if references of a grid are there.
     first_reference: u32,
+    // The box of most spheres of a tree, and their margin, which suits rays that start in that box.
+    crowd_min: vec3f,
+    crowd_margin: f32,
+    crowd_max: vec3f,
+    unused: u32,
 }

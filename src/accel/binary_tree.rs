@@ -8,6 +8,7 @@
 use glam::Vec3;
 
 use super::extent::{Extent, Item};
+use super::outliers::Margins;
 use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
 use crate::parallel::both;
 
@@ -67,7 +68,7 @@ impl BinaryTree {
     /// by `margin`. The same spheres give the same tree, to the bit.
     #[must_use]
     pub fn build(spheres: &[[f32; 4]], margin: f32) -> Self {
-        let mut items = Item::all(spheres, margin);
+        let mut items = Item::all(spheres, &Margins::one(margin));
         // The smallest number of halvings k with ⌈n/2ᵏ⌉ ≤ 4; each halving is a level.
         let mut halvings = 0;
         while items.len().div_ceil(1 << halvings) > BINARY_LEAF as usize {
@@ -110,7 +111,7 @@ impl BinaryTree {
     /// # Errors
     /// Returns an error if the tree is not valid; the error describes the first problem.
     pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
-        tree_check::validate(self, spheres, self.margin)
+        tree_check::validate(self, spheres, &Margins::one(self.margin))
     }
 
     /// The size of the tree, and the expected cost of tracing a ray.

@@ -11,6 +11,7 @@ use super::brick::{Accel, Brick, Index, Structure};
 use super::brick_bounds::BrickBounds;
 use super::divide::divide;
 use super::grid_build::{BuiltGrid, build_grid};
+use super::outliers::Margins;
 use super::plan::AccelPlan;
 use super::wide_tree::WideTree;
 
@@ -110,7 +111,8 @@ impl Bricks<'_> {
                 Brick { index: Index::Grid(grid), spheres, ids }
             }
             Structure::WideTree => build_tree(spheres, &ids, |spheres| {
-                let tree = WideTree::build(spheres, margin);
+                let tree =
+                    WideTree::build_with(spheres, Margins { all: margin, crowd: plan.crowd });
                 (tree.ids().to_vec(), Index::WideTree(tree))
             }),
             Structure::BinaryTree => build_tree(spheres, &ids, |spheres| {

@@ -2,6 +2,8 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::outliers::Margins;
+
 /// A box in the scene's frame, in f32; [`Extent::EMPTY`] contains nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
@@ -61,15 +63,15 @@ pub(super) struct Item {
 
 impl Item {
     /// Makes one item for every sphere (centre, radius).
-    pub(super) fn all(spheres: &[[f32; 4]], margin: f32) -> Vec<Self> {
-        let largest = spheres.iter().flatten().fold(margin, |largest, x| largest.max(x.abs()));
-        // Three roundings of numbers that are at most 4 · largest: two in `reach` and one in `center ± reach`.
-        let roundings = largest * (8.0 * f32::EPSILON);
-        let item = |(id, &[x, y, z, radius]): (usize, &[f32; 4])| Self {
-            center: [x, y, z],
-            reach: radius + margin + roundings,
+    pub(super) fn all(spheres: &[[f32; 4]], margins: &Margins) -> Vec<Self> {
+        let item = |(id, sphere): (usize, &[f32; 4])| {
+            let [x, y, z, radius] = *sphere;
+            let margin = margins.of(sphere);
+            let largest = sphere.iter().fold(margin, |largest, x| largest.max(x.abs()));
+            // Three roundings of numbers that are at most 4 · largest: two in `reach` and one in `center ± reach`.
+            let roundings = largest * (8.0 * f32::EPSILON);
             // A scene has fewer than 2³² spheres.
-            id: id as u32,
+            Self { center: [x, y, z], reach: radius + margin + roundings, id: id as u32 }
         };
         spheres.iter().enumerate().map(item).collect()
     }

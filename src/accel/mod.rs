@@ -30,6 +30,7 @@ mod grid_sort;
 mod grid_walk;
 mod leaf;
 pub(crate) mod list;
+mod outliers;
 mod plan;
 mod prices;
 mod primitive;
@@ -55,6 +56,7 @@ pub use bricks::Bricks;
 pub use count::Counts;
 pub use expected::Expected;
 pub use grid::ListLayout;
+pub use outliers::Crowd;
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelChoice, AccelPlan, PlannedBuffer};

@@ -8,6 +8,7 @@ use super::decide::{candidates, decide};
 use super::divide_by_sample::largest_part;
 use super::grid::{ListLayout, MAX_CELLS};
 use super::grid_build::GridBudget;
+use super::outliers::Crowd;
 use super::prices::{Candidate, Prices};
 use super::statistics::SceneStatistics;
 use super::wide_node::WideNode;
@@ -67,6 +68,8 @@ impl PlannedBuffer {
 pub struct AccelPlan {
     /// The statistics on which the decision is based.
     pub statistics: SceneStatistics,
+    /// The spheres that are not outliers, if there are outliers.
+    pub crowd: Option<Crowd>,
     /// The structure that will be built.
     pub structure: Structure,
     /// Why this structure was chosen.
@@ -115,9 +118,13 @@ impl AccelPlan {
     ) -> Self {
         let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
         let statistics = SceneStatistics::of(spheres);
+        let crowd = Crowd::find(spheres, &statistics);
         let candidates = candidates(spheres, &statistics, choice, binding_bytes, prices);
-        let (structure, reason) = decide(&statistics, choice, &candidates, rays);
-        Self { candidates, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
+        let (structure, reason) = crowd
+            .and_then(|crowd| crowd.decide(&statistics, choice))
+            .unwrap_or_else(|| decide(&statistics, choice, &candidates, rays));
+        let plan = Self::of_structure(statistics, structure, reason, binding_bytes);
+        Self { crowd, candidates, ..plan }
     }
 
     /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels.
@@ -128,7 +135,9 @@ impl AccelPlan {
             structure => structure,
         };
         let (statistics, reason) = (SceneStatistics::of(spheres), "asked for".to_owned());
-        Self::of_structure(statistics, structure, reason, binding_bytes.min(MAX_BINDING_BYTES))
+        let crowd = Crowd::find(spheres, &statistics);
+        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
+        Self { crowd, ..Self::of_structure(statistics, structure, reason, binding_bytes) }
     }
 
     /// The plan of a structure that has been decided on.
@@ -138,7 +147,7 @@ impl AccelPlan {
         reason: String,
         binding_bytes: u64,
     ) -> Self {
-        let (count, candidates) = (statistics.count, Vec::new());
+        let (count, crowd, candidates) = (statistics.count, None, Vec::new());
         let most_per_brick = most_per_brick(structure, binding_bytes);
         let mut brick_count = count.div_ceil(most_per_brick).max(1);
         // Where bricks are not all of the same size, this takes one more brick at most.
@@ -149,7 +158,7 @@ impl AccelPlan {
         let budget = grid_budget(structure, largest, binding_bytes);
         let buffers = Vec::new();
         let mut plan =
-            Self { statistics, structure, reason, brick_count, budget, buffers, candidates };
+            Self { statistics, crowd, structure, reason, brick_count, budget, buffers, candidates };
         plan.buffers = plan.list_buffers();
         plan
     }

@@ -26,23 +26,39 @@
 //! *greater* than the nearest distance, so that equal distances are compared by id. The rest of the margin
 //! serves rays that start up to half a diagonal outside the scene's box.
 //!
+//! # Smaller margins
+//! In an 8-wide tree of a scene with outliers (`outliers.rs`), spheres inside the box of the crowd have the margin of that
+//! box, 2⁻¹⁸ D' with the crowd's diagonal D'. A ray whose origin is F from the farthest point of that box widens all boxes
+//! by w = 2⁻¹⁸ F − 2⁻¹⁸ D', if that is more than 0. For such a sphere, |L| ≤ F and r ≤ D'/2, so that 1 and 2 hold with the
+//! larger of F and D' instead of D; what boxes are wider is at least 64 u of it. In 3, a plane is moved by 8 u of that
+//! length, 1 u more for the sum with w, and by the errors that grow with the node: the node's grid starts up to its side
+//! W outside of the crowd's box, and its planes are up to 2 W from there, so that three roundings of W, three of 2 W and
+//! one of 3 W add less than 12 · 2⁻²⁴ W. Children's boxes are wider by [`NODE_PART`] W, which is more. Other spheres have the
+//! scene's margin, and all boxes around them contain it.
+//!
 //! These are the errors of a device that rounds to nearest, as all tested devices do. If a result may be either
 //! neighbour, as WGSL allows, and a quotient is off by 2.5 ULP, the same sum is 80 u or more, so this is not a proof
 //! for such devices; the largest error that a search of such cases found is 38 u.
 
 use glam::Vec3;
 
+use super::outliers::NearRays;
 use super::query::RayF32;
 
 /// The smallest magnitude of a direction's component in box tests; smaller components are replaced by it, with their
 /// sign. WGSL has no infinities, and with lengths up to 2⁵⁹ the distance to a plane stays below 2¹⁰⁰.
 pub const SMALLEST_COMPONENT: f32 = 1.0 / (1_u64 << 40) as f32;
 
+/// By how much the box of a child is wider than what it contains, as a part of each side of its node's grid.
+pub(super) const NODE_PART: f64 = 1.0 / (1 << 19) as f64;
+
 /// The origin of a ray, and the reciprocals of its direction's components.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlabRay {
     pub(super) origin: Vec3,
     pub(super) inverse: Vec3,
+    /// By how much boxes are wider for this ray than they are.
+    pub(super) wider: f32,
 }
 
 /// The reciprocal of each component of a direction. The WGSL twin is the function in `shaders/scene/enter.wgsl`.
@@ -53,7 +69,12 @@ pub(super) fn inverse_direction(direction: Vec3) -> Vec3 {
 
 impl SlabRay {
     pub(super) fn new(ray: &RayF32) -> Self {
-        Self { origin: ray.origin, inverse: inverse_direction(ray.direction) }
+        Self { origin: ray.origin, inverse: inverse_direction(ray.direction), wider: 0.0 }
+    }
+
+    /// A ray for a tree whose margins may be smaller than that of the scene.
+    pub(super) fn for_tree(ray: &RayF32, near: &NearRays) -> Self {
+        Self { wider: near.widening(ray.origin), ..Self::new(ray) }
     }
 
     /// The octant of the direction: bit i is set if the direction is negative along axis i.

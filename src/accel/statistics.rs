@@ -79,13 +79,15 @@ impl SceneStatistics {
     }
 }
 
+/// The margin as a part of a diagonal.
+pub(super) const MARGIN_PART: f32 = 1.0 / (1 << 18) as f32;
+
 /// The margin of a scene with this box, as [`SceneStatistics::margin`] explains it.
 pub(crate) fn margin_of(min: Vec3, max: Vec3) -> f32 {
-    const PART: f32 = 1.0 / (1 << 18) as f32;
     let diagonal = (max - min).length();
     // Coordinates have a rounding error before any arithmetic.
     let farthest = min.abs().max(max.abs()).max_element();
-    (diagonal * PART).max(farthest * (1.0 / (1 << 22) as f32))
+    (diagonal * MARGIN_PART).max(farthest * (1.0 / (1 << 22) as f32))
 }
 
 /// Estimates [`SceneStatistics::densest`] from a sample, of which several spheres must be in one cube.

@@ -2,6 +2,8 @@
 
 use std::array::from_fn;
 
+use super::outliers::Margins;
+
 /// Why a tree is not valid for kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -127,7 +129,7 @@ fn half_area([low, high]: Bounds) -> f64 {
 pub(super) fn validate<T: Tree>(
     tree: &T,
     spheres: &[[f32; 4]],
-    margin: f32,
+    margins: &Margins,
 ) -> Result<(), TreeError> {
     let ids = tree.ids();
     let mut seen = vec![false; spheres.len()];
@@ -176,7 +178,7 @@ pub(super) fn validate<T: Tree>(
                         }
                         placed[shape_index] = true;
                         let sphere = spheres[ids[shape_index] as usize];
-                        content = union(content, inflated(sphere, margin));
+                        content = union(content, inflated(sphere, margins.of(&sphere)));
                     }
                     content
                 }

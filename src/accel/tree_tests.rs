@@ -1,6 +1,12 @@
 //! Tests that `validate` finds damage, and of the depth of trees.
 
+use glam::Vec3;
+
 use super::binary_tree::{BINARY_INNER, BINARY_LEVELS, BinaryTree};
+use super::outliers::{Crowd, Margins};
+use super::query::{Nearest, RayF32};
+use super::sphere::intersect_sphere;
+use super::statistics::SceneStatistics;
 use super::tree_check::TreeError;
 use super::wide_tree::{WIDE_LEVELS, WideTree};
 use super::wide_tree_build::levels_by_halves;
@@ -163,4 +169,42 @@ fn no_number_of_spheres_needs_more_levels_than_a_stack_serves() {
     assert!(levels_by_halves(u32::MAX as usize) <= 11);
     const { assert!(WIDE_LEVELS >= 11) };
     assert!((u32::MAX as usize).div_ceil(1 << BINARY_LEVELS) <= 4);
+}
+
+/// Rays from afar graze spheres by more than the margin of the crowd; boxes that are not wider for them lose some.
+#[test]
+fn boxes_must_be_wider_for_rays_from_afar() {
+    let mut random = fastrand::Rng::with_seed(8);
+    // The first points of many are less far apart than numbers at the rays' origins.
+    let mut place = || 1e-3 * random.f32();
+    let mut spheres: Vec<_> = (0..2_000).map(|_| [place(), place(), place(), 0.02]).collect();
+    spheres.push([1e4, 0.5, 0.5, 0.02]);
+    let statistics = SceneStatistics::of(&spheres);
+    let crowd = Crowd::find(&spheres, &statistics);
+    assert!(crowd.is_some());
+    let wider = WideTree::build_with(&spheres, Margins { all: statistics.margin(), crowd });
+    assert_eq!(wider.validate(&spheres), Ok(()));
+    let mut not_wider = wider.clone();
+    not_wider.margins = Margins::one(0.0);
+    let sorted: Vec<[f32; 4]> = wider.ids.iter().map(|id| spheres[*id as usize]).collect();
+    let mut lost = 0;
+    for _ in 0..2_000 {
+        let [x, y, z, radius] = spheres[random.usize(..2_000)];
+        let origin = 5e3 * Vec3::new(1.0 + random.f32(), random.f32(), -random.f32());
+        // Where the sphere touches its box.
+        let along = Vec3::new(x + radius, y, z) - origin;
+        let ray = RayF32 { origin, direction: along / along.length() };
+        let mut expected = Nearest::NONE;
+        for (id, sphere) in (0..).zip(&spheres) {
+            expected.offer(intersect_sphere(&ray, *sphere), id);
+        }
+        let found = |tree: &WideTree| {
+            let mut nearest = Nearest::NONE;
+            tree.find_nearest(&sorted, &tree.ids, &ray, &mut nearest);
+            nearest.t.to_bits()
+        };
+        assert_eq!(found(&wider), expected.t.to_bits(), "{ray:?}");
+        lost += u32::from(found(&not_wider) != expected.t.to_bits());
+    }
+    assert!(lost > 0);
 }

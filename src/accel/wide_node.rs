@@ -9,7 +9,7 @@
 use glam::Vec3A;
 
 use super::extent::Extent;
-use super::slab::SlabRay;
+use super::slab::{NODE_PART, SlabRay};
 
 /// The largest number of spheres in a leaf.
 pub const WIDE_LEAF: usize = 3;
@@ -62,18 +62,29 @@ impl WideNode {
         let whole = boxes.iter().flatten().fold(Extent::EMPTY, |all, b| all.union(*b));
         let mut node = Self::empty();
         for axis in 0..3 {
-            let origin = whole.low[axis];
+            let [low, high] = [whole.low[axis], whole.high[axis]].map(f64::from);
+            // For what kernels round in proportion to the node's size; `slab.rs` says how much.
+            let wider = NODE_PART * (high - low).max(0.0);
+            let origin = below(low - wider);
             node.0[axis] = origin.to_bits();
-            let exponent = cell_exponent(f64::from(whole.high[axis]) - f64::from(origin));
+            let exponent = cell_exponent(high + wider - f64::from(origin));
             node.0[3] &= !(0xff << (8 * axis));
             node.0[3] |= exponent << (8 * axis);
             let cell = f64::from(f32::from_bits(exponent << 23));
             for (slot, child) in boxes.iter().enumerate() {
                 let Some(child) = child else { continue };
-                let cells = |x: f32| (f64::from(x) - f64::from(origin)) / cell;
+                let cells = |x: f64| (x - f64::from(origin)) / cell;
                 // Conversions to u8 saturate.
-                node.set_byte(8 + 2 * axis, slot, cells(child.low[axis]).floor() as u8);
-                node.set_byte(14 + 2 * axis, slot, cells(child.high[axis]).ceil() as u8);
+                node.set_byte(
+                    8 + 2 * axis,
+                    slot,
+                    cells(f64::from(child.low[axis]) - wider).floor() as u8,
+                );
+                node.set_byte(
+                    14 + 2 * axis,
+                    slot,
+                    cells(f64::from(child.high[axis]) + wider).ceil() as u8,
+                );
             }
         }
         node
@@ -156,11 +167,12 @@ impl WideNode {
             let start = (self.origin()[axis] - ray.origin[axis]) * inverse;
             let (low, high) = (8 + 2 * axis, 14 + 2 * axis);
             let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
-            let planes = |word: usize| {
+            let wider = ray.wider * inverse.abs();
+            let planes = |word: usize, start: f32| {
                 let bytes = u64::from(self.0[word + 1]) << 32 | u64::from(self.0[word]);
                 bytes.to_le_bytes().map(|cells| f32::from(cells) * step + start)
             };
-            let (near, far) = (planes(near), planes(far));
+            let (near, far) = (planes(near, start - wider), planes(far, start + wider));
             for slot in 0..8 {
                 entry[slot] = entry[slot].max(near[slot]);
                 exit[slot] = exit[slot].min(far[slot]);
@@ -168,6 +180,12 @@ impl WideNode {
         }
         (0..8).fold(0, |mask, slot| mask | u32::from(entry[slot] <= exit[slot]) << slot)
     }
+}
+
+/// The largest number in f32 that is not above `x`.
+fn below(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) > x { nearest.next_down() } else { nearest }
 }
 
 /// The exponent, as in an f32, of the smallest power of two such that 255 times it is at least `length`.

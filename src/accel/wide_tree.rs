@@ -1,6 +1,7 @@
 //! The compressed 8-wide tree, which needs few bytes per sphere and few nodes per ray.
 
 use super::extent::Item;
+use super::outliers::{Margins, NearRays};
 use super::tree_check::{self, Child, Target, Tree, TreeError, TreeStatistics};
 use super::wide_node::{Slot, WIDE_LEAF, WideNode};
 use super::wide_tree_build;
@@ -18,7 +19,7 @@ pub struct WideTree {
     pub(super) nodes: Vec<WideNode>,
     pub(super) ids: Vec<u32>,
     pub(super) levels: u32,
-    margin: f32,
+    pub(super) margins: Margins,
 }
 
 impl WideTree {
@@ -30,9 +31,19 @@ impl WideTree {
     /// number of threads.
     #[must_use]
     pub fn build(spheres: &[[f32; 4]], margin: f32) -> Self {
-        let mut items = Item::all(spheres, margin);
+        Self::build_with(spheres, Margins::one(margin))
+    }
+
+    /// Builds the tree with a margin for each sphere.
+    pub(super) fn build_with(spheres: &[[f32; 4]], margins: Margins) -> Self {
+        let mut items = Item::all(spheres, &margins);
         let (nodes, ids, levels) = wide_tree_build::build(&mut items);
-        Self { nodes, ids, levels, margin }
+        Self { nodes, ids, levels, margins }
+    }
+
+    /// By which rays boxes need not be widened, and how much for others.
+    pub(crate) fn near_rays(&self) -> NearRays {
+        self.margins.near()
     }
 
     /// All nodes, as kernels read them.
@@ -59,7 +70,7 @@ impl WideTree {
     /// # Errors
     /// Returns an error if the tree is not valid; the error describes the first problem.
     pub fn validate(&self, spheres: &[[f32; 4]]) -> Result<(), TreeError> {
-        tree_check::validate(self, spheres, self.margin)
+        tree_check::validate(self, spheres, &self.margins)
     }
 
     /// The size of the tree, and the expected cost of tracing a ray.

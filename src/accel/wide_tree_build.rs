@@ -191,6 +191,7 @@ fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::outliers::Margins;
 
     /// The sizes of the parts that `cut` makes if it splits in half.
     fn halves(count: usize, slots: usize, parts: &mut Vec<usize>) {
@@ -223,7 +224,7 @@ mod tests {
         let bunch = (0..24).map(|_| [0.0, 0.0, 0.0, 1.0]);
         let outliers = (0..9).map(|i| [100.0 * 17.0_f32.powi(i), 0.0, 0.0, 1.0]);
         let spheres: Vec<_> = bunch.chain(outliers).collect();
-        let mut items = Item::all(&spheres, 0.0);
+        let mut items = Item::all(&spheres, &Margins::one(0.0));
         let (nodes, _, _) = nodes_by_level(&mut items, false, usize::MAX);
         assert!(nodes.len() > max_nodes(spheres.len()));
         let (nodes, ids, _) = build(&mut items);

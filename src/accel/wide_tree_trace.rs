@@ -33,7 +33,7 @@ impl WideTree {
         nearest: &mut Nearest,
         observer: &mut impl Observer,
     ) {
-        let slab = SlabRay::new(ray);
+        let slab = SlabRay::for_tree(ray, &self.near_rays());
         let octant = slab.octant();
         let mut stack = [Group::ROOT; WIDE_LEVELS as usize];
         let mut top = 0;
@@ -68,7 +68,7 @@ impl WideTree {
     /// Panics if there are fewer spheres than ids.
     #[must_use]
     pub fn find_any(&self, spheres: &[[f32; 4]], ray: &RayF32, t_max: f32) -> bool {
-        let slab = SlabRay::new(ray);
+        let slab = SlabRay::for_tree(ray, &self.near_rays());
         let mut stack = [Group::ROOT; WIDE_LEVELS as usize];
         let mut top = 0;
         let mut group = Group::ROOT;

@@ -45,6 +45,7 @@ mod legal_paths;
 mod lens;
 mod light;
 mod npy;
+mod outliers;
 mod pages;
 mod perspective;
 mod pictures;

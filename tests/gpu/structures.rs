@@ -82,6 +82,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         })
         .collect();
     trials.push(trial("structures::a_million_coincident_centres", coincident));
+    trials.push(trial("structures::outliers_do_not_show", outliers));
     trials.push(trial("structures::slices_do_not_show", slices));
     trials.push(trial("structures::whether_there_is_any_is_what_the_nearest_says", any));
     trials.push(trial("structures::a_list_of_several_slices", long_list));
@@ -182,6 +183,29 @@ fn coincident(headless: &'static Headless) {
     let list = AccelPlan::new(few.spheres(), AccelChoice::List, ROOMY).build(few.spheres());
     let grid = AccelPlan::new(scene.spheres(), AccelChoice::Grid, ROOMY).build(scene.spheres());
     assert_same("grid", &render(headless, &scene, &grid), &render(headless, &few, &list));
+}
+
+/// A crowd beside an outlier, seen from near and from the outlier's side.
+fn outliers(headless: &'static Headless) {
+    let spheres = spheres::crowd_and_outliers(3_000, 3, 1e4, false);
+    let scene = Scene::from_f32(spheres, LinearRgb::WHITE).unwrap();
+    let plan = AccelPlan::new(scene.spheres(), AccelChoice::Auto, ROOMY);
+    assert_eq!(plan.crowd.map(|crowd| crowd.outliers), Some(3));
+    let list = AccelPlan::new(scene.spheres(), AccelChoice::List, ROOMY).build(scene.spheres());
+    let film = Film::new(101, 67).unwrap();
+    let pinhole = |eye: [f64; 3], fov: f64| {
+        let pose = Pose::looking_at(eye, [0.5, 0.5, 0.5], [0.0, 1.0, 0.0]).unwrap();
+        PinholeCamera::with_vertical_fov(pose, fov, 1.5).unwrap()
+    };
+    for camera in [pinhole([0.5, 0.6, -1.2], 0.7), pinhole([7e3, 0.4, 5e3], 2e-4)] {
+        let image = |accel: &Accel| render_view(headless, &scene, accel, &camera, &film).unwrap();
+        let expected = [image(&list)];
+        let ids = expected[0].id().unwrap();
+        assert!(ids.iter().filter(|id| **id != u32::MAX).count() > 500, "little is seen");
+        for accel in all(scene.spheres()) {
+            assert_same(accel.structure().name(), &[image(&accel)], &expected);
+        }
+    }
 }
 
 fn slices(headless: &'static Headless) {

@@ -154,3 +154,27 @@ pub(crate) fn crowd(count: usize) -> Spheres {
     spheres.extend(random(count / 20, 15, |_| 0.01));
     spheres
 }
+
+/// A crowd in the unit cube, and among its spheres some outliers at up to `far` times its size; far along one axis only if
+/// `is_in_line`.
+pub(crate) fn crowd_and_outliers(
+    count: usize,
+    outliers: usize,
+    far: f32,
+    is_in_line: bool,
+) -> Spheres {
+    let mut spheres = random(count, 28, |rng| 0.02 * (0.2 + rng.f32()));
+    let mut rng = Rng::with_seed(29);
+    for i in 0..outliers {
+        let mut place = [(); 3].map(|()| far * (rng.f32() - 0.5));
+        place[i % 3] = if rng.bool() { far } else { -far };
+        if is_in_line {
+            place = [far * (0.5 + rng.f32()), 0.5, 0.5];
+        }
+        let [x, y, z] = place;
+        // Most are like the others; some are as large as the crowd, and more.
+        let radius = if i % 8 == 7 { 0.05 * far } else { 0.02 };
+        spheres.insert(rng.usize(..=spheres.len()), [x, y, z, radius]);
+    }
+    spheres
+}

@@ -108,7 +108,13 @@ impl Upload<'_> {
                     None => words.extend([&grid.cells[..], &grid.references]),
                 }
             }
-            Index::WideTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
+            Index::WideTree(tree) => {
+                let near = tree.near_rays();
+                record.crowd_min = near.min.to_array();
+                record.crowd_margin = near.margin;
+                record.crowd_max = near.max.to_array();
+                words.push(bytemuck::cast_slice(tree.nodes()));
+            }
             Index::BinaryTree(tree) => words.push(bytemuck::cast_slice(tree.nodes())),
         }
         self.first_shape += record.shape_count;

@@ -61,6 +61,10 @@ pub(in crate::gpu) struct Brick {
     pub(in crate::gpu) material_first: u32,
     pub(in crate::gpu) material_mask: u32,
     pub(in crate::gpu) first_reference: u32,
+    pub(in crate::gpu) crowd_min: [f32; 3],
+    pub(in crate::gpu) crowd_margin: f32,
+    pub(in crate::gpu) crowd_max: [f32; 3],
+    pub(in crate::gpu) unused: u32,
 }
 
 /// The status word, which is nonzero if an invocation reached its iteration limit.
@@ -270,7 +274,11 @@ mod tests {
                 color_mask,
                 material_first,
                 material_mask,
-                first_reference
+                first_reference,
+                crowd_min,
+                crowd_margin,
+                crowd_max,
+                unused
             }),
             layout!(SelfTest { zero, single, outer, inner }),
             layout!(Operands { a, b, p, q, factor, dividend, divisor, radicand, u, v }),
