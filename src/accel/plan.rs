@@ -127,10 +127,12 @@ impl AccelPlan {
         Self { crowd, candidates, ..plan }
     }
 
-    /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels.
+    /// Makes a plan of a structure, whatever it costs, for example to measure it. A grid may be built with two levels, and
+    /// a scene without spheres always has a list.
     #[must_use]
     pub fn of(spheres: &[[f32; 4]], structure: Structure, binding_bytes: u64) -> Self {
         let structure = match structure {
+            _ if spheres.is_empty() => Structure::List,
             Structure::NestedGrid(layout) => Structure::Grid(layout),
             structure => structure,
         };

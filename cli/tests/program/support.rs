@@ -80,7 +80,7 @@ impl Folder {
             command.env_remove(variable);
         }
         // The prices that the user measured are not those of the tests.
-        command.env("XDG_CACHE_HOME", self.folder.path().join("no-cache"));
+        command.env("XDG_CACHE_HOME", concat!(env!("CARGO_TARGET_TMPDIR"), "/caches"));
         command
     }
 }
