@@ -2,7 +2,8 @@
 // sums do not depend on the number of samples in flight.
 // dispatched: once for all pixels of a tile, after all surfaces.
 // provides: accumulate
-// needs: FIRST, NO_PATH, Sum, dispatch, film, frame, load, luminance, path_of, plus, radiance_so_far, start_fences
+// needs: FIRST, NO_PATH, dispatch, frame, load, load_sums, path_of, radiance_so_far, start_fences, store_sums,
+//   with_sample
 
 @compute @workgroup_size(64)
 fn accumulate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -12,22 +13,10 @@ fn accumulate(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
         return;
     }
     let pixels = frame.tile_size.x * frame.tile_size.y;
-    let color = film[3u * pixel];
-    let rest = film[3u * pixel + 1u];
-    let others = film[3u * pixel + 2u];
-    var alpha = color.w;
-    var albedo = others.rgb;
-    // The sum of the colour and of the squared luminance.
-    var sum = Sum(vec4f(color.rgb, others.w), rest);
+    var sums = load_sums(pixel);
     for (var i = 0u; i < dispatch.count; i++) {
         let index = i * pixels + pixel;
-        let sample = radiance_so_far(index);
-        let light = luminance(sample.rgb);
-        sum = plus(sum, vec4f(sample.rgb, light * light));
-        alpha += sample.w;
-        albedo += load(index, FIRST).rgb;
+        sums = with_sample(sums, radiance_so_far(index), load(index, FIRST).rgb);
     }
-    film[3u * pixel] = vec4f(sum.value.rgb, alpha);
-    film[3u * pixel + 1u] = sum.rest;
-    film[3u * pixel + 2u] = vec4f(albedo, sum.value.w);
+    store_sums(pixel, sums);
 }

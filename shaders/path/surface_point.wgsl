@@ -7,6 +7,8 @@ struct Surface {
     material: Material,
     // Tangent frame around the normal.
     axes: Axes,
+    // How many surfaces the path has met before.
+    number: u32,
 }
 
 struct Reflection {

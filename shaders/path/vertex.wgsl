@@ -1,7 +1,7 @@
 // The point where a ray hits a sphere or the ground, and the properties of the surface there.
-// provides: HIT_GROUND, HIT_NOTHING, OTHER_BRICK, Vertex, classify_hit, distance_from_camera, exit_distance_of,
-//   ground_vertex, sphere_vertex, vertex_of
-// needs: Hit, NO_HIT, NO_ID, PATH_INSIDE, Ray, brick, dispatch, fence3, ground_distance, has, intersect, lighting,
+// provides: HIT_GROUND, HIT_NOTHING, HIT_SPHERE, OTHER_BRICK, Vertex, classify_hit, distance_from_camera,
+//   exit_distance_of, ground_vertex, sphere_vertex, vertex_of
+// needs: Hit, NO_HIT, NO_ID, PATH_INSIDE, Ray, brick, fence3, ground_distance, has, intersect, lighting,
 //   load_departure, material_index, opacity_of, shapes, sphere_color, sphere_normal, store_hit
 
 struct Vertex {
@@ -32,8 +32,8 @@ const HIT_SPHERE: u32 = 3u;
 
 // The distance that a ray has travelled before its origin, on which it may have hit the ground. A camera ray starts at
 // the box of the spheres, other rays on a surface.
-fn distance_from_camera(length: f32) -> f32 {
-    return select(0.0, length, dispatch.surface == 0u);
+fn distance_from_camera(length: f32, surface: u32) -> f32 {
+    return select(0.0, length, surface == 0u);
 }
 
 fn classify_hit(ray: Ray, hit: Hit, is_on_ground: bool, behind: f32) -> u32 {

@@ -3,10 +3,10 @@
 // Twin: src/cpu/light/studio.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: one_pass
-// needs: CameraRay, Departure, Hit, NO_EMITTER, NO_HIT, NO_ID, Sample, Sum, WORKGROUP_SIDE, background, camera_ray,
-//   dispatch, enter_scene, excluded_by, film, filter_offset, frame, ground_vertex, is_ground, lighting, luminance,
-//   nearest_hit, pixel_in_tile, pixel_seed, plus, report_spent, sample_location, sample_pair, sphere_vertex,
-//   start_fences, surface_sample, unit2
+// needs: CameraRay, Departure, Hit, NO_EMITTER, NO_HIT, NO_ID, Sample, WORKGROUP_SIDE, background, camera_ray,
+//   dispatch, enter_scene, excluded_by, filter_offset, frame, ground_vertex, is_ground, lighting, load_sums,
+//   nearest_hit, pixel_in_tile, pixel_seed, report_spent, sample_location, sample_pair, sphere_vertex, start_fences,
+//   store_sums, surface_sample, unit2, with_sample
 
 // There is no early return: with one, Mesa 22.3 fails to compile the kernel.
 fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
@@ -39,11 +39,7 @@ fn one_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     let index = pixel.y * frame.tile_size.x + pixel.x;
     let in_film = frame.tile_origin + pixel;
     let seed = pixel_seed(in_film, lighting.seed);
-    let color = film[3u * index];
-    let others = film[3u * index + 2u];
-    var sum = Sum(vec4f(color.rgb, others.w), film[3u * index + 1u]);
-    var alpha = color.w;
-    var albedo = others.rgb;
+    var sums = load_sums(index);
     // If this number depended on a uniform only, Mesa's lavapipe would compile the kernel again for every dispatch.
     let count = dispatch.count + (index >> 31u);
     // All rays of a workgroup outside the visible region show the background.
@@ -51,18 +47,12 @@ fn one_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     let traced = select(0u, count, all(place < dispatch.visible_size));
     for (var i = 0u; i < traced; i++) {
         let sample = take_sample(in_film, seed, dispatch.sample + i + (index >> 31u));
-        let light = luminance(sample.radiance.rgb);
-        sum = plus(sum, vec4f(sample.radiance.rgb, light * light));
-        alpha += sample.radiance.w;
-        albedo += sample.albedo;
+        sums = with_sample(sums, sample.radiance, sample.albedo);
     }
     let shown = background();
-    let light = luminance(shown);
     for (var i = traced; i < count; i++) {
-        sum = plus(sum, vec4f(shown, light * light));
+        sums = with_sample(sums, vec4f(shown, 0.0), vec3f(0.0));
     }
-    film[3u * index] = vec4f(sum.value.rgb, alpha);
-    film[3u * index + 1u] = sum.rest;
-    film[3u * index + 2u] = vec4f(albedo, sum.value.w);
+    store_sums(index, sums);
     report_spent();
 }

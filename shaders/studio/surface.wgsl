@@ -22,7 +22,7 @@ fn surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let ray = Ray(start.position, load(index, DIRECTION).xyz);
     let hit = load_hit(index);
     let first = load(index, FIRST);
-    let behind = distance_from_camera(first.w);
+    let behind = distance_from_camera(first.w, dispatch.surface);
     let kind = classify_hit(ray, hit, has(start.flags, PATH_ON_GROUND), behind);
     if (kind == OTHER_BRICK) {
         return;

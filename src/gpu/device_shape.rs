@@ -17,6 +17,10 @@ pub(in crate::gpu) struct DeviceShape {
     /// Maximum number of pixels of a tile of a picture of primary rays. A tile is submitted, awaited and read back by
     /// itself, while a GPU is idle, so that fewer are better; but the buffers and textures of 2²⁰ pixels take 48 MiB.
     pub(in crate::gpu) max_tile_pixels: u64,
+    /// Whether one pass takes whole samples of light paths, where it can. Software devices then neither read nor write the
+    /// state of paths, which takes them as long as tracing. On GPUs, invocations whose paths have ended would wait for
+    /// others, and such a large kernel leaves room for fewer of them.
+    pub(in crate::gpu) paths_in_one_pass: bool,
     /// Maximum number of light paths that are traced at a time. The state of 2¹⁹ paths takes 56 to 80 MiB. A large GPU
     /// runs a quarter of a million invocations together, of which few are left after some surfaces.
     pub(in crate::gpu) max_paths: u64,
@@ -40,6 +44,7 @@ impl DeviceShape {
             DeviceType::Cpu => Self {
                 spreads_rows: true,
                 max_tile_pixels: 1 << 20,
+                paths_in_one_pass: true,
                 max_paths: FEW_PATHS,
                 first_groups: 2048,
                 max_tests: 1 << 27,
@@ -62,6 +67,7 @@ impl DeviceShape {
         Self {
             spreads_rows: false,
             max_tile_pixels: 1 << 21,
+            paths_in_one_pass: false,
             max_paths: FEW_PATHS,
             first_groups: 1 << 14,
             max_tests: 1 << 30,

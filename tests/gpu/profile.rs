@@ -68,6 +68,7 @@ fn passes(headless: &'static Headless) {
         ("path_sun_and_lamps", [&common[..], &["scatter", "occlude"]].concat()),
         ("studio_opacity", [&common[..], &of_studio].concat()),
         ("studio_key_and_fill", vec!["one_pass"]),
+        ("path_emissive_both", vec!["whole_paths"]),
     ] {
         let mut of_clocks = Vec::new();
         for clock in clocks(headless) {

@@ -13,7 +13,8 @@ use crate::gpu::headless::recording::requested_view;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::passes::lit::records::{FILM_SLOTS, LightingParameters};
 use crate::gpu::passes::lit::{
-    AT_ONCE, LightingData, LitFrame, LitPasses, LitScene, LitSizes, Mode, Moment, RecordedBy, Round,
+    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, Mode, Moment,
+    RecordedBy, Round,
 };
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -133,7 +134,8 @@ impl Headless {
         let scenes = LitScene { all: scene, occluders: scene };
         let tile = middle_of(&view.film);
         let mut recording = new_recording(scene.space(), view, settings, &lighting);
-        let key = scenes.key(view, &lighting, &self.device().limits());
+        // What is recorded lies between the passes.
+        let key = LitKey { one_pass: None, ..scenes.key(view, &lighting, &self.device().limits()) };
         self.with_lit_passes(key, async |passes: &LitPasses| {
             let (region, limit) =
                 (scenes.visible_region(view, settings), iteration_limit(self.device()));

@@ -4,6 +4,7 @@ use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
 use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Progress};
 use pinhole::image::Layer;
+use pinhole::internals::ShaderEdit;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
@@ -14,6 +15,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("light::passes::without_indirect_dispatch_it_is_the_same_picture", direct),
         trial("light::passes::one_pass_makes_the_picture_of_several", one_pass),
+        trial("light::passes::faults_in_one_pass_change_the_picture", faults),
         trial("light::passes::every_structure_makes_the_same_studio", structures),
         trial("light::passes::a_picture_is_the_sum_of_its_samples_rounded_once", sums),
         trial("light::passes::many_directions_in_a_long_list_are_all_searched", long_list),
@@ -97,6 +99,38 @@ fn one_pass(headless: &'static Headless) {
         device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
     });
     assert!(one == several, "the large picture differs");
+}
+
+/// The comparison with several passes is not blind.
+fn faults(headless: &'static Headless) {
+    const PATHS: &str = "path/whole_paths.wgsl";
+    for (scene, file, find, replace) in [
+        ("path_emissive_both", PATHS, "path.surface + 1u", "path.surface + 2u"),
+        ("path_emissive_both", PATHS, "path.surface == dispatch.surface", "path.surface > 0u"),
+        (
+            "path_emissive_both",
+            PATHS,
+            "// Only the ray to the light excludes the light.\n        Departure(vertex.id",
+            "Departure(NO_ID",
+        ),
+        ("path_emissive_both", "path/seen_light.wgsl", "visibility = 0.0", "visibility = 1.0"),
+        (
+            "studio_ambient_occlusion",
+            "studio/ambient_light.wgsl",
+            "hidden += u32",
+            "hidden += 0u * u32",
+        ),
+    ] {
+        let mut view = named(scene);
+        view.settings.sampling.samples = 6;
+        let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
+        let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+        let faulty = Headless::open(&options).unwrap();
+        let [right, wrong] = [headless, &faulty].map(|device| {
+            device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
+        });
+        assert!(right != wrong, "{scene}: {find}");
+    }
 }
 
 /// Some structures are searched in one pass, and others in several.

@@ -16,6 +16,7 @@ pub(in crate::gpu) fn resolve_kernel(color: ColorTarget) -> Kernel {
         part!("scene/frame.wgsl"),
         part!("math/fence.wgsl"),
         part!("path/state.wgsl"),
+        part!("math/luminance.wgsl"),
         part!("path/film_sums.wgsl"),
         color_target(color),
         part!("host/mean.wgsl"),

@@ -1,5 +1,6 @@
 //! The kernels of lit pictures. `shaders/README.md` lists them.
 
+use super::one_pass::OnePass;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
@@ -65,23 +66,6 @@ pub(in crate::gpu) enum SkyKind {
     Image,
 }
 
-/// The studios of which one pass takes whole samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::gpu) enum OnePass {
-    /// Lamps at the eye or infinitely far away, without a size and without shadows; all surfaces are matt, and there is
-    /// no ground.
-    Sharp,
-    /// Any lamps without a ground.
-    Lamps,
-    /// Any lamps and a ground.
-    Ground,
-}
-
-impl OnePass {
-    /// All of them.
-    pub(in crate::gpu) const ALL: [Self; 3] = [Self::Sharp, Self::Lamps, Self::Ground];
-}
-
 /// The paths that a dispatch processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Schedule {
@@ -142,13 +126,7 @@ pub(super) fn occlude_kernel(structure: Structure, exclude_by: ExcludeBy) -> Ker
         part!("accel/brick.wgsl"),
         part!("scene/emitter.wgsl"),
     ]);
-    parts.extend(match exclude_by {
-        ExcludeBy::Index => vec![
-            part!("path/departed_shape.wgsl"),
-            part!("accel/excluded.wgsl", "by-index-and-light"),
-        ],
-        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id-and-light")],
-    });
+    parts.extend(excluded_with_light(exclude_by));
     parts.extend(structure_parts(structure));
     parts.push(part!("path/occlude.wgsl"));
     Kernel { entry_point: "occlude", parts }
@@ -168,8 +146,19 @@ pub(super) fn ambient_kernel(structure: Structure, exclude_by: ExcludeBy) -> Ker
     Kernel { entry_point: "ambient", parts }
 }
 
+/// The parts that exclude the shape on which a ray starts, and the emitter that it is directed to.
+pub(super) fn excluded_with_light(exclude_by: ExcludeBy) -> Vec<Part> {
+    match exclude_by {
+        ExcludeBy::Index => vec![
+            part!("path/departed_shape.wgsl"),
+            part!("accel/excluded.wgsl", "by-index-and-light"),
+        ],
+        ExcludeBy::Id => vec![part!("accel/excluded.wgsl", "by-id-and-light")],
+    }
+}
+
 /// The parts that exclude the shape on which a ray starts.
-fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
+pub(super) fn excluded_parts(exclude_by: ExcludeBy) -> Vec<Part> {
     match exclude_by {
         ExcludeBy::Index => {
             vec![part!("path/departed_shape.wgsl"), part!("accel/excluded.wgsl", "by-index")]
@@ -201,50 +190,6 @@ pub(super) fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<P
     ]);
     parts.extend(structure_parts(structure));
     parts
-}
-
-/// The kernel of studios of opaque spheres in one brick, which takes whole samples.
-pub(super) fn one_pass_kernel(
-    camera: CameraKind,
-    structure: Structure,
-    exclude_by: ExcludeBy,
-    studio: OnePass,
-) -> Kernel {
-    let mut parts = base(Schedule::Pixels);
-    parts.extend(light_search(structure, exclude_by));
-    parts.extend([part!("camera/filter.wgsl"), part!("camera/film_sample.wgsl")]);
-    // What cameras share is among the parts of lights.
-    let [_, _, camera] = camera_parts(camera);
-    parts.push(camera);
-    parts.extend([
-        part!("scene/appearance_words.wgsl", "beside-structure"),
-        part!("scene/appearance.wgsl"),
-        part!("path/vertex.wgsl"),
-        part!("scene/material.wgsl"),
-        part!("math/luminance.wgsl"),
-        part!("path/film_sums.wgsl"),
-        part!("scene/lamp.wgsl"),
-        part!("studio/faded.wgsl"),
-        part!("studio/seen.wgsl"),
-        part!("studio/ambient_light.wgsl"),
-        part!("studio/one_surface.wgsl"),
-        part!("studio/one_pass.wgsl"),
-    ]);
-    parts.extend(match studio {
-        OnePass::Sharp => vec![part!("studio/lamp_light.wgsl", "sharp")],
-        OnePass::Lamps | OnePass::Ground => vec![
-            part!("path/microfacet.wgsl"),
-            part!("studio/reflected.wgsl"),
-            part!("studio/lamp_light.wgsl", "any"),
-        ],
-    });
-    parts.extend(match studio {
-        OnePass::Sharp | OnePass::Lamps => vec![part!("studio/one_ground.wgsl", "none")],
-        OnePass::Ground => {
-            vec![part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")]
-        }
-    });
-    Kernel { entry_point: "one_pass", parts }
 }
 
 /// The kernel of studios that computes surfaces from hits.
@@ -296,17 +241,26 @@ pub(super) fn scatter_kernel(
         part!("math/disk.wgsl"),
         part!("math/warp.wgsl"),
         part!("scene/appearance_words.wgsl", "alone"),
+        part!("scene/emitter.wgsl"),
+        part!("path/scatter.wgsl"),
+    ]);
+    parts.extend(scattering(materials, sources, sky));
+    Kernel { entry_point: "scatter", parts }
+}
+
+/// The parts that say what becomes of a path at a surface.
+pub(super) fn scattering(materials: Materials, sources: Sources, sky: SkyKind) -> Vec<Part> {
+    let mut parts = vec![
         part!("scene/appearance.wgsl"),
         part!("path/vertex.wgsl"),
         part!("scene/material.wgsl"),
         part!("path/surface_point.wgsl"),
-        part!("scene/emitter.wgsl"),
         part!("scene/emitters.wgsl"),
         part!("scene/lamp.wgsl"),
         part!("path/by_chance.wgsl"),
         part!("path/bounce.wgsl"),
-        part!("path/scatter.wgsl"),
-    ]);
+        part!("path/leave.wgsl"),
+    ];
     let mode = Mode::Path(materials, sources, sky);
     parts.extend([mode.direct_light(), mode.medium()]);
     match materials {
@@ -326,7 +280,7 @@ pub(super) fn scatter_kernel(
         SkyKind::Plain => parts.push(part!("scene/sky.wgsl", "plain")),
         SkyKind::Image => parts.extend(sky_image()),
     }
-    Kernel { entry_point: "scatter", parts }
+    parts
 }
 
 /// The kernel that accumulates samples.
@@ -437,7 +391,7 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         }
         let cameras = CameraKind::ALL.iter();
         kernels.extend(cameras.flat_map(|camera| {
-            OnePass::ALL.map(|studio| one_pass_kernel(*camera, structure, exclude_by, studio))
+            OnePass::ALL.map(|pass| pass.kernel(*camera, structure, exclude_by))
         }));
         let searches = [occlude_kernel, shadow_kernel, ambient_kernel];
         kernels.extend(searches.map(|of| of(structure, exclude_by)));

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::kernels::{Materials, Mode, OnePass, SkyKind, Sources};
+use super::kernels::{Materials, Mode, SkyKind, Sources};
+use super::one_pass::OnePass;
 use super::records::LightingParameters;
 use super::round::BITS;
 use crate::camera::Camera;
@@ -139,12 +140,16 @@ impl LightingData {
         is_same_sky && self.emitters.len() == other.emitters.len()
     }
 
-    /// The kind of studio, if one pass can take whole samples of a scene of so many bricks. With more lamps or
-    /// directions than several passes take at once, they would be summed in another order.
+    /// The kind of picture, if one pass can take whole samples of a scene of so many bricks. With more lamps or
+    /// directions in a studio than several passes take at once, they would be summed in another order.
     pub(super) fn one_pass(&self, bricks: usize) -> Option<OnePass> {
+        if let Mode::Path(materials, sources, sky) = self.mode {
+            let is_plain = materials == Materials::Matt && sky == SkyKind::Plain;
+            return (is_plain && bricks == 1).then_some(OnePass::Paths(sources));
+        }
         let is_few =
             self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;
-        let is_one = self.mode == Mode::Studio && self.is_opaque && bricks == 1 && is_few;
+        let is_one = self.is_opaque && bricks == 1 && is_few;
         let has_ground = self.parameters.flags & flags::GROUND != 0;
         is_one.then_some(match (has_ground, self.is_sharp) {
             (true, _) => OnePass::Ground,
@@ -153,8 +158,12 @@ impl LightingData {
         })
     }
 
-    /// Number of rays that a sample of a studio of opaque spheres takes at most.
+    /// Number of rays that a sample takes at most, in a studio of opaque spheres or along a path.
     pub(super) fn rays_of_sample(&self) -> u32 {
+        if let Mode::Path(..) = self.mode {
+            let of_light = u32::from(self.parameters.source_count > 0) * self.max_surfaces;
+            return 1 + self.max_surfaces + of_light;
+        }
         let shadows = self.casts_shadow.iter().filter(|casts| **casts && self.has_shadows).count();
         1 + shadows as u32 + self.parameters.occlusion_samples
     }

@@ -6,7 +6,8 @@ use std::num::NonZeroU64;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, BindingType, ComputePipeline, Device};
 
-use super::kernels::{OnePass, Schedule, base, light_search};
+use super::kernels::{Schedule, base, light_search};
+use super::one_pass::OnePass;
 use super::passes::LitLayouts;
 use crate::accel::Structure;
 use crate::camera::CameraKind;
@@ -131,10 +132,10 @@ pub(in crate::gpu) fn live_kernels() -> Vec<Kernel> {
 }
 
 impl LiveKey {
-    /// The key for a lighting that one pass can take whole samples of.
+    /// The key for a studio that one pass can take whole samples of.
     pub(in crate::gpu) fn new(of: &super::LitKey) -> Option<Self> {
         let super::LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
-        one_pass.map(|studio| Self {
+        one_pass.filter(|pass| !pass.is_paths()).map(|studio| Self {
             camera,
             structure,
             exclude_by,

@@ -15,6 +15,7 @@ mod lighting;
 mod lighting_buffers;
 mod live;
 mod make;
+mod one_pass;
 mod pass;
 mod passes;
 mod plan;
@@ -68,7 +69,8 @@ impl LitScene<'_> {
             several_bricks: self.all.bricks().len() > 1,
             one_pass: lighting
                 .one_pass(self.all.bricks().len())
-                .filter(|_| passes::one_pass_fits(self.all.structure(), limits))
+                .filter(|pass| !pass.is_paths() || self.all.shape().paths_in_one_pass)
+                .filter(|_| one_pass::one_pass_fits(self.all.structure(), limits))
                 .filter(|_| {
                     let rays = lighting.rays_of_sample();
                     self.all.rays_at_once(rays) == rays

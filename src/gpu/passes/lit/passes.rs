@@ -5,10 +5,11 @@ use std::num::NonZeroU64;
 
 use wgpu::{BindGroupLayout, BindingType, Device};
 
-use super::kernels::{self, Mode, OnePass, Schedule, SkyKind};
+use super::kernels::{self, Mode, Schedule, SkyKind};
+use super::one_pass::OnePass;
 use super::pass::Pass;
 use super::records::{DispatchParameters, GROUPS_NEEDED, LightingParameters, QUEUE_HEAD};
-use crate::accel::{ListLayout, Structure};
+use crate::accel::Structure;
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::ShaderEdit;
@@ -31,21 +32,8 @@ pub(in crate::gpu) struct LitKey {
     pub(in crate::gpu) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(in crate::gpu) several_bricks: bool,
-    /// The kind of studio, if one pass takes whole samples, which needs one brick in which all spheres are opaque.
+    /// The kind of picture, if one pass takes whole samples, which needs one brick.
     pub(in crate::gpu) one_pass: Option<OnePass>,
-}
-
-/// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
-/// two of the appearance, and those of the structure.
-pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
-    let of_structure = match structure {
-        Structure::List => 2,
-        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
-            4
-        }
-        _ => 3,
-    };
-    5 + of_structure <= limits.max_storage_buffers_per_shader_stage
 }
 
 /// Layouts of bind group 0 of most passes (`frame`), of `advance`, and of passes over sums (`film`), and of groups 2
@@ -185,8 +173,8 @@ impl LitPasses {
         let surfaces = &scene.surface;
         let LitLayouts { frame, advance, film, samples, lighting, sky } = &layouts;
         let [exclude_by, light_exclude_by] = key.exclude_by;
-        if let Some(studio) = key.one_pass {
-            let kernel = kernels::one_pass_kernel(key.camera, key.structure, exclude_by, studio);
+        if let Some(pass) = key.one_pass {
+            let kernel = pass.kernel(key.camera, key.structure, exclude_by);
             let groups = [samples, brick(0), lighting, &scene.appearance];
             return Ok(Self {
                 of_samples: SamplePasses::One(build(kernel, &groups)?),
@@ -259,7 +247,9 @@ pub(in crate::gpu) type AllLitPasses = HashMap<LitKey, LitPasses>;
 #[cfg(test)]
 mod tests {
     use super::super::kernels::{Materials, Sources};
+    use super::super::one_pass::one_pass_fits;
     use super::*;
+    use crate::accel::ListLayout;
     use crate::gpu::waiting::block_on;
 
     /// wgpu checks shaders, layouts, access modes and record sizes, and that no kernel has more buffers than every
@@ -296,8 +286,8 @@ mod tests {
                     // The structure with the most buffers leaves no room for those of the appearance.
                     assert!(!one_pass_fits(structure, &device.limits()));
                     let structure = Structure::NestedGrid(ListLayout::Balls);
-                    for studio in OnePass::ALL {
-                        let key = LitKey { structure, one_pass: Some(studio), ..key };
+                    for pass in OnePass::ALL {
+                        let key = LitKey { structure, one_pass: Some(pass), ..key };
                         if mode == Mode::Studio {
                             block_on(LitPasses::new(&device, key, &[])).unwrap();
                         }

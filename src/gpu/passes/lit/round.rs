@@ -151,6 +151,7 @@ impl<'a> Round<'a> {
                     dispatch: DispatchParameters {
                         sample: dispatch.sample + start,
                         count,
+                        surface: self.lighting.max_surfaces,
                         ..dispatch
                     },
                     brick: Some(&brick.trace_group),

@@ -1,0 +1,151 @@
+//! The kernels that take whole samples of scenes of one brick, each in one dispatch.
+
+use super::kernels::{
+    Materials, Schedule, SkyKind, Sources, base, excluded_parts, excluded_with_light, light_search,
+    scattering,
+};
+use crate::accel::{ListLayout, Structure};
+use crate::camera::CameraKind;
+use crate::gpu::scene::shape_ids::ExcludeBy;
+use crate::gpu::shader::{Kernel, camera_parts, part, structure_parts};
+
+/// The pictures of which one pass takes whole samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::gpu) enum OnePass {
+    /// A studio of opaque spheres with lamps at the eye or infinitely far away, without a size and without shadows; all
+    /// surfaces are matt, and there is no ground.
+    Sharp,
+    /// A studio of opaque spheres with any lamps without a ground.
+    Lamps,
+    /// A studio of opaque spheres with any lamps and a ground.
+    Ground,
+    /// Paths among surfaces that are matt or emissive, under a sky without an image.
+    Paths(Sources),
+}
+
+impl OnePass {
+    /// All of them.
+    pub(in crate::gpu) const ALL: [Self; 5] = [
+        Self::Sharp,
+        Self::Lamps,
+        Self::Ground,
+        Self::Paths(Sources::None),
+        Self::Paths(Sources::Any),
+    ];
+
+    /// Whether the samples are paths.
+    pub(super) fn is_paths(self) -> bool {
+        matches!(self, Self::Paths(_))
+    }
+
+    /// The kernel for a camera and a structure.
+    pub(super) fn kernel(
+        self,
+        camera: CameraKind,
+        structure: Structure,
+        exclude_by: ExcludeBy,
+    ) -> Kernel {
+        match self {
+            Self::Paths(sources) => paths_kernel(camera, structure, exclude_by, sources),
+            studio => studio_kernel(camera, structure, exclude_by, studio),
+        }
+    }
+}
+
+/// Whether a kernel may have all buffers that one pass over whole samples needs: the status word, the sums, the tables,
+/// two of the appearance, and those of the structure.
+pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool {
+    let of_structure = match structure {
+        Structure::List => 2,
+        Structure::Grid(ListLayout::Referenced) | Structure::NestedGrid(ListLayout::Referenced) => {
+            4
+        }
+        _ => 3,
+    };
+    5 + of_structure <= limits.max_storage_buffers_per_shader_stage
+}
+
+/// The kernel of studios of opaque spheres in one brick.
+fn studio_kernel(
+    camera: CameraKind,
+    structure: Structure,
+    exclude_by: ExcludeBy,
+    studio: OnePass,
+) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend(light_search(structure, exclude_by));
+    parts.extend([part!("camera/filter.wgsl"), part!("camera/film_sample.wgsl")]);
+    // What cameras share is among the parts of lights.
+    let [_, _, camera] = camera_parts(camera);
+    parts.push(camera);
+    parts.extend([
+        part!("scene/appearance_words.wgsl", "beside-structure"),
+        part!("scene/appearance.wgsl"),
+        part!("path/vertex.wgsl"),
+        part!("scene/material.wgsl"),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("scene/lamp.wgsl"),
+        part!("studio/faded.wgsl"),
+        part!("studio/seen.wgsl"),
+        part!("studio/ambient_light.wgsl"),
+        part!("studio/one_surface.wgsl"),
+        part!("studio/one_pass.wgsl"),
+    ]);
+    if studio == OnePass::Sharp {
+        parts.push(part!("studio/lamp_light.wgsl", "sharp"));
+    } else {
+        parts.extend([
+            part!("path/microfacet.wgsl"),
+            part!("studio/reflected.wgsl"),
+            part!("studio/lamp_light.wgsl", "any"),
+        ]);
+    }
+    if studio == OnePass::Ground {
+        parts.extend([part!("studio/catcher.wgsl"), part!("studio/one_ground.wgsl", "any")]);
+    } else {
+        parts.push(part!("studio/one_ground.wgsl", "none"));
+    }
+    Kernel { entry_point: "one_pass", parts }
+}
+
+/// The kernel of paths among matt and emissive surfaces in one brick.
+fn paths_kernel(
+    camera: CameraKind,
+    structure: Structure,
+    exclude_by: ExcludeBy,
+    sources: Sources,
+) -> Kernel {
+    let mut parts = base(Schedule::Pixels);
+    parts.extend(match sources {
+        Sources::None => excluded_parts(exclude_by),
+        Sources::Any => excluded_with_light(exclude_by),
+    });
+    parts.extend([
+        part!("scene/emitter.wgsl"),
+        part!("accel/spend.wgsl"),
+        part!("accel/brick.wgsl"),
+        part!("math/trigonometry.wgsl"),
+        part!("scene/lighting.wgsl"),
+        part!("math/sampling.wgsl"),
+        part!("math/disk.wgsl"),
+        part!("math/warp.wgsl"),
+        part!("camera/filter.wgsl"),
+        part!("camera/film_sample.wgsl"),
+        part!("scene/appearance_words.wgsl", "beside-structure"),
+        part!("math/luminance.wgsl"),
+        part!("path/film_sums.wgsl"),
+        part!("path/hit_before.wgsl", "first-brick"),
+        part!("path/whole_paths.wgsl"),
+    ]);
+    parts.extend(structure_parts(structure));
+    // What cameras share is among the other parts.
+    let [_, _, camera] = camera_parts(camera);
+    parts.push(camera);
+    parts.extend(scattering(Materials::Matt, sources, SkyKind::Plain));
+    parts.push(match sources {
+        Sources::None => part!("path/seen_light.wgsl", "none"),
+        Sources::Any => part!("path/seen_light.wgsl", "any"),
+    });
+    Kernel { entry_point: "whole_paths", parts }
+}
