@@ -1,10 +1,8 @@
 //! Cubic cells, and the cells that the surface of a sphere overlaps.
 
-use glam::Vec3;
+use std::ops::Range;
 
-/// The number of cells along each side of a block: the spheres of a block fit into a processor's L1 cache, or into two
-/// pages.
-const BLOCK: u32 = 4;
+use glam::Vec3;
 
 /// The number of cells along x for which distances to a sphere are computed once and reused in every row.
 const KNOWN: usize = 4;
@@ -37,29 +35,35 @@ impl Cells {
         ]
     }
 
-    fn index(&self, [x, y, z]: [u32; 3]) -> usize {
+    pub(super) fn index(&self, [x, y, z]: [u32; 3]) -> usize {
         let [width, height, _] = self.counts.map(|count| count as usize);
         (z as usize * height + y as usize) * width + x as usize
     }
 
-    /// An upper bound for [`Self::index_in_blocks`].
-    pub(super) fn len_in_blocks(&self) -> usize {
-        self.counts.iter().map(|count| count.next_multiple_of(BLOCK) as usize).product()
+    /// The number of rows of cells along x; those of a layer follow each other.
+    pub(super) fn rows(&self) -> usize {
+        self.counts[1] as usize * self.counts[2] as usize
     }
 
-    /// An index of the cell of a sphere's centre, such that cells that are close in space, along any axis, have close
-    /// indices: block by block.
-    pub(super) fn index_in_blocks(&self, sphere: &[f32; 4]) -> usize {
-        let coordinates = self.coordinates(Vec3::new(sphere[0], sphere[1], sphere[2]));
-        let blocks = self.counts.map(|count| count.div_ceil(BLOCK));
-        let join = |[x, y, z]: [u32; 3], [width, height]: [u32; 2]| {
-            (z as usize * height as usize + y as usize) * width as usize + x as usize
-        };
-        let block = join(coordinates.map(|i| i / BLOCK), [blocks[0], blocks[1]]);
-        block * BLOCK.pow(3) as usize + join(coordinates.map(|i| i % BLOCK), [BLOCK, BLOCK])
+    /// Calls `f` with the first and the last row, in each layer, of a box of cells that contains all within `margin` of
+    /// the sphere's surface. Rows ascend.
+    pub(super) fn for_each_range_of_rows(
+        &self,
+        &[x, y, z, radius]: &[f32; 4],
+        margin: f32,
+        mut f: impl FnMut(usize, usize),
+    ) {
+        let (center, outer) = (Vec3::new(x, y, z), radius + margin);
+        let first = self.coordinates(center - outer);
+        let last = self.coordinates(center + outer);
+        for k in first[2]..=last[2] {
+            let row = |y: u32| k as usize * self.counts[1] as usize + y as usize;
+            f(row(first[1]), row(last[1]));
+        }
     }
 
-    /// Like [`Self::for_each_near`], for cells that may cover only a part of the sphere: a sphere outside has no cells.
+    /// Like [`Self::for_each_near`] for all rows of cells that may cover only a part of the sphere: a sphere outside has
+    /// no cells.
     pub(super) fn for_each_near_clipped(
         &self,
         sphere: &[f32; 4],
@@ -67,15 +71,21 @@ impl Cells {
         f: impl FnMut(usize),
     ) {
         // The clamped range of cells may contain cells that the exact test rejects.
-        self.for_each_in_range(sphere, margin, false, f);
+        self.for_each_in_range(sphere, margin, false, &(0..self.rows()), f);
     }
 
-    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface.
+    /// Calls `f` with the index of every cell that lies within `margin` of the sphere's surface, in some rows.
     ///
     /// Cells that are completely inside are left out, because a ray cannot hit the sphere there. A large sphere is
     /// therefore listed only in the cells that its surface crosses, although all cells inside are examined.
-    pub(super) fn for_each_near(&self, sphere: &[f32; 4], margin: f32, f: impl FnMut(usize)) {
-        self.for_each_in_range(sphere, margin, true, f);
+    pub(super) fn for_each_near(
+        &self,
+        sphere: &[f32; 4],
+        margin: f32,
+        rows: &Range<usize>,
+        f: impl FnMut(usize),
+    ) {
+        self.for_each_in_range(sphere, margin, true, rows, f);
     }
 
     fn for_each_in_range(
@@ -83,6 +93,7 @@ impl Cells {
         sphere: &[f32; 4],
         margin: f32,
         is_within: bool,
+        rows: &Range<usize>,
         mut f: impl FnMut(usize),
     ) {
         let &[x, y, z, radius] = sphere;
@@ -91,8 +102,13 @@ impl Cells {
         let inner = (radius - margin).max(0.0);
         let first = self.coordinates(Vec3::from(center) - outer);
         let last = self.coordinates(Vec3::from(center) + outer);
+        let height = self.counts[1];
+        let rows = rows.start as u32..rows.end as u32;
         if is_within && first == last {
-            return f(self.index(first));
+            if rows.contains(&(first[2] * height + first[1])) {
+                f(self.index(first));
+            }
+            return;
         }
         // Squared distances along an axis from the centre to the near side and to the far side of a cell.
         let along = |axis: usize, i: u32| {
@@ -106,12 +122,14 @@ impl Cells {
         // The distances of the first cells along x, which are the same in every row; most spheres overlap no other
         // cells.
         let known: [(f32, f32); KNOWN] = std::array::from_fn(|i| along(0, first[0] + i as u32));
-        for k in first[2]..=last[2] {
+        // Other layers have none of the rows.
+        let layers = first[2].max(rows.start / height)..=last[2].min((rows.end - 1) / height);
+        for k in layers {
             let (near_z, far_z) = along(2, k);
             for j in first[1]..=last[1] {
                 let (near_y, far_y) = along(1, j);
                 let (near_yz, far_yz) = (near_y + near_z, far_y + far_z);
-                if near_yz > outer {
+                if near_yz > outer || !rows.contains(&(k * height + j)) {
                     continue;
                 }
                 for i in first[0]..=last[0] {

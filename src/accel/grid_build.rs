@@ -7,10 +7,12 @@ use super::cells::{Cells, mean_overlapped_cells};
 use super::grid::{Grid, ListLayout, MAX_CELLS, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_empty::mark_empty_surroundings;
+use super::grid_flat::Flat;
 use super::grid_lists::BuiltLists;
-use super::grid_sort::{Lists, count, fill, map_ranges, sort_by_cell, total};
+use super::grid_slabs::{Counted, Lists};
+use super::grid_sort::{CHUNK, sort_by_cell};
 use super::plan::MAX_FIRST_LEVEL;
-use crate::parallel::for_each;
+use crate::parallel::{for_each, map_parts, ranges};
 
 /// The cost of a step from cell to cell, in elements of a list. Measured on lavapipe with a million random spheres, where
 /// the time hardly changes between eight and sixteen.
@@ -39,7 +41,7 @@ pub struct BuiltGrid {
     pub ids: Vec<u32>,
 }
 
-/// Builds a grid over the spheres with the given ids.
+/// Builds a grid over the spheres with the given ids, which ascend.
 ///
 /// The grid has at least eight cells, even beyond the budget. A sphere is listed in every cell that lies within
 /// `margin` of its surface.
@@ -51,53 +53,57 @@ pub fn build_grid(
     layout: ListLayout,
     budget: GridBudget,
 ) -> BuiltGrid {
-    let (min, max) = bounds(spheres, ids, margin);
-    let mut cells = first_level(spheres, ids, (min, max), layout, budget);
+    let (own, (min, max)) = gather(spheres, ids, margin);
+    let mut cells = first_level(&own, (min, max), layout, budget);
     // The size was chosen by volume, but a flat box has more cells than its volume suggests.
     while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
         cells = coarser(&cells, max);
     }
-    let (sorted, sorted_ids) = sort_by_cell(spheres, ids, &cells);
-    let mut counts = count(&sorted, &cells, margin);
+    let (sorted, sorted_ids) = sort_by_cell(own, ids, &cells);
+    let mut counted = Counted::new(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions; spheres that are aligned with the cells may overlap more
     // cells.
-    while total(&counts, layout) > budget.listed as u64 && cells.len() > 1 {
+    while counted.total(layout) > budget.listed as u64 && cells.len() > 1 {
         cells = coarser(&cells, max);
-        counts = count(&sorted, &cells, margin);
+        counted = Counted::new(&sorted, &cells, margin);
     }
-    let lists = fill(&sorted, &cells, margin, counts);
-    assemble(&cells, margin, layout, budget, (sorted, sorted_ids), &lists)
+    let lists = counted.fill(&sorted_ids);
+    let mut grid = assemble(&cells, margin, layout, budget, &sorted, lists);
+    mark_empty_surroundings(&mut grid.cells, cells.counts);
+    BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
 }
 
-/// The bounding box of the spheres, inflated by the margin.
-fn bounds(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec3, Vec3) {
-    let parts = map_ranges(ids.len(), |range| {
-        ids[range].iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), id| {
-            let [x, y, z, r] = spheres[*id as usize];
+/// The spheres with the given ids, and their bounding box, inflated by the margin.
+fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Vec3, Vec3)) {
+    let mut own = vec![[0.0; 4]; ids.len()];
+    let chunks: Vec<_> = own.chunks_mut(CHUNK).zip(ids.chunks(CHUNK)).collect();
+    let parts = map_parts(chunks, |(own, ids): (&mut [[f32; 4]], &[u32])| {
+        own.iter_mut().zip(ids).fold((Vec3::MAX, Vec3::MIN), |(min, max), (own, id)| {
+            *own = spheres[*id as usize];
+            let [x, y, z, r] = *own;
             let center = Vec3::new(x, y, z);
             (min.min(center - r), max.max(center + r))
         })
     });
     if parts.is_empty() {
-        return (Vec3::ZERO, Vec3::ONE);
+        return (own, (Vec3::ZERO, Vec3::ONE));
     }
     let (min, max) = parts
         .into_iter()
         .fold((Vec3::MAX, Vec3::MIN), |(min, max), part| (min.min(part.0), max.max(part.1)));
-    (min - margin, max + margin)
+    (own, (min - margin, max + margin))
 }
 
-/// Chooses the first level of cells for the spheres with the given ids.
+/// Chooses the first level of cells for all these spheres.
 fn first_level(
     spheres: &[[f32; 4]],
-    ids: &[u32],
     (min, max): (Vec3, Vec3),
     layout: ListLayout,
     budget: GridBudget,
 ) -> Cells {
-    let stride = ids.len().div_ceil(RADII).max(1);
-    let radii: Vec<f32> = ids.iter().step_by(stride).map(|id| spheres[*id as usize][3]).collect();
-    cells_of_size(min, max, first_level_size(&radii, ids.len(), max - min, layout, budget))
+    let stride = spheres.len().div_ceil(RADII).max(1);
+    let radii: Vec<f32> = spheres.iter().step_by(stride).map(|sphere| sphere[3]).collect();
+    cells_of_size(min, max, first_level_size(&radii, spheres.len(), max - min, layout, budget))
 }
 
 /// Chooses the cell size with the smallest expected cost of a ray, for a number of spheres of which a sample has the
@@ -164,52 +170,17 @@ fn assemble(
     margin: f32,
     layout: ListLayout,
     budget: GridBudget,
-    (sorted, sorted_ids): (Vec<[f32; 4]>, Vec<u32>),
-    lists: &Lists,
-) -> BuiltGrid {
-    let first_level_len = word::in_whole_units(cells.len());
+    sorted: &[[f32; 4]],
+    lists: Lists,
+) -> Grid {
     let dense = DenseCells::of(
         cells,
-        &sorted,
+        sorted,
         margin,
         (&lists.shape_indices, &lists.starts),
         layout,
         budget,
     );
-    let frame = |cells: &Cells, cell: usize| {
-        let corner = corner(cells, cell);
-        (layout == ListLayout::Balls).then(|| BallFrame::new(corner, cells.size, margin))
-    };
-    let parts = map_ranges(cells.len(), |range| {
-        let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
-        let mut part = BuiltCells {
-            words: Vec::with_capacity(range.len()),
-            inner: Vec::new(),
-            lists: BuiltLists::with_capacity(listed, layout),
-        };
-        let (mut keys, mut list) = (Vec::new(), Vec::new());
-        for cell in range {
-            let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
-            by_id(&lists.shape_indices[start..end], &sorted_ids, &mut keys, &mut list);
-            keep_one_of_the_same(&mut list, &sorted);
-            let inner = dense.level(cell).and_then(|level| {
-                Some((level, inner_lists(cells, cell, &list, &sorted, margin, level, layout)?))
-            });
-            let word = match inner {
-                Some((level, inner)) => {
-                    let start = word::units(part.inner.len());
-                    let inside = inner_cells(cells, cell, level);
-                    for (cell, list) in inner.iter().enumerate() {
-                        part.inner.push(part.lists.append(list, &sorted, frame(&inside, cell)));
-                    }
-                    word::GRID | u32::from(level) << word::LEVEL_SHIFT | start
-                }
-                None => part.lists.append(&list, &sorted, frame(cells, cell)),
-            };
-            part.words.push(word);
-        }
-        part
-    });
     let mut grid = Grid {
         min: cells.min,
         cell_size: cells.size,
@@ -218,29 +189,58 @@ fn assemble(
         references: Vec::new(),
         balls: None,
     };
-    join(&mut grid, first_level_len, layout, &parts);
-    drop(parts);
-    mark_empty_surroundings(&mut grid.cells, cells.counts);
-    BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
+    let is_long = |list: &[u32]| (list[1] - list[0]) as usize > LONG;
+    if dense.is_none() && !lists.starts.windows(2).any(is_long) {
+        let Flat { words, references, balls } = match layout {
+            ListLayout::Referenced => Flat::referenced(cells, lists),
+            ListLayout::Balls => Flat::with_balls(cells, &lists, sorted, margin),
+        };
+        return Grid { cells: words, references, balls, ..grid };
+    }
+    let frame = |cells: &Cells, cell: usize| {
+        let corner = corner(cells, cell);
+        (layout == ListLayout::Balls).then(|| BallFrame::new(corner, cells.size, margin))
+    };
+    let parts = map_parts(ranges(cells.len(), CHUNK), |range| {
+        let listed = (lists.starts[range.end] - lists.starts[range.start]) as usize;
+        let mut part = BuiltCells {
+            words: Vec::with_capacity(range.len()),
+            inner: Vec::new(),
+            lists: BuiltLists::with_capacity(listed, layout),
+        };
+        let mut list = Vec::new();
+        for cell in range {
+            list.clear();
+            let (start, end) = (lists.starts[cell] as usize, lists.starts[cell + 1] as usize);
+            list.extend_from_slice(&lists.shape_indices[start..end]);
+            keep_one_of_the_same(&mut list, sorted);
+            let inner = dense.level(cell).and_then(|level| {
+                Some((level, inner_lists(cells, cell, &list, sorted, margin, level, layout)?))
+            });
+            let word = match inner {
+                Some((level, inner)) => {
+                    let start = word::units(part.inner.len());
+                    let inside = inner_cells(cells, cell, level);
+                    for (cell, list) in inner.iter().enumerate() {
+                        part.inner.push(part.lists.append(list, sorted, frame(&inside, cell)));
+                    }
+                    word::GRID | u32::from(level) << word::LEVEL_SHIFT | start
+                }
+                None => part.lists.append(&list, sorted, frame(cells, cell)),
+            };
+            part.words.push(word);
+        }
+        part
+    });
+    join(&mut grid, word::in_whole_units(cells.len()), layout, &parts);
+    grid
 }
 
-/// Sorts a list by id, so that at equal distances the sphere with the smallest id is found first.
-fn by_id(shape_indices: &[u32], ids: &[u32], keys: &mut Vec<u64>, list: &mut Vec<u32>) {
-    keys.clear();
-    keys.extend(
-        shape_indices.iter().map(|&shape_index| {
-            u64::from(ids[shape_index as usize]) << 32 | u64::from(shape_index)
-        }),
-    );
-    keys.sort_unstable();
-    list.clear();
-    // The lower half of the key is the index.
-    list.extend(keys.iter().map(|key| *key as u32));
-}
+/// A longer list keeps only one of several equal spheres.
+const LONG: usize = 32;
 
 /// Removes duplicates of a sphere from a long list, except the first, which has the smallest id.
 fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
-    const LONG: usize = 32;
     if list.len() > LONG {
         let mut seen = std::collections::HashSet::with_capacity(list.len());
         list.retain(|shape_index| seen.insert(sorted[*shape_index as usize].map(f32::to_bits)));

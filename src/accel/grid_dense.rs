@@ -8,8 +8,8 @@ use super::grid::{ListLayout, word};
 use super::grid_build::{GridBudget, STEP_COST};
 use crate::parallel::{map_parts, ranges};
 
-/// The length of a list from which a grid may be worthwhile.
-const CROWDED: u32 = 8;
+/// The length of a list from which a grid may be worthwhile: even the coarsest grid costs two steps.
+const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
 
 /// The finest level of a grid inside a cell: 2⁵ cells along an axis.
 const MAX_LEVEL: u8 = 5;
@@ -87,6 +87,11 @@ impl DenseCells {
             }
         }
         Self { levels }
+    }
+
+    /// Whether no cell gets a grid.
+    pub(super) fn is_none(&self) -> bool {
+        self.levels.iter().all(|level| *level == 0)
     }
 
     /// The level of the grid inside a cell, if there is one.

@@ -23,21 +23,42 @@ impl BuiltLists {
         spheres: &[[f32; 4]],
         frame: Option<BallFrame>,
     ) -> u32 {
-        let Some((last, others)) = list.split_last() else {
+        if list.is_empty() {
             return word::EMPTY;
-        };
-        let start = self.references.len();
-        self.references.extend_from_slice(others);
-        if let Some(frame) = frame {
-            let ball = |shape_index: &u32| frame.ball(spheres[*shape_index as usize]);
-            self.balls.extend(others.iter().map(ball));
-            let last_ball = ball(last);
-            let end = start + ListLayout::Balls.elements(list.len()) - 1;
-            self.references.resize(end, *last);
-            self.balls.resize(end, last_ball);
-            self.balls.push(last_ball | LAST);
         }
-        self.references.push(last | LAST);
+        let (start, balls_start) = (self.references.len(), self.balls.len());
+        let layout = if frame.is_some() { ListLayout::Balls } else { ListLayout::Referenced };
+        self.references.resize(start + layout.elements(list.len()), 0);
+        if frame.is_some() {
+            self.balls.resize(self.references.len(), 0);
+        }
+        let (references, balls) = (&mut self.references[start..], &mut self.balls[balls_start..]);
+        write_list(list, spheres, frame, references, balls);
         word::LIST | start as u32
+    }
+}
+
+/// Writes a list that is not empty, with its balls if there is a frame, and fills it up with its last element.
+pub(super) fn write_list(
+    list: &[u32],
+    spheres: &[[f32; 4]],
+    frame: Option<BallFrame>,
+    references: &mut [u32],
+    balls: &mut [u32],
+) {
+    fn fill_up(elements: &mut [u32], len: usize) {
+        let last = elements[len - 1];
+        elements[len..].fill(last);
+        if let Some(end) = elements.last_mut() {
+            *end |= LAST;
+        }
+    }
+    references[..list.len()].copy_from_slice(list);
+    fill_up(references, list.len());
+    if let Some(frame) = frame {
+        for (ball, shape_index) in balls.iter_mut().zip(list) {
+            *ball = frame.ball(spheres[*shape_index as usize]);
+        }
+        fill_up(balls, list.len());
     }
 }

@@ -1,142 +1,124 @@
-//! Counting sort by cell, in time proportional to the number of spheres and cells, on all cores. The result does not
-//! depend on the number of cores.
+//! Sorting spheres by cell on all cores. The result does not depend on the number of cores.
+//!
+//! A counting sort of all spheres at once would write every sphere far from the one before, and wait for memory each
+//! time. Here spheres are first moved into buckets, of so few cells that the spheres of a bucket fit into a processor's
+//! L2 cache, and then sorted bucket by bucket. Both steps keep the order of ids.
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
-
+use super::cell_vectors::CellVectors;
 use super::cells::Cells;
-use super::grid::ListLayout;
-use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
+use crate::parallel::{for_each, map_parts, ranges, split_mut};
 
 /// The number of spheres or cells that one task handles.
 pub(super) const CHUNK: usize = 1 << 14;
 
-/// Sorts spheres by the cells of their centres, block by block, so that spheres that are close in space are close in
-/// memory; within a cell, by id. Returns the spheres and their ids.
+/// The number of spheres that one task moves into buckets.
+const MOVED: usize = 1 << 17;
+
+/// The number of spheres in a bucket, on average, and the largest number of buckets: a task writes to all of them by
+/// turns, so their ends must fit into a cache.
+const IN_BUCKET: usize = 1 << 13;
+const MOST_BUCKETS: usize = 1 << 10;
+
+/// A sphere on its way, with its id and the index of its cell.
+type Item = ([f32; 4], u32, u32);
+
+/// Sorts spheres with ascending ids by the cells of their centres, block by block, so that spheres that are close in
+/// space are close in memory; within a cell, by id. Returns the spheres and their ids.
 pub(super) fn sort_by_cell(
-    spheres: &[[f32; 4]],
+    spheres: Vec<[f32; 4]>,
     ids: &[u32],
     cells: &Cells,
 ) -> (Vec<[f32; 4]>, Vec<u32>) {
-    let counts = zeros(cells.len_in_blocks());
-    for_ranges(ids.len(), |range| {
-        for id in &ids[range] {
-            let cell = cells.index_in_blocks(&spheres[*id as usize]);
-            counts[cell].fetch_add(1, Ordering::Relaxed);
-        }
+    let buckets = spheres.len().div_ceil(IN_BUCKET).clamp(1, MOST_BUCKETS);
+    // The number of cells of a bucket is a power of two.
+    let cells = CellVectors::of(cells);
+    let shift = cells.len_in_blocks().div_ceil(buckets).next_power_of_two().trailing_zeros();
+    let buckets = (cells.len_in_blocks() >> shift) + 1;
+    let (items, ends) = into_buckets(&spheres, ids, &cells, shift, buckets);
+    // The memory of the spheres is used again, because fresh memory is slow to come by.
+    let (mut sorted, mut sorted_ids) = (spheres, vec![0; ids.len()]);
+    let targets = split_mut(&mut sorted, ends.iter().copied());
+    let targets = targets.into_iter().zip(split_mut(&mut sorted_ids, ends.iter().copied()));
+    let mut start = 0;
+    let tasks = ends.iter().zip(targets).enumerate().map(|(bucket, (end, target))| {
+        let items = &items[start..*end];
+        start = *end;
+        (bucket << shift, items, target)
     });
-    let ends = add_up(counts);
-    let order = zeros(ids.len());
-    for_ranges(ids.len(), |range| {
-        for id in &ids[range] {
-            let cell = cells.index_in_blocks(&spheres[*id as usize]);
-            let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
-            order[at as usize].store(*id, Ordering::Relaxed);
-        }
+    for_each(tasks.collect(), |(first, items, (spheres, ids))| {
+        sort_bucket(items, first, 1 << shift, spheres, ids);
     });
-    // The ends have been counted down, so they are starts now.
-    let starts = plain(ends);
-    let mut order = plain(order);
-    each_list(&mut order, &starts, |_, list| list.sort_unstable());
-    let mut sorted = vec![[0.0; 4]; order.len()];
-    let parts = sorted.chunks_mut(CHUNK).zip(order.chunks(CHUNK)).collect();
-    for_each(parts, |(target, ids): (&mut [[f32; 4]], &[u32])| {
-        for (sphere, id) in target.iter_mut().zip(ids) {
-            *sphere = spheres[*id as usize];
-        }
-    });
-    (sorted, order)
+    (sorted, sorted_ids)
 }
 
-/// The number of spheres that overlap each cell.
-pub(super) fn count(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> Vec<AtomicU32> {
-    let counts = zeros(cells.len());
-    for_ranges(spheres.len(), |range| {
-        for sphere in &spheres[range] {
-            cells.for_each_near(sphere, margin, |cell| {
-                counts[cell].fetch_add(1, Ordering::Relaxed);
-            });
-        }
-    });
-    counts
-}
-
-/// The number of elements of lists with so many spheres each.
-pub(super) fn total(counts: &[AtomicU32], layout: ListLayout) -> u64 {
-    let elements =
-        |count: &AtomicU32| layout.elements(count.load(Ordering::Relaxed) as usize) as u64;
-    counts.iter().map(elements).sum()
-}
-
-/// The indices of the spheres that overlap each cell, cell by cell, and the start of each cell's list.
-pub(super) struct Lists {
-    pub(super) shape_indices: Vec<u32>,
-    pub(super) starts: Vec<u32>,
-}
-
-/// Fills the lists of all cells: the second half of the counting sort.
-pub(super) fn fill(
+/// Moves spheres into buckets. Returns them bucket by bucket, and the ends of the buckets.
+fn into_buckets(
     spheres: &[[f32; 4]],
-    cells: &Cells,
-    margin: f32,
-    counts: Vec<AtomicU32>,
-) -> Lists {
-    let total = total(&counts, ListLayout::Referenced) as usize;
-    let ends = add_up(counts);
-    let shape_indices = zeros(total);
-    for_ranges(spheres.len(), |range| {
-        for shape_index in range {
-            cells.for_each_near(&spheres[shape_index], margin, |cell| {
-                let at = ends[cell].fetch_sub(1, Ordering::Relaxed) - 1;
-                shape_indices[at as usize].store(shape_index as u32, Ordering::Relaxed);
-            });
+    ids: &[u32],
+    cells: &CellVectors,
+    shift: u32,
+    buckets: usize,
+) -> (Vec<Item>, Vec<usize>) {
+    let chunks = ranges(spheres.len(), MOVED);
+    let counts = map_parts(chunks.clone(), |chunk| {
+        let (cells, mut counts) = (*cells, vec![0_u32; buckets]);
+        for sphere in &spheres[chunk] {
+            counts[cells.index_in_blocks(sphere) >> shift] += 1;
         }
+        counts
     });
-    // The ends have been counted down, so they are starts now.
-    Lists { shape_indices: plain(shape_indices), starts: plain(ends) }
-}
-
-fn zeros(len: usize) -> Vec<AtomicU32> {
-    map(len, |_| AtomicU32::default())
-}
-
-fn plain(atomics: Vec<AtomicU32>) -> Vec<u32> {
-    atomics.into_iter().map(AtomicU32::into_inner).collect()
-}
-
-/// Turns the length of each list into the index where it ends, and appends the total length.
-fn add_up(mut counts: Vec<AtomicU32>) -> Vec<AtomicU32> {
-    let mut end = 0;
-    for count in &mut counts {
-        end += *count.get_mut();
-        *count.get_mut() = end;
+    let mut items: Vec<Item> = vec![([0.0; 4], 0, 0); spheres.len()];
+    // The places of a chunk in each bucket follow those of the chunk before.
+    let (mut end, mut ends) = (0, Vec::with_capacity(buckets));
+    let mut ends_of_places = Vec::with_capacity(buckets * chunks.len());
+    for bucket in 0..buckets {
+        for of_chunk in &counts {
+            end += of_chunk[bucket] as usize;
+            ends_of_places.push(end);
+        }
+        ends.push(end);
     }
-    counts.push(AtomicU32::new(end));
-    counts
-}
-
-/// Calls `f` with every cell and its list.
-fn each_list(values: &mut [u32], starts: &[u32], f: impl Fn(usize, &mut [u32]) + Sync + Send) {
-    let chunks = ranges(starts.len() - 1, CHUNK);
-    let parts = split_mut(values, chunks.iter().map(|range| starts[range.end] as usize));
-    for_each(chunks.into_iter().zip(parts).collect(), |(range, part)| {
-        let first = starts[range.start];
-        for cell in range {
-            f(
-                cell,
-                &mut part[(starts[cell] - first) as usize..(starts[cell + 1] - first) as usize],
-            );
+    let mut tasks: Vec<_> = chunks.into_iter().map(|chunk| (chunk, Vec::new())).collect();
+    let places = split_mut(&mut items, ends_of_places);
+    for (number, place) in places.into_iter().enumerate() {
+        let chunk = number % counts.len();
+        tasks[chunk].1.push(place.iter_mut());
+    }
+    for_each(tasks, |(chunk, mut targets)| {
+        let cells = *cells;
+        for (sphere, id) in spheres[chunk.clone()].iter().zip(&ids[chunk]) {
+            let cell = cells.index_in_blocks(sphere);
+            // The places were counted by the same function.
+            if let Some(place) = targets[cell >> shift].next() {
+                *place = (*sphere, *id, cell as u32);
+            }
         }
     });
+    (items, ends)
 }
 
-fn for_ranges(count: usize, f: impl Fn(Range<usize>) + Sync + Send) {
-    for_each(ranges(count, CHUNK), f);
-}
-
-pub(super) fn map_ranges<R: Send>(
-    count: usize,
-    f: impl Fn(Range<usize>) -> R + Sync + Send,
-) -> Vec<R> {
-    map_parts(ranges(count, CHUNK), f)
+/// Sorts the spheres of a bucket of consecutive cells by cell: a counting sort.
+fn sort_bucket(
+    items: &[Item],
+    first: usize,
+    cells: usize,
+    spheres: &mut [[f32; 4]],
+    ids: &mut [u32],
+) {
+    let mut starts = vec![0_u32; cells];
+    for (_, _, cell) in items {
+        starts[*cell as usize - first] += 1;
+    }
+    let mut end = 0;
+    for start in &mut starts {
+        let count = *start;
+        *start = end;
+        end += count;
+    }
+    for (sphere, id, cell) in items {
+        let start = &mut starts[*cell as usize - first];
+        let at = *start as usize;
+        *start += 1;
+        (spheres[at], ids[at]) = (*sphere, *id);
+    }
 }
