@@ -16,6 +16,7 @@ use crate::gpu::headless::progress::{
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::headless::tile_textures::TileTextures;
+use crate::gpu::headless::uploading::KeyOf;
 use crate::gpu::passes::bands::rows_per_band;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::tiles::{Groups, Tile};
@@ -47,7 +48,13 @@ impl Headless {
             let watches = (upload_watch, watch);
             return self.render_by_brick(scene, plan, view, settings, layers, watches).await;
         }
-        let buffers = self.upload_planned_async(scene, &plan.structures(), upload_watch).await?;
+        let key_of = |kind: BrickKind, several_bricks: bool| {
+            RendererKey::of_picture(vec![kind], several_bricks, view.camera, layers)
+        };
+        let key_of: Option<&KeyOf<'_>> =
+            if settings.integrator.is_primary() { Some(&key_of) } else { None };
+        let plans = plan.structures();
+        let buffers = self.upload_ahead_of(scene, &plans, upload_watch, key_of).await?;
         self.render_uploaded_async(&buffers, view, settings, layers, watch).await
     }
 

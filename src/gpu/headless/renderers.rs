@@ -2,6 +2,10 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
+#[cfg(not(target_arch = "wasm32"))]
+use std::panic::resume_unwind;
+#[cfg(not(target_arch = "wasm32"))]
+use std::thread::JoinHandle;
 
 use wgpu::Device;
 
@@ -12,9 +16,12 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::{AllLitPasses, LitKey, LitPasses};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::{Query, RendererOptions};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::gpu::profile::Profile;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::formats::ColorTarget;
+use crate::image::LayerSet;
 
 /// The properties in which renderers of a device differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -31,12 +38,22 @@ pub(in crate::gpu) struct RendererKey {
 impl RendererKey {
     /// The key of a renderer for pictures without data layers.
     pub(in crate::gpu) fn new(scene: &SceneBuffers, camera: &dyn Camera) -> Self {
+        Self::of_picture(scene.kinds(), scene.bricks().len() > 1, camera, LayerSet::COLOR)
+    }
+
+    /// The key of a renderer for pictures of bricks of these kinds, of which there may be several.
+    pub(in crate::gpu) fn of_picture(
+        kinds: Vec<BrickKind>,
+        several_bricks: bool,
+        camera: &dyn Camera,
+        layers: LayerSet,
+    ) -> Self {
         Self {
             camera: camera.kind(),
-            kinds: scene.kinds(),
-            several_bricks: scene.bricks().len() > 1,
+            kinds,
+            several_bricks,
             query: Query::Nearest,
-            data_layers: false,
+            data_layers: layers != LayerSet::COLOR,
             keeps_rays: false,
         }
     }
@@ -46,6 +63,9 @@ impl RendererKey {
 #[derive(Debug, Default)]
 pub(in crate::gpu) struct Renderers {
     built: HashMap<RendererKey, Renderer>,
+    /// Renderers that threads build ahead of their use.
+    #[cfg(not(target_arch = "wasm32"))]
+    ahead: HashMap<RendererKey, JoinHandle<Result<Renderer, GpuError>>>,
     lit: AllLitPasses,
     recolor: Option<Recolor>,
     edits: Vec<ShaderEdit>,
@@ -54,7 +74,61 @@ pub(in crate::gpu) struct Renderers {
 impl Renderers {
     /// Creates an empty collection. All renderers will be built with these edits of their shaders.
     pub(in crate::gpu) fn new(edits: Vec<ShaderEdit>) -> Self {
-        Self { built: HashMap::new(), lit: AllLitPasses::new(), recolor: None, edits }
+        Self { edits, ..Self::default() }
+    }
+
+    fn options(&self, device_type: wgpu::DeviceType, key: &RendererKey) -> RendererOptions {
+        let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = *key;
+        let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
+        let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
+        RendererOptions {
+            color: ColorTarget::Linear32,
+            data_layers,
+            cameras: vec![camera],
+            structures: structures.into_iter().collect(),
+            primitives: primitives.into_iter().collect(),
+            several_bricks,
+            query,
+            keeps_rays,
+            indirect: true,
+            device_type: Some(device_type),
+            edits: self.edits.clone(),
+        }
+    }
+
+    /// Begins to build the renderer for a key on a thread of its own, if there is none and a thread can be started. It is
+    /// taken by [`Renderers::of`], which also returns the error of building it. Browsers build pipelines beside other
+    /// work by themselves.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(in crate::gpu) fn begin(
+        &mut self,
+        device: &Device,
+        device_type: wgpu::DeviceType,
+        key: RendererKey,
+        profile: Option<Profile>,
+    ) {
+        if self.built.contains_key(&key) || self.ahead.contains_key(&key) {
+            return;
+        }
+        let (device, options) = (device.clone(), self.options(device_type, &key));
+        let build = move || {
+            let _phase = profile.as_ref().map(|profile| profile.phase("create pipelines"));
+            Renderer::new(&device, &options)
+        };
+        let thread = std::thread::Builder::new().name("pinhole: pipelines".to_owned());
+        if let Ok(thread) = thread.spawn(build) {
+            self.ahead.insert(key, thread);
+        }
+    }
+
+    /// Waits for the renderer that a thread builds for a key, if one does.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_ahead(&mut self, key: &RendererKey) -> Result<(), GpuError> {
+        if let Some(thread) = self.ahead.remove(key) {
+            let renderer = thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
+            self.built.insert(key.clone(), renderer);
+        }
+        Ok(())
     }
 
     /// Returns the renderer for a key, and builds it if necessary.
@@ -64,27 +138,12 @@ impl Renderers {
         device_type: wgpu::DeviceType,
         key: RendererKey,
     ) -> Result<&Renderer, GpuError> {
-        let RendererKey { camera, several_bricks, query, data_layers, keeps_rays, .. } = key;
-        let structures: HashSet<_> = key.kinds.iter().map(|kind| kind.structure).collect();
-        let primitives: HashSet<_> = key.kinds.iter().map(|kind| kind.primitive).collect();
+        #[cfg(not(target_arch = "wasm32"))]
+        self.take_ahead(&key)?;
+        let options = self.options(device_type, &key);
         match self.built.entry(key) {
             Entry::Occupied(built) => Ok(built.into_mut()),
-            Entry::Vacant(entry) => {
-                let options = RendererOptions {
-                    color: ColorTarget::Linear32,
-                    data_layers,
-                    cameras: vec![camera],
-                    structures: structures.into_iter().collect(),
-                    primitives: primitives.into_iter().collect(),
-                    several_bricks,
-                    query,
-                    keeps_rays,
-                    indirect: true,
-                    device_type: Some(device_type),
-                    edits: self.edits.clone(),
-                };
-                Ok(entry.insert(Renderer::new_async(device, &options).await?))
-            }
+            Entry::Vacant(entry) => Ok(entry.insert(Renderer::new_async(device, &options).await?)),
         }
     }
 

@@ -2,12 +2,12 @@
 
 use std::borrow::Borrow;
 
-use crate::accel::{Accel, Brick, Structure};
+use crate::accel::{Accel, Brick, BrickKind, Primitive, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{UploadProgress, UploadStep, UploadWatch, go_on};
-use crate::gpu::headless::renderers::Renderers;
+use crate::gpu::headless::renderers::{RendererKey, Renderers};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
@@ -16,6 +16,12 @@ use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
 use crate::gpu::scene::shape_ids::ShapeIds;
 use crate::gpu::scene::structures::Structures;
 use crate::scene::Scene;
+
+/// The renderer that a picture needs for bricks of a kind, of which there may be several.
+pub(in crate::gpu) type KeyOf<'a> = dyn Fn(BrickKind, bool) -> RendererKey + 'a;
+
+/// Is told the structure of bricks that have been built, and whether there are several.
+type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
 
 impl RenderPlan {
     /// Returns the plans of the structures alone.
@@ -40,7 +46,8 @@ impl Headless {
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
             let renderer = self.layouts_of(kinds).await?;
-            let all = self.upload_all(&renderer, scene, accel.into(), watch).await?;
+            let all =
+                self.upload_all(&renderer, scene, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
                 return Ok(all);
             };
@@ -61,16 +68,34 @@ impl Headless {
         plans: &StructurePlans,
         watch: &mut UploadWatch<'_>,
     ) -> Result<SceneBuffers, GpuError> {
+        self.upload_ahead_of(scene, plans, watch, None).await
+    }
+
+    /// Like [`Headless::upload_planned_async`]. `key_of` returns what the picture that follows will need for the bricks:
+    /// it is built on a thread while the last brick is copied, which leaves other cores idle.
+    pub(in crate::gpu) async fn upload_ahead_of(
+        &self,
+        scene: &Scene,
+        plans: &StructurePlans,
+        watch: &mut UploadWatch<'_>,
+        key_of: Option<&KeyOf<'_>>,
+    ) -> Result<SceneBuffers, GpuError> {
         let StructurePlans { accel, occluders } = plans;
         let planned = [accel].into_iter().chain(occluders).map(|plan| plan.structure);
         let kinds = planned.flat_map(|structure| [structure, structure.with_nested(true)]);
         let kinds: Vec<Structure> = kinds.collect();
-        self.alone(async |_: &mut Renderers| {
+        self.alone(async |renderers: &mut Renderers| {
             let renderer = self.layouts_of(kinds).await?;
             let phase = self.phase("divide");
             let bricks = accel.bricks(scene.spheres()).into();
             drop(phase);
-            let all = self.upload_all(&renderer, scene, bricks, watch).await?;
+            let mut begin = |structure: Structure, several_bricks: bool| {
+                if let Some(key_of) = key_of {
+                    let kind = BrickKind { structure, primitive: Primitive::Sphere };
+                    self.begin_renderer(renderers, key_of(kind, several_bricks));
+                }
+            };
+            let all = self.upload_all(&renderer, scene, bricks, watch, &mut begin).await?;
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
             };
@@ -99,9 +124,10 @@ impl Headless {
         scene: &Scene,
         bricks: BrickSource<impl ExactSizeIterator<Item = B>>,
         watch: &mut UploadWatch<'_>,
+        built: &mut WhenBuilt<'_>,
     ) -> Result<SceneBuffers, GpuError> {
         let ids = ShapeIds::of_all(scene, bricks.may_part_equals);
-        self.upload_bricks(renderer, SceneSummary::of(scene), bricks, &ids, watch).await
+        self.upload_bricks(renderer, SceneSummary::of(scene), bricks, &ids, watch, built).await
     }
 
     async fn upload_occluders<B: Borrow<Brick>>(
@@ -112,10 +138,22 @@ impl Headless {
         watch: &mut UploadWatch<'_>,
     ) -> Result<SceneBuffers, GpuError> {
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-        self.upload_bricks(renderer, summary, bricks, &ids, watch).await
+        self.upload_bricks(renderer, summary, bricks, &ids, watch, &mut |_, _| {}).await
     }
 
-    /// Copies bricks one after the other, and waits for the copy of each, so that its memory is free for the next.
+    /// Begins to build a renderer on a thread. A browser builds it later.
+    fn begin_renderer(&self, renderers: &mut Renderers, key: RendererKey) {
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let profile = self.profiler().map(|profiler| profiler.profile.clone());
+            renderers.begin(self.device(), self.info.device_type, key, profile);
+        }
+        #[cfg(target_arch = "wasm32")]
+        let _ = (renderers, key);
+    }
+
+    /// Copies bricks one after the other, and waits for the copy of each, so that its memory is free for the next. Calls
+    /// `built` once all are built, before the last is copied.
     async fn upload_bricks<B: Borrow<Brick>>(
         &self,
         renderer: &Renderer,
@@ -123,16 +161,22 @@ impl Headless {
         bricks: BrickSource<impl ExactSizeIterator<Item = B>>,
         ids: &ShapeIds,
         watch: &mut UploadWatch<'_>,
+        built: &mut WhenBuilt<'_>,
     ) -> Result<SceneBuffers, GpuError> {
         let BrickSource { space, mut bricks, .. } = bricks;
         let (device, queue, total) = (self.device(), self.queue(), bricks.len());
         let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, ids).await?;
+        let mut structure = space.structure;
         for number in 0..total {
             let mut tell = |step| UploadProgress { step, brick: number, bricks: total }.tell(watch);
             tell(UploadStep::Building)?;
             let phase = self.phase("build");
             let Some(brick) = bricks.next() else { break };
             drop(phase);
+            structure = structure.with_nested(brick.borrow().is_nested());
+            if number + 1 == total {
+                built(structure, total > 1);
+            }
             tell(UploadStep::Copying)?;
             let _phase = self.phase("upload");
             upload.brick(brick.borrow()).await?;
