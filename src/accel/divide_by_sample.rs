@@ -1,4 +1,4 @@
-//! Division of many spheres among bricks by cuts that halve a sample of them. Each sphere is read twice, whatever the
+//! Division of many spheres among bricks by cuts that halve a sample of them. Each sphere is read once, whatever the
 //! number of bricks, while exact cuts (`divide`) read it several times for each doubling of that number.
 
 use glam::Vec3A;
@@ -21,49 +21,52 @@ pub(super) fn largest_part(count: usize, parts: usize) -> usize {
     if parts > 1 && count >= MANY { mean + mean / 50 } else { mean }
 }
 
-/// A cut across an axis, or a part of the spheres.
-enum Node {
-    Cut {
-        axis: usize,
-        /// Centres with a smaller coordinate are on the left.
-        at: f32,
-        left: Box<Node>,
-        right: Box<Node>,
-    },
-    Part(usize),
+/// A cut across an axis, or a part of the spheres. A walk takes as many steps to each part, without a branch that depends on
+/// the sphere, because a processor guesses half of such branches wrong.
+#[derive(Clone, Copy)]
+struct Node {
+    axis: usize,
+    /// Centres with a smaller coordinate are on the left.
+    at: f32,
+    /// The nodes on the left and on the right. Those of a part are the part itself.
+    next: [u32; 2],
+    part: u16,
+}
+
+/// Cuts as a tree, of which the first node is the root.
+#[derive(Default)]
+struct Tree {
+    nodes: Vec<Node>,
+    /// The number of cuts on the longest way from the root to a part.
+    depth: usize,
 }
 
 /// Divides spheres into parts of about the same number: the ids of each part, in ascending order. Spheres with equal
 /// centres are in the same part. Returns `None` if there are few spheres, or if a part would have more than
 /// [`largest_part`], for example because many spheres have the same coordinate.
 pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec<Vec<u32>>> {
-    if parts <= 1 || spheres.len() < MANY {
+    if parts <= 1 || parts > usize::from(u16::MAX) || spheres.len() < MANY {
         return None;
     }
     let stride = spheres.len().div_ceil(SAMPLED);
     let mut sample: Vec<[f32; 3]> =
         spheres.iter().step_by(stride).map(|[x, y, z, _]| [*x, *y, *z]).collect();
-    let root = halve(&mut sample, 0, parts);
-    let part_of = |[x, y, z, _]: &[f32; 4]| {
-        let center = [*x, *y, *z];
-        let mut node = &root;
-        loop {
-            match node {
-                Node::Cut { axis, at, left, right } => {
-                    node = if center[*axis] < *at { left } else { right };
-                }
-                Node::Part(part) => return *part,
-            }
-        }
-    };
+    let mut tree = Tree::default();
+    tree.halve(&mut sample, (0, parts), 0);
+    drop(sample);
     let chunks = ranges(spheres.len(), CHUNK);
-    let counts: Vec<Vec<usize>> = map_parts(chunks.clone(), |chunk| {
-        let mut counts = vec![0; parts];
-        for sphere in &spheres[chunk] {
-            counts[part_of(sphere)] += 1;
-        }
-        counts
-    });
+    // The part of each sphere, so that spheres need not be read again.
+    let mut part_of = vec![0_u16; spheres.len()];
+    let tasks = spheres.chunks(CHUNK).zip(part_of.chunks_mut(CHUNK)).collect();
+    let counts: Vec<Vec<usize>> =
+        map_parts(tasks, |(spheres, part_of): (&[[f32; 4]], &mut [u16])| {
+            let mut counts = vec![0; parts];
+            for (sphere, part) in spheres.iter().zip(part_of) {
+                *part = tree.part_of(sphere);
+                counts[usize::from(*part)] += 1;
+            }
+            counts
+        });
     let total = |part: usize| counts.iter().map(|of_chunk| of_chunk[part]).sum::<usize>();
     let totals: Vec<usize> = (0..parts).map(total).collect();
     if totals.iter().any(|total| *total > largest_part(spheres.len(), parts)) {
@@ -85,8 +88,8 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
     }
     for_each(tasks, |(chunk, mut targets)| {
         for id in chunk {
-            // The places were counted by the same function, and the number of spheres fits into u32.
-            if let Some(place) = targets[part_of(&spheres[id])].next() {
+            // There is a place for each, and the number of spheres fits into u32.
+            if let Some(place) = targets[usize::from(part_of[id])].next() {
                 *place = id as u32;
             }
         }
@@ -94,24 +97,44 @@ pub(super) fn divide_by_sample(spheres: &[[f32; 4]], parts: usize) -> Option<Vec
     Some(all)
 }
 
-/// Cuts a sample across the longest side of its box until there are so many parts, numbered from `first`.
-fn halve(sample: &mut [[f32; 3]], first: usize, parts: usize) -> Node {
-    if parts <= 1 || sample.is_empty() {
-        return Node::Part(first);
+impl Tree {
+    fn part_of(&self, &[x, y, z, _]: &[f32; 4]) -> u16 {
+        let center = [x, y, z];
+        let mut node = &self.nodes[0];
+        for _ in 0..self.depth {
+            let is_left = center[node.axis] < node.at;
+            node = &self.nodes[node.next[usize::from(!is_left)] as usize];
+        }
+        node.part
     }
-    let extent =
-        sample.iter().fold(Extent::EMPTY, |all, center| all.with_point(Vec3A::from_array(*center)));
-    let axis = extent.longest_axis();
-    let left_parts = parts / 2;
-    let middle = sample.len() * left_parts / parts;
-    let (_, at, _) = sample.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));
-    let at = at[axis];
-    let (left, right) = sample.split_at_mut(middle);
-    Node::Cut {
-        axis,
-        at,
-        left: Box::new(halve(left, first, left_parts)),
-        right: Box::new(halve(right, first + left_parts, parts - left_parts)),
+
+    /// Cuts a sample across the longest side of its box until there are so many parts, numbered from `first`. Returns the
+    /// number of the node.
+    fn halve(
+        &mut self,
+        sample: &mut [[f32; 3]],
+        (first, parts): (usize, usize),
+        depth: usize,
+    ) -> u32 {
+        let own = self.nodes.len() as u32;
+        self.depth = self.depth.max(depth);
+        self.nodes.push(Node { axis: 0, at: 0.0, next: [own; 2], part: first as u16 });
+        if parts <= 1 || sample.is_empty() {
+            return own;
+        }
+        let extent = sample
+            .iter()
+            .fold(Extent::EMPTY, |all, center| all.with_point(Vec3A::from_array(*center)));
+        let axis = extent.longest_axis();
+        let left_parts = parts / 2;
+        let middle = sample.len() * left_parts / parts;
+        let (_, at, _) = sample.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));
+        let at = at[axis];
+        let (left, right) = sample.split_at_mut(middle);
+        let left = self.halve(left, (first, left_parts), depth + 1);
+        let right = self.halve(right, (first + left_parts, parts - left_parts), depth + 1);
+        self.nodes[own as usize] = Node { axis, at, next: [left, right], part: 0 };
+        own
     }
 }
 

@@ -175,10 +175,11 @@ fn assign(spheres: &[[f32; 4]], cells: &Cells, margin: f32) -> (Vec<Octet>, Vec<
             if !octet.is_known() {
                 let mut next = 0;
                 cells.for_each_range_of_rows(sphere, margin, |first, last| {
-                    for slab in next.max(first / rows_of_slab)..=last / rows_of_slab {
-                        add(&mut of_slabs[slab], shape_index);
-                        next = slab + 1;
+                    let (from, to) = (next.max(first / rows_of_slab), last / rows_of_slab);
+                    for of_slab in of_slabs.iter_mut().take(to + 1).skip(from) {
+                        add(of_slab, shape_index);
                     }
+                    next = to + 1;
                 });
                 continue;
             }
