@@ -1,7 +1,7 @@
 //! Handles Ctrl-C and other signals that ask the program to end. No incomplete file is left behind.
 //!
-//! The program normally exits at once. While a driver is at work, the first signal asks the work to stop and a second
-//! one exits. Files are written under temporary names, which are removed at a signal. They get their final names while
+//! The program normally exits at once. While a driver is at work, or a picture of which a part will be kept, the first
+//! signal asks the work to stop and a second one exits. Files are written under temporary names, which are removed at a signal. They get their final names while
 //! the lock is held that the signal handler needs, so there are all of the files or none.
 
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ struct State {
 enum Phase {
     /// Work that can be interrupted at any time.
     Free,
-    /// Work of a driver, whose threads must not be stopped abruptly.
+    /// Work of a driver, whose threads must not be stopped abruptly, or on a picture of which a part is kept.
     Device,
     /// Work with a driver that has nothing to do for a while, which can be interrupted.
     #[cfg(feature = "gpu")]
@@ -113,9 +113,9 @@ pub(super) fn driver_rests(rests: bool) {
     };
 }
 
-/// Like [`on_device`], but also returns the result if the program was asked to end, and whether it was.
-#[cfg(feature = "gpu")]
-pub(super) fn on_device_keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
+/// Runs work, on a device or not, that should end soon after [`is_requested`] returns true. Returns the result, and
+/// whether the program was asked to end.
+pub(super) fn keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     state().phase = Phase::Device;
     let result = work();
     let mut state = state();
@@ -123,8 +123,7 @@ pub(super) fn on_device_keeping<T>(work: impl FnOnce() -> T) -> (T, bool) {
     (result, std::mem::take(&mut state.is_requested))
 }
 
-/// Whether the program was asked to end, so that work on the device should stop.
-#[cfg(feature = "gpu")]
+/// Whether the program was asked to end, so that work which it awaits should stop.
 pub(super) fn is_requested() -> bool {
     state().is_requested
 }

@@ -102,7 +102,6 @@ pub(super) fn frames(text: String) -> bool {
 }
 
 /// Whether progress is shown, which needs a terminal.
-#[cfg(feature = "gpu")]
 pub(super) fn is_seen() -> bool {
     line().is_seen()
 }
@@ -116,7 +115,6 @@ pub(super) fn tracing(part: f64) {
 }
 
 /// Shows the fraction of a lit picture that is done, from 0 to 1, with a message.
-#[cfg(feature = "gpu")]
 pub(super) fn rendering(part: f64, message: String) {
     let template = "rendering {percent}%, {eta} left; {wide_msg}";
     show_part(part, template, Some(message));

@@ -1,6 +1,5 @@
 //! `pinhole render`: renders a scene file or a data file.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 #[cfg(feature = "gpu")]
 use std::sync::Once;
@@ -18,7 +17,6 @@ use super::encoding::EncodingFlags;
 use super::failure::Failure;
 use super::frames;
 use super::input::{Input, Source};
-#[cfg(feature = "gpu")]
 use super::interrupt;
 use super::light::LightFlags;
 use super::memory;
@@ -27,9 +25,7 @@ use super::print_scene;
 use super::profile;
 use super::progress;
 use super::speak::tell;
-use super::stop_rule::StopRule;
-#[cfg(feature = "gpu")]
-use super::stop_rule::Watching;
+use super::stop_rule::{StopRule, Watching};
 use super::structure_flags::StructureFlags;
 use super::threads;
 use super::views::Views;
@@ -39,11 +35,14 @@ use super::with_scene::{upload, watch_upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
 use pinhole::camera::View;
-use pinhole::cpu::{self, SearchTree};
+use pinhole::cpu::{self, SampledPicture, SearchTree};
 #[cfg(feature = "gpu")]
-use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch, Watch};
+use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
+use pinhole::render::Picture;
+#[cfg(feature = "gpu")]
+use pinhole::render::Watch;
 
 /// A render job, checked as far as is possible before the input is read.
 pub(super) struct Job {
@@ -210,7 +209,7 @@ fn render_views(
         Opened::Cpu => on_cpu(input, stop_rule, views, layers),
         #[cfg(feature = "gpu")]
         Opened::CpuInstead => {
-            check_on_cpu(input, stop_rule, views, layers)?;
+            check_on_cpu(input, views, layers)?;
             tell_once(|| {
                 format!(
                     "note: rendering on the CPU reference, which is slower: {}",
@@ -227,17 +226,12 @@ fn render_views(
     }
 }
 
-/// Refuses flags that the CPU reference does not support, and pictures that do not fit into memory.
-fn check_on_cpu(
-    input: &Input,
-    stop_rule: &StopRule,
-    views: &Views<View<'_>>,
-    layers: LayerSet,
-) -> Result<(), Failure> {
-    if !input.settings.integrator.is_primary() {
-        stop_rule.check_on_cpu()?;
-    }
-    memory::check(&input.film, &input.size_from, layers, views.extra_bytes_per_pixel(layers))
+/// Refuses pictures that do not fit into memory.
+fn check_on_cpu(input: &Input, views: &Views<View<'_>>, layers: LayerSet) -> Result<(), Failure> {
+    let is_lit = !input.settings.integrator.is_primary();
+    let sums = if is_lit { SampledPicture::BYTES_PER_PIXEL } else { 0 };
+    let extra = views.extra_bytes_per_pixel(layers) + sums;
+    memory::check(&input.film, &input.size_from, layers, extra)
 }
 
 fn on_cpu(
@@ -246,8 +240,8 @@ fn on_cpu(
     views: &Views<View<'_>>,
     layers: LayerSet,
 ) -> Result<Views<Image>, Failure> {
-    check_on_cpu(input, stop_rule, views, layers)?;
-    let Input { scene, settings, .. } = input;
+    check_on_cpu(input, views, layers)?;
+    let Input { scene, film, settings, .. } = input;
     let bytes = SearchTree::BYTES_PER_SPHERE * scene.len() as u64;
     let what = format!("a search tree of {} spheres needs", scene.len());
     memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
@@ -256,14 +250,35 @@ fn on_cpu(
     let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
     drop(phase);
     let _phase = profile::phase("render on the CPU");
-    let images = views.try_each(|view| {
-        let watch = |part| {
-            progress::tracing(part);
-            ControlFlow::Continue(())
-        };
-        cpu::render_watched(&tree, view, settings, layers, &watch)
-    });
-    Ok(images.context("the CPU reference cannot render this picture")?)
+    let is_lit = !settings.integrator.is_primary();
+    let mut too_short = None;
+    let mut render = || {
+        views.try_each(|view| {
+            let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
+            let watch = &mut |progress: &_| watching.decide(progress);
+            let picture = cpu::render_watched(&tree, view, settings, layers, watch);
+            too_short = watching.too_short();
+            Ok((picture?, watching))
+        })
+    };
+    // Where nothing would be kept, a signal may end the program at any time.
+    let (done, is_stopped) =
+        if stop_rule.keeps_partial() { interrupt::keeping(render) } else { (render(), false) };
+    if let Some(failure) = too_short {
+        return Err(failure);
+    }
+    let done: Result<_, cpu::RenderError> = done;
+    let pictures = done.context("the CPU cannot render this picture")?;
+    Ok(judged(pictures, settings.sampling.samples, is_stopped))
+}
+
+/// Tells the user about pictures that stopped early or have more noise than wanted, and returns the images.
+fn judged(pictures: Views<(Picture, Watching)>, total: u32, is_stopped: bool) -> Views<Image> {
+    for (picture, watching) in pictures.as_slice() {
+        let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
+        verdict.iter().for_each(tell);
+    }
+    pictures.map(|(picture, _)| picture.image)
 }
 
 #[cfg(feature = "gpu")]
@@ -280,7 +295,7 @@ fn on_gpu(
     let plan = |choice| plan(headless, input, views, layers, choice);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
-        let (done, is_stopped) = interrupt::on_device_keeping(|| {
+        let (done, is_stopped) = interrupt::keeping(|| {
             let pixels = film.pixel_count();
             if let (false, Views::One(view)) = (is_lit, views) {
                 let watching = Watching::new(*stop_rule, 1, pixels, false);
@@ -312,12 +327,7 @@ fn on_gpu(
         Ok(done.map(|pictures| (pictures, is_stopped)))
     })?;
     let ((pictures, is_stopped), _) = rendered.map_err(|error| explained(headless, &error))?;
-    let total = settings.sampling.samples;
-    for (picture, watching) in pictures.as_slice() {
-        let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
-        verdict.iter().for_each(tell);
-    }
-    Ok(pictures.map(|(picture, _)| picture.image))
+    Ok(judged(pictures, settings.sampling.samples, is_stopped))
 }
 
 /// Plans the memory for the pictures of an input.

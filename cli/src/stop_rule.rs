@@ -1,19 +1,14 @@
 //! When rendering stops: after a time, at a level of noise, or at a signal.
 
-#[cfg(feature = "gpu")]
 use std::cell::Cell;
-use std::time::Duration;
-#[cfg(feature = "gpu")]
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::light::HEADING;
-#[cfg(feature = "gpu")]
 use super::{interrupt, progress, speak::tell};
-#[cfg(feature = "gpu")]
-use pinhole::gpu::{Decision, Progress};
+use pinhole::render::{Decision, Progress};
 
 #[derive(Debug, Args)]
 pub(super) struct StopArgs {
@@ -38,7 +33,6 @@ pub(super) struct StopRule {
 }
 
 /// Samples that a picture needs before its noise counts. With fewer samples, the estimate may be low by chance.
-#[cfg(feature = "gpu")]
 const LEAST_SAMPLES: u32 = 16;
 
 impl StopRule {
@@ -62,25 +56,8 @@ impl StopRule {
     }
 
     /// Whether the picture is written after a signal.
-    #[cfg(feature = "gpu")]
     pub(super) fn keeps_partial(&self) -> bool {
         self.keep_partial
-    }
-
-    /// Refuses flags that the CPU reference does not support.
-    pub(super) fn check_on_cpu(&self) -> Result<(), Failure> {
-        let given = [
-            ("--time", self.time.is_some()),
-            ("--noise", self.noise.is_some()),
-            ("--keep-partial", self.keep_partial),
-        ];
-        match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((flag, _)) => Err(Failure::usage(format!(
-                "{flag} needs an adapter, because the CPU reference completes one pixel after the other; use \
-                 --samples instead"
-            ))),
-            None => Ok(()),
-        }
     }
 
     /// Refuses flags that do not apply to a picture without light.
@@ -115,7 +92,6 @@ fn parse_time(text: &str) -> Result<Duration, Failure> {
 }
 
 /// Applies the rule to one of several pictures while it is rendered.
-#[cfg(feature = "gpu")]
 pub(super) struct Watching {
     stop_rule: StopRule,
     time: Option<Duration>,
@@ -130,7 +106,6 @@ pub(super) struct Watching {
     too_short: Cell<Option<f64>>,
 }
 
-#[cfg(feature = "gpu")]
 impl Watching {
     /// Starts the time of one picture. All `pictures` share the time equally.
     pub(super) fn new(stop_rule: StopRule, pictures: usize, pixels: u64, is_lit: bool) -> Self {

@@ -24,7 +24,6 @@ impl<T> Views<T> {
     }
 
     /// Applies `f` to each value.
-    #[cfg(feature = "gpu")]
     pub(super) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Views<U> {
         match self {
             Self::One(one) => Views::One(f(one)),

@@ -1,4 +1,4 @@
-//! A walk of the compressed 8-wide tree in f64, which leaves the test of spheres to the caller.
+//! A walk of the compressed 8-wide tree, which leaves the test of spheres to the caller.
 //!
 //! # Why it leaves out no sphere
 //! A caller tests spheres with `intersect` of `src/cpu/sphere.rs`, in f64. Let u be 2⁻⁵³, l the vector from the ray's
@@ -22,15 +22,22 @@
 //! 4. *A ray that starts inside*, by the sign of the computed c, starts in the widened sphere. So does one that starts
 //!    on a sphere, whose distance the caller does not compute by the test.
 //!
-//! The box test moves a plane by at most 16 u D: the distance to it is a sum of two products, with six roundings of
-//! numbers that stand for lengths up to 2 D. All this together is less than half of the margin, so that the computed
-//! entry of every box around an accepted sphere is at most its exit and at most t. A box is left out only if its entry
-//! is greater than its exit or than the limit. A search among rays that graze spheres, up to 10¹⁶ radii away, found that
-//! less than 4 u D is needed.
+//! The box test moves a plane by at most 16 u D: the distance to it is a sum of two products and a distance before which
+//! the ray does not enter the node, with seven roundings of numbers that stand for lengths up to 2 D. All this together
+//! is less than half of the margin, so that there is a point of the ray, at t or before, that is in every box around an
+//! accepted sphere, as they are computed: the box of a node and those of its children. A box is left out only if its
+//! entry is greater than its exit or than the limit. A search among rays that graze spheres, up to 10¹⁶ radii away,
+//! found that less than 4 u D is needed.
+//!
+//! The last sum is in f32, four boxes at once: a whole number of cells up to 255 times the size s of a cell along the ray,
+//! plus a start a. With v = 2⁻²⁴, rounding s and a, the product and the sum move a plane by at most
+//! v (2 |a| + 3 · 255 |s|) (1 + 4 v), so it is moved outward by 4 v (|a| + 256 |s|) and by the smallest normal f32, for
+//! subnormal numbers. Distances count from where the ray may enter the node. So what rounding loses is small beside the
+//! node, however far away it is. A plane that is too far away for f32 is at infinity, as are limits beyond it.
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 use super::wide_group::octant_order;
 use super::wide_node::{LEAF_COUNT_SHIFT, LEAF_FIRST, WideNode};
@@ -41,7 +48,13 @@ const BESIDE: f64 = 128.0 * f64::EPSILON;
 
 /// The smallest magnitude of a direction's component in box tests; smaller ones are replaced by it. Over the longest
 /// distance it moves a ray by far less than the margin.
-const SMALLEST: f64 = 1e-60;
+const SMALLEST: f64 = 1e-18;
+
+/// The longest vector for which boxes are tested: with it, no number of a box test is NaN.
+const FARTHEST: f64 = 1e36;
+
+/// By how much f32 rounds the distance to a plane, relative to the numbers of which it is the sum.
+const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
 
 /// The most nodes that wait: of each level but the last, all children but the one that is visited.
 const MOST_WAITING: usize = 7 * WIDE_LEVELS as usize + 1;
@@ -53,18 +66,21 @@ pub(crate) struct BoxRay {
     inverse: DVec3,
     /// By how much boxes are wider for the ray than they are.
     pub(crate) margin: f64,
+    /// By how much f32 rounds the distance to a plane.
+    pub(crate) rounding: f64,
 }
 
 impl BoxRay {
     /// Prepares a ray for the tree whose spheres lie between two corners. `None` if the ray is not finite, or so far
-    /// away that lengths overflow: no box can be left out then.
+    /// away that numbers overflow: no box can be left out then.
     pub(crate) fn new(origin: DVec3, direction: DVec3, [low, high]: [DVec3; 2]) -> Option<Self> {
         let farthest = (low - origin).abs().max((high - origin).abs()).length();
         let bend = (1.0 - direction.length_squared()).abs();
         let margin = (BESIDE + 16.0 * bend) * farthest;
         let size = direction.abs().max(DVec3::splat(SMALLEST));
         let inverse = 1.0 / size.copysign(direction);
-        margin.is_finite().then_some(Self { origin, inverse, margin })
+        let is_near = farthest <= FARTHEST && margin.is_finite();
+        is_near.then_some(Self { origin, inverse, margin, rounding: ROUNDING })
     }
 }
 
@@ -100,19 +116,22 @@ impl WideTree {
             (0..3).fold(0, |bits, axis| bits | usize::from(ray.inverse[axis] < 0.0) << axis);
         let mut waiting = [Waiting::default(); MOST_WAITING];
         let mut count = 0;
-        let mut index = 0;
+        let mut at = Waiting::default();
         loop {
-            let node = &self.nodes[index as usize];
-            let (entries, hits) = node.entries(ray, limit);
+            let node = &self.nodes[at.node as usize];
+            let base = f64::from(at.entry);
+            let mut left_over = limit_from(base, limit);
+            let (entries, hits) = node.entries(ray, base, left_over);
             let inner = node.inner_mask();
             let mut leaves = octant_order(hits & !inner, octant as u32);
             while leaves != 0 {
                 let slot = leaves.trailing_zeros() as usize ^ octant;
                 leaves &= leaves - 1;
                 let leaf = u32::from(node.byte(6, slot));
-                if leaf != 0 && entries[slot] <= limit {
+                if leaf != 0 && entries[slot] <= left_over {
                     let first = (node.0[5] + (leaf & LEAF_FIRST)) as usize;
                     limit = offer(first..first + (leaf >> LEAF_COUNT_SHIFT) as usize);
+                    left_over = limit_from(base, limit);
                 }
             }
             let mut left = hits & inner;
@@ -120,11 +139,12 @@ impl WideTree {
             while left != 0 {
                 let slot = left.trailing_zeros() as usize;
                 left &= left - 1;
-                if entries[slot] > limit {
+                if entries[slot] > left_over {
                     continue;
                 }
                 let child = node.0[4] + (inner & ((1 << slot) - 1)).count_ones();
-                let new = Waiting { entry: (entries[slot] as f32).next_down(), node: child };
+                let entry = (base + f64::from(entries[slot])) as f32;
+                let new = Waiting { entry: entry * (1.0 - f32::EPSILON), node: child };
                 // The nearest comes last.
                 let mut place = count;
                 while place > before && waiting[place - 1].entry < new.entry {
@@ -140,7 +160,7 @@ impl WideTree {
                 }
                 count -= 1;
                 if f64::from(waiting[count].entry) <= limit {
-                    index = waiting[count].node;
+                    at = waiting[count];
                     break;
                 }
             }
@@ -148,33 +168,48 @@ impl WideTree {
     }
 }
 
+/// A limit as a distance from where a ray may enter a node, rounded up. If it is before that, nothing in the node counts.
+#[inline(always)]
+fn limit_from(base: f64, limit: f64) -> f32 {
+    (limit - base) as f32 * (1.0 + 2.0 * f32::EPSILON) + f32::MIN_POSITIVE
+}
+
+/// The distances to planes of four boxes: `step` for each cell after `start`.
+#[inline(always)]
+fn planes(cells: u32, step: Vec4, start: Vec4) -> Vec4 {
+    let [a, b, c, d] = cells.to_le_bytes();
+    Vec4::new(a.into(), b.into(), c.into(), d.into()) * step + start
+}
+
 impl WideNode {
-    /// The distance at which the ray enters the box of each slot, widened by the margin; and a mask of the slots whose
-    /// boxes it enters at or before `limit`.
-    #[inline]
-    fn entries(&self, ray: &BoxRay, limit: f64) -> ([f64; 8], u32) {
-        let mut entry = [0.0_f64; 8];
-        let mut exit = [limit; 8];
+    /// The distance from `base` at which the ray enters the box of each slot, widened by the margin and by what rounding
+    /// may lose; and a mask of the slots whose boxes it enters at or before `limit`, which also counts from `base`. The
+    /// ray does not enter the node before `base`.
+    #[inline(always)]
+    fn entries(&self, ray: &BoxRay, base: f64, limit: f32) -> ([f32; 8], u32) {
+        let (mut first, mut second) = (Vec4::ZERO, Vec4::ZERO);
+        let (mut first_exit, mut second_exit) = (Vec4::splat(limit), Vec4::splat(limit));
         for axis in 0..3 {
             let inverse = ray.inverse[axis];
             let [origin, cell] = self.grid(axis);
             let step = cell * inverse;
-            let start = (origin - ray.origin[axis]) * inverse;
-            let wider = ray.margin * inverse.abs();
+            let start = (origin - ray.origin[axis]) * inverse - base;
+            let margin = ray.margin * inverse.abs();
+            let rounded = ray.rounding * (start.abs() + margin + 256.0 * step.abs());
+            let wider = margin + rounded + f64::from(f32::MIN_POSITIVE);
             let (low, high) = (8 + 2 * axis, 14 + 2 * axis);
             let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
-            let planes = |word: usize, start: f64| {
-                let bytes = u64::from(self.0[word + 1]) << 32 | u64::from(self.0[word]);
-                bytes.to_le_bytes().map(|cells| f64::from(cells) * step + start)
-            };
-            let (near, far) = (planes(near, start - wider), planes(far, start + wider));
-            // Comparisons rather than `max` and `min`, which take longer because they know NaN.
-            for slot in 0..8 {
-                entry[slot] = if near[slot] > entry[slot] { near[slot] } else { entry[slot] };
-                exit[slot] = if far[slot] < exit[slot] { far[slot] } else { exit[slot] };
-            }
+            let step = Vec4::splat(step as f32);
+            let start_near = Vec4::splat((start - wider) as f32);
+            let start_far = Vec4::splat((start + wider) as f32);
+            first = first.max(planes(self.0[near], step, start_near));
+            second = second.max(planes(self.0[near + 1], step, start_near));
+            first_exit = first_exit.min(planes(self.0[far], step, start_far));
+            second_exit = second_exit.min(planes(self.0[far + 1], step, start_far));
         }
-        let hits = (0..8).fold(0, |mask, slot| mask | u32::from(entry[slot] <= exit[slot]) << slot);
-        (entry, hits)
+        let hits = second.cmple(second_exit).bitmask() << 4 | first.cmple(first_exit).bitmask();
+        let [a, b, c, d] = first.to_array();
+        let [e, f, g, h] = second.to_array();
+        ([a, b, c, d, e, f, g, h], hits)
     }
 }

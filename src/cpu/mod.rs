@@ -6,22 +6,26 @@
 //! Where there is no device, the same code renders large scenes: with a [`SearchTree`], rays test only spheres that they
 //! may hit. The picture is the same, to the bit.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::ops::Range;
 
 use crate::camera::View;
 use crate::image::{Image, ImageTooLarge, LayerSet, Pixel, RowMut};
-use crate::render::{PrimarySettings, RenderSettings, SettingsError};
+use crate::render::{
+    Decision, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch,
+};
 
 mod denoise;
 mod light;
 pub(crate) mod live;
+mod pace;
 mod search;
 #[cfg(test)]
 mod search_tests;
 mod shade;
 mod sphere;
 mod trace;
+
+use pace::Pace;
 
 pub use denoise::denoise;
 pub use light::{Sample, SampledPicture, radiance};
@@ -47,10 +51,6 @@ pub enum RenderError {
     Stopped,
 }
 
-/// Is told, after each row, the fraction of the picture that is rendered, and decides whether rendering continues. It
-/// may be called on any thread, and on several at the same time.
-pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + Sync + 'a;
-
 /// Renders a picture.
 ///
 /// With the integrator `primary`, each pixel shows what the ray through its centre hits. With the other integrators,
@@ -70,28 +70,33 @@ pub fn render<'a>(
     settings: &RenderSettings,
     layers: LayerSet,
 ) -> Result<Image, RenderError> {
-    render_watched(search, view, settings, layers, &|_| ControlFlow::Continue(()))
+    let search = search.into();
+    match settings.primary() {
+        Some(primary) => {
+            settings.check(search.scene())?;
+            render_primary(search, view, &primary, layers)
+        }
+        None => SampledPicture::new(search, view, settings)?.render(layers),
+    }
 }
 
-/// Renders a picture as [`render`] does, and tells how much of it is done.
+/// Renders a picture as [`render`] does, with the same pixels, and asks `watch` several times a second how to continue.
+///
+/// With lighting, every pixel gets its first sample before any gets its second, and so on in batches, so that the
+/// caller may finish the picture with the samples that it has. Until then each pixel needs 72 bytes for its sums.
+/// If a picture is finished within a batch, some rows have more samples than others, which the layer of samples tells.
 ///
 /// # Errors
-/// Returns an error as [`render`] does, or if `watch` ends the work.
+/// Returns an error as [`render`] does, or if `watch` ends the work before every pixel has a sample.
 pub fn render_watched<'a>(
     search: impl Into<Search<'a>>,
     view: &View<'_>,
     settings: &RenderSettings,
     layers: LayerSet,
-    watch: &Watch<'_>,
-) -> Result<Image, RenderError> {
+    watch: &mut Watch<'_>,
+) -> Result<Picture, RenderError> {
     let search = search.into();
-    match settings.primary() {
-        Some(primary) => {
-            settings.check(search.scene())?;
-            render_primary(search, view, &primary, layers, watch)
-        }
-        None => SampledPicture::new(search, view, settings)?.render_watched(layers, watch),
-    }
+    SampledPicture::new(search, view, settings)?.render_watched(layers, watch)
 }
 
 fn render_primary(
@@ -99,13 +104,37 @@ fn render_primary(
     view: &View<'_>,
     primary: &PrimarySettings,
     layers: LayerSet,
-    watch: &Watch<'_>,
 ) -> Result<Image, RenderError> {
     let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
-    for_each_pixel(&mut image, watch, |pixel, i, row| {
+    for_each_pixel(&mut image, |pixel, i, row| {
         row.set(i, &primary_pixel(search, view, primary, pixel));
-    })?;
+    });
     Ok(image)
+}
+
+/// Renders a picture of primary rays, and asks after some rows how to continue.
+fn primary_watched(
+    search: Search<'_>,
+    view: &View<'_>,
+    primary: &PrimarySettings,
+    layers: LayerSet,
+    watch: &mut Watch<'_>,
+) -> Result<Picture, RenderError> {
+    let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
+    let height = image.height() as usize;
+    Pace::new().run(height, |rows| {
+        let is_done = rows.end == height;
+        let part = rows.end as f64 / height as f64;
+        for_rows(&mut image, rows, |pixel, i, row| {
+            row.set(i, &primary_pixel(search, view, primary, pixel));
+        });
+        match watch(&Progress { samples: is_done.into(), total: 1, part, noise: None }) {
+            Decision::GoOn | Decision::MeasureNoise => Ok(()),
+            Decision::Finish if is_done => Ok(()),
+            Decision::Finish | Decision::Stop => Err(RenderError::Stopped),
+        }
+    })?;
+    Ok(Picture { image, samples: 1, noise: None, hits: None })
 }
 
 /// The pixel of the ray through its centre.
@@ -123,31 +152,27 @@ fn primary_pixel(
     }
 }
 
-/// Calls `work` with each pixel (column and row), its index in its row, and the row. Calls `watch` after each row.
-fn for_each_pixel(
-    image: &mut Image,
-    watch: &Watch<'_>,
-    work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
-) -> Result<(), RenderError> {
-    let (width, height) = (image.width(), image.height() as usize);
-    let (done, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+/// Calls `work` with each pixel (column and row), its index in its row, and the row.
+fn for_each_pixel(image: &mut Image, work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync) {
+    let height = image.height() as usize;
     // Rows are borrowed in batches, because the references to a row's layers may need more memory than a narrow row.
     for start in (0..height).step_by(ROWS_AT_ONCE) {
-        let rows = image.rows_mut(start..(start + ROWS_AT_ONCE).min(height));
-        for_each_row(rows, |j, row| {
-            if is_stopped.load(Ordering::Relaxed) {
-                return;
-            }
-            for i in 0..width {
-                work([i, (start + j) as u32], i as usize, row);
-            }
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if watch(done as f64 / height as f64).is_break() {
-                is_stopped.store(true, Ordering::Relaxed);
-            }
-        });
+        for_rows(image, start..(start + ROWS_AT_ONCE).min(height), &work);
     }
-    if is_stopped.into_inner() { Err(RenderError::Stopped) } else { Ok(()) }
+}
+
+/// Calls `work` with each pixel of some rows, as [`for_each_pixel`] does.
+fn for_rows(
+    image: &mut Image,
+    rows: Range<usize>,
+    work: impl Fn([u32; 2], usize, &mut RowMut<'_>) + Sync,
+) {
+    let (width, start) = (image.width(), rows.start);
+    for_each_row(image.rows_mut(rows), |j, row| {
+        for i in 0..width {
+            work([i, (start + j) as u32], i as usize, row);
+        }
+    });
 }
 
 #[cfg(feature = "parallel")]

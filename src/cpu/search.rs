@@ -99,12 +99,12 @@ impl<'a> SearchTree<'a> {
     }
 }
 
-/// The nearest of the hits that a test found.
-pub(super) struct NearestHit<H> {
+/// The nearest of the spheres that a test accepted.
+#[derive(Clone, Copy)]
+pub(super) struct NearestHit {
     pub(super) id: u32,
+    pub(super) sphere: [f32; 4],
     pub(super) t: f64,
-    /// What else the test returned.
-    pub(super) hit: H,
 }
 
 impl<'a> Search<'a> {
@@ -118,31 +118,31 @@ impl<'a> Search<'a> {
     }
 
     /// The nearest hit of a ray in the scene's frame; of several at the same distance, that with the smallest id.
-    /// `test` gets an id and a sphere, and returns the distance, which is not NaN, and more about a hit.
+    /// `distance` gets a sphere, and returns the distance of a hit, which is not NaN.
     #[inline]
-    pub(super) fn nearest<H>(
+    pub(super) fn nearest(
         &self,
         ray: &Ray,
-        test: impl Fn(u32, [f32; 4]) -> Option<(f64, H)>,
-    ) -> Option<NearestHit<H>> {
-        let mut nearest: Option<NearestHit<H>> = None;
+        distance: impl Fn([f32; 4]) -> Option<f64>,
+    ) -> Option<NearestHit> {
+        let mut nearest: Option<NearestHit> = None;
         match self {
             Self::EverySphere(scene) => {
                 for (id, sphere) in (0..).zip(scene.spheres()) {
-                    let Some((t, hit)) = test(id, *sphere) else { continue };
+                    let Some(t) = distance(*sphere) else { continue };
                     // Ids ascend, so `<` prefers the smaller id at equal distances.
-                    if nearest.as_ref().is_none_or(|nearest| t < nearest.t) {
-                        nearest = Some(NearestHit { id, t, hit });
+                    if nearest.is_none_or(|nearest| t < nearest.t) {
+                        nearest = Some(NearestHit { id, sphere: *sphere, t });
                     }
                 }
             }
             Self::Tree(tree) => tree.visit(ray, f64::INFINITY, |id, sphere| {
-                if let Some((t, hit)) = test(id, sphere)
-                    && nearest.as_ref().is_none_or(|nearest| (t, id) < (nearest.t, nearest.id))
+                if let Some(t) = distance(sphere)
+                    && nearest.is_none_or(|nearest| (t, id) < (nearest.t, nearest.id))
                 {
-                    nearest = Some(NearestHit { id, t, hit });
+                    nearest = Some(NearestHit { id, sphere, t });
                 }
-                nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.t)
+                nearest.map_or(f64::INFINITY, |nearest| nearest.t)
             }),
         }
         nearest

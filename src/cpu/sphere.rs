@@ -13,6 +13,9 @@ use crate::geometry::ray::Ray;
 ///
 /// The normal is computed from the same right triangle, not from the hit point, which for a small sphere far away is
 /// nothing but rounding error.
+///
+/// Inlined, so that callers who need the distance alone compute no more.
+#[inline(always)]
 pub(super) fn intersect(ray: &Ray, center: DVec3, radius: f64) -> Option<(f64, DVec3)> {
     let to_center = center - ray.origin;
     let b = to_center.dot(ray.direction);

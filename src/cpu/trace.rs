@@ -11,7 +11,8 @@ use crate::geometry::ray::{Hit, Ray};
 pub fn trace<'a>(search: impl Into<Search<'a>>, ray_in_world: &Ray) -> Option<Hit> {
     let search = search.into();
     let ray = Ray { origin: ray_in_world.origin - search.scene().origin(), ..*ray_in_world };
-    let nearest = search
-        .nearest(&ray, |_, [x, y, z, radius]| intersect(&ray, wide([x, y, z]), radius.into()))?;
-    Some(Hit { t: nearest.t, id: nearest.id, normal: nearest.hit })
+    let test = |[x, y, z, radius]: [f32; 4]| intersect(&ray, wide([x, y, z]), radius.into());
+    let nearest = search.nearest(&ray, |sphere| test(sphere).map(|(t, _)| t))?;
+    let (t, normal) = test(nearest.sphere)?;
+    Some(Hit { t, id: nearest.id, normal })
 }

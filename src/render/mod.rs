@@ -21,6 +21,7 @@ mod check;
 mod deep;
 mod integrator;
 mod notes;
+mod progress;
 mod studio;
 
 #[cfg(feature = "scene-file")]
@@ -28,6 +29,8 @@ pub(crate) use check::BRIGHTEST;
 pub use check::SettingsError;
 pub use integrator::{Integrator, LightSampling, PathTracing, PrimarySettings, Shading};
 pub use notes::SettingsNote;
+pub use progress::{Decision, Picture, Progress, Watch};
+pub(crate) use progress::{Totals, batch};
 pub use studio::{DepthCue, Occlusion, Outline, Studio};
 
 /// All settings of a picture apart from the scene and the view.

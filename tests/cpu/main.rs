@@ -62,6 +62,7 @@ mod search;
 mod select;
 mod settings;
 mod soundness;
+mod steps;
 mod stereo;
 mod structures;
 mod trajectory;

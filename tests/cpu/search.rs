@@ -151,29 +151,3 @@ fn studios_and_primary_rays() {
     }
     assert!(shown > 150 * 60, "{shown}");
 }
-
-/// What is told of the work rises to 1, and ends the work if the caller says so.
-#[test]
-fn the_caller_is_told_and_may_stop() {
-    use std::ops::ControlFlow;
-    use std::sync::Mutex;
-
-    let view = random_light::view(3);
-    let tree = SearchTree::new(&view.scene).unwrap();
-    let seen = View::new(view.camera.as_ref(), view.film);
-    for settings in [&view.settings, &RenderSettings::default()] {
-        let parts = Mutex::new(Vec::new());
-        let told = |part| {
-            parts.lock().unwrap().push(part);
-            ControlFlow::Continue(())
-        };
-        cpu::render_watched(&tree, &seen, settings, LayerSet::COLOR, &told).unwrap();
-        let mut parts = parts.into_inner().unwrap();
-        parts.sort_by(f64::total_cmp);
-        assert_eq!(parts.len(), 18);
-        assert_eq!(parts.last(), Some(&1.0));
-        let stop = |_| ControlFlow::Break(());
-        let error = cpu::render_watched(&tree, &seen, settings, LayerSet::COLOR, &stop);
-        assert!(matches!(error, Err(cpu::RenderError::Stopped)));
-    }
-}

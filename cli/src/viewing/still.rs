@@ -1,11 +1,10 @@
 //! Pictures for a window, as `pinhole render` makes them, with more and more samples.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use anyhow::Context;
 use pinhole::accel::AccelChoice;
-use pinhole::cpu::{self, SearchTree};
+use pinhole::cpu::{self, RenderError, SearchTree};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
 use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, LayerSet};
@@ -173,13 +172,14 @@ fn on_cpu(
     is_wanted: &dyn Fn() -> bool,
 ) -> Result<Option<Image>, Failure> {
     let tree = SearchTree::new(&shown.input.scene).context("the search tree cannot be built")?;
-    // The rows are rendered by several threads, and only this one knows whether the picture is wanted.
-    if !is_wanted() {
-        return Ok(None);
+    let watch = &mut |_: &_| if is_wanted() { Decision::GoOn } else { Decision::Stop };
+    match cpu::render_watched(&tree, &shown.input.view(), settings, layers, watch) {
+        Ok(picture) => Ok(Some(picture.image)),
+        Err(RenderError::Stopped) => Ok(None),
+        Err(error) => {
+            Err(anyhow::Error::new(error).context("the CPU cannot render this picture").into())
+        }
     }
-    let watch = |_| ControlFlow::Continue(());
-    let image = cpu::render_watched(&tree, &shown.input.view(), settings, layers, &watch);
-    Ok(Some(image.context("the CPU reference cannot render this picture")?))
 }
 
 /// The numbers of samples of the pictures that are shown, up to all.

@@ -26,6 +26,7 @@ mod profile;
 mod shaders;
 mod snapshots;
 mod stereo;
+mod stop_rules;
 mod structure;
 mod support;
 mod verify;

@@ -3,16 +3,15 @@
 //! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
 //! sample. Only the input is shared with them.
 
-use std::ops::ControlFlow;
-
 use glam::DVec3;
 
-use self::context::{LightingContext, luminance};
+use self::context::LightingContext;
+use self::film_sums::PixelSums;
 use self::path::follow as follow_path;
 use self::sample::{Address, Found, Lens};
 use self::studio::follow as follow_in_studio;
 use super::search::Search;
-use super::{RenderError, Watch, denoise, for_each_pixel, primary_pixel, render_primary};
+use super::{RenderError, denoise, for_each_pixel, primary_pixel, render_primary};
 use crate::camera::View;
 use crate::geometry::math::wide;
 use crate::image::outline;
@@ -21,6 +20,8 @@ use crate::render::{Integrator, PrimarySettings, RenderSettings, SettingsError};
 
 mod bsdf;
 mod context;
+mod film_sums;
+mod gather;
 mod lamp;
 pub(super) mod live;
 mod maps;
@@ -41,6 +42,9 @@ pub struct SampledPicture<'a> {
 }
 
 impl<'a> SampledPicture<'a> {
+    /// The bytes that each pixel needs beside the picture while it is rendered batch by batch.
+    pub const BYTES_PER_PIXEL: u64 = size_of::<PixelSums>() as u64;
+
     /// Checks the settings, and prepares the data that all samples share. With a reference to a scene, rays test every
     /// sphere.
     ///
@@ -95,30 +99,24 @@ impl<'a> SampledPicture<'a> {
     /// # Errors
     /// Returns an error if the image does not fit into memory.
     pub fn render(&self, layers: LayerSet) -> Result<Image, RenderError> {
-        self.render_watched(layers, &|_| ControlFlow::Continue(()))
-    }
-
-    /// Renders all pixels, and tells how much of the picture is done; see [`super::render_watched`].
-    ///
-    /// # Errors
-    /// Returns an error if the image does not fit into memory, or if `watch` ends the work.
-    pub fn render_watched(
-        &self,
-        layers: LayerSet,
-        watch: &Watch<'_>,
-    ) -> Result<Image, RenderError> {
         let settings = self.context.settings;
         if let Some(primary) = settings.primary() {
-            return render_primary(self.context.search, &self.view, &primary, layers, watch);
+            return render_primary(self.context.search, &self.view, &primary, layers);
         }
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
-        for_each_pixel(&mut image, watch, |pixel, i, row| {
+        for_each_pixel(&mut image, |pixel, i, row| {
             if row.has_data() {
                 row.set(i, &self.data(pixel));
             }
             row.set_averages(i, &self.averages(pixel));
-        })?;
+        });
+        Ok(self.finish(image, layers))
+    }
+
+    /// Completes a picture of which all means are known.
+    fn finish(&self, mut image: Image, layers: LayerSet) -> Image {
+        let settings = self.context.settings;
         if settings.is_denoised {
             // This cannot fail, because `layers_for` includes all guides.
             image = denoise(&image).unwrap_or(image);
@@ -127,31 +125,14 @@ impl<'a> SampledPicture<'a> {
             outline::draw(&mut image, &lines);
         }
         image.keep(layers);
-        Ok(image)
+        image
     }
 
     fn averages(&self, pixel: [u32; 2]) -> Averages {
         let count = self.context.settings.sampling.samples;
-        let (mut color, mut albedo) = (DVec3::ZERO, DVec3::ZERO);
-        let (mut alpha, mut light, mut square) = (0.0, 0.0, 0.0);
-        for sample in 0..count {
-            let found = self.sample(pixel, sample);
-            let luminance = luminance(found.color.into());
-            color += DVec3::from(found.color);
-            albedo += DVec3::from(found.albedo);
-            alpha += found.alpha;
-            light += luminance;
-            square += luminance * luminance;
-        }
-        let n = f64::from(count);
-        let spread = (square / n - (light / n).powi(2)).max(0.0);
-        Averages {
-            color: (color / n).as_vec3().to_array(),
-            alpha: (alpha / n) as f32,
-            albedo: (albedo / n).as_vec3().to_array(),
-            samples: count,
-            variance: if count > 1 { spread / (n - 1.0) } else { 0.0 } as f32,
-        }
+        let mut sums = PixelSums::default();
+        (0..count).for_each(|sample| sums.add(&self.sample(pixel, sample)));
+        sums.means(count).averages
     }
 
     /// The data layers of a pixel, from the ray through its centre.

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec4};
 
 use super::context::LightingContext;
+use crate::cpu::search::NearestHit;
 use crate::cpu::sphere::intersect;
 use crate::geometry::ray::Ray;
 
@@ -86,9 +87,9 @@ pub(super) fn nearest(
 ) -> Option<Interaction> {
     let ray = &surface_ray.ray;
     let start = StartSphere::of(context, surface_ray.start);
-    let test = |_, sphere| hit_of(ray, start, sphere).map(|hit| (hit.distance, hit));
-    let nearest = context.search.nearest(ray, test).map(|nearest| (nearest.id, nearest.hit));
-    let is_nearest = |t: &f64| nearest.is_none_or(|(_, hit)| *t < hit.distance);
+    let distance = |sphere| hit_of(ray, start, sphere).map(|hit| hit.distance);
+    let nearest = context.search.nearest(ray, distance);
+    let is_nearest = |t: &f64| nearest.is_none_or(|nearest| *t < nearest.t);
     if let Some(distance) = ground(context, surface_ray).filter(is_nearest) {
         let plane = context.ground.as_ref()?;
         let beside = ray.at(distance) - plane.point;
@@ -100,15 +101,15 @@ pub(super) fn nearest(
             is_outside: true,
         });
     }
-    nearest.map(|(id, SphereHit { distance, outward, is_outside })| {
-        let (center, radius) = context.sphere(id);
-        Interaction {
-            surface: Surface::Sphere(id),
-            distance,
-            point: center + radius * outward,
-            normal: if is_outside { outward } else { -outward },
-            is_outside,
-        }
+    let NearestHit { id, sphere, .. } = nearest?;
+    let SphereHit { distance, outward, is_outside } = hit_of(ray, start, sphere)?;
+    let (center, radius) = context.sphere(id);
+    Some(Interaction {
+        surface: Surface::Sphere(id),
+        distance,
+        point: center + radius * outward,
+        normal: if is_outside { outward } else { -outward },
+        is_outside,
     })
 }
 
@@ -183,6 +184,8 @@ struct SphereHit {
     is_outside: bool,
 }
 
+/// Inlined, so that callers who need the distance alone compute no more.
+#[inline(always)]
 fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> {
     let [x, y, z, radius] = sphere.map(f64::from);
     let center = DVec3::new(x, y, z);

@@ -8,7 +8,7 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::Flow;
 use crate::gpu::headless::progress::{Decision, Picture, Progress, Watch};
 use crate::gpu::passes::frame::iteration_limit;
-use crate::gpu::passes::lit::sums::{self, Totals};
+use crate::gpu::passes::lit::sums;
 use crate::gpu::passes::lit::{
     AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, RecordedBy, Round,
 };
@@ -16,13 +16,7 @@ use crate::gpu::passes::tiles::tiles;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::image::outline;
 use crate::image::{Image, Layer, LayerSet};
-use crate::render::{PrimarySettings, RenderSettings};
-
-/// Size of the next batch of samples when `done` of `total` samples are complete. After each batch there is a picture
-/// that could be returned.
-fn batch(done: u32, total: u32) -> u32 {
-    done.clamp(1, 32).min(total - done)
-}
+use crate::render::{PrimarySettings, RenderSettings, Totals, batch};
 
 impl Headless {
     /// Renders a lit picture of a scene that is already on this device.

@@ -1,41 +1,9 @@
-//! The progress of a render, the decisions of its caller, and its result.
+//! The progress of copying scenes to a device, and of tracing primary rays. That of lit pictures is in
+//! `render/progress.rs`.
 
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::tiles::Groups;
-use crate::image::Image;
-
-/// The progress of a render.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Progress {
-    /// Number of samples that every pixel has.
-    pub samples: u32,
-    /// Number of samples that every pixel will have; 1 for a picture of primary rays.
-    pub total: u32,
-    /// Completed fraction of the work, from 0 to 1.
-    pub part: f64,
-    /// Remaining noise of a lit picture: the square root of the mean variance of pixels, divided by the mean luminance.
-    /// It is known after two samples, if [`Decision::MeasureNoise`] requested it.
-    pub noise: Option<f64>,
-}
-
-/// How a render continues: the answer of the callback that is told about its progress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Decision {
-    /// Continue.
-    GoOn,
-    /// Continue, and provide [`Progress::noise`] in later calls.
-    MeasureNoise,
-    /// Return the picture with the samples that it has. While some pixels have no sample there is no picture, and the
-    /// render stops with an error.
-    Finish,
-    /// Stop the render with an error.
-    Stop,
-}
-
-/// Callback that is called with the progress after every submission, and decides how the render continues.
-pub type Watch<'a> = dyn FnMut(&Progress) -> Decision + 'a;
+pub use crate::render::{Decision, Picture, Progress, Watch};
 
 /// The progress of copying a scene to a device brick by brick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,21 +44,6 @@ impl UploadProgress {
 /// A [`Watch`] or an [`UploadWatch`] that always continues.
 pub(in crate::gpu) fn go_on<T>(_: &T) -> Decision {
     Decision::GoOn
-}
-
-/// The result of a render.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Picture {
-    /// The image, with the layers that were requested.
-    pub image: Image,
-    /// Number of samples that every pixel has.
-    pub samples: u32,
-    /// Remaining noise, as in [`Progress::noise`].
-    pub noise: Option<f64>,
-    /// Number of camera rays that hit something, over all samples, weighted by opacity. It is `None` for pictures of
-    /// primary rays, whose hits are not counted.
-    pub hits: Option<f64>,
 }
 
 /// Number of pixels for which primary rays were traced, in whole workgroups. A pixel counts once for every brick.

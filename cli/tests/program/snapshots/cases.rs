@@ -214,13 +214,12 @@ pub(super) fn light() -> Vec<Case> {
          render scene.toml -o out.png --backend cpu --ao=0
          render scene.toml -o out.png --backend cpu --outline 0.1
          render scene.toml -o out.png --backend cpu --noise 0
-         render scene.toml -o out.png --backend cpu --time 20
+         render scene.toml -o out.png --backend cpu --time 0s
          render scene.toml -o out.png --backend cpu --integrator patth
          render scene.toml -o out.png --backend cpu --filter triangle
          render scene.toml -o out.png --backend cpu --ao --integrator path
          render scene.toml -o out.png --backend cpu --integrator primary --samples 4
          render scene.toml -o out.png --backend cpu --keep-partial
-         render scene.toml -o out.png --backend cpu --time 1s
          render bright.toml -o out.png --backend cpu",
     )
 }

@@ -4,38 +4,10 @@ use super::records::FILM_SLOTS;
 use crate::gpu::passes::tiles::Tile;
 use crate::image::color::luminance;
 use crate::image::{Averages, Image};
+use crate::render::Totals;
 
 /// The sums of a pixel, which are the three vectors of `shaders/path/film_sums.wgsl`.
 type Sums = [[f32; 4]; FILM_SLOTS as usize];
-
-/// Sums over all pixels.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::gpu) struct Totals {
-    /// Sum of the opacities of all samples.
-    pub(in crate::gpu) opacity: f64,
-    /// Sum of the variances of pixels' means.
-    pub(in crate::gpu) variance: f64,
-    /// Sum of the luminances of pixels.
-    pub(in crate::gpu) light: f64,
-    pub(in crate::gpu) pixels: u64,
-}
-
-impl Totals {
-    pub(in crate::gpu) fn add(&mut self, more: &Self) {
-        self.opacity += more.opacity;
-        self.variance += more.variance;
-        self.light += more.light;
-        self.pixels += more.pixels;
-    }
-
-    /// The remaining noise: the square root of the mean variance of pixels, divided by the mean luminance. It is `None`
-    /// if it is not known.
-    pub(in crate::gpu) fn noise(&self, samples: u32) -> Option<f64> {
-        let count = self.pixels as f64;
-        let is_known = samples > 1 && self.light > 0.0;
-        is_known.then(|| (self.variance / count).sqrt() / (self.light / count))
-    }
-}
 
 /// Writes the means of a tile to the layers of an image.
 pub(in crate::gpu) fn write(

@@ -1,0 +1,89 @@
+//! How much of a picture is rendered between two calls of its caller.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use super::RenderError;
+
+/// The time between two calls that is aimed at: short enough for a person, long enough that waiting for the last of all
+/// threads does not count.
+const AIM: Duration = Duration::from_millis(60);
+
+/// The most strips that are rendered together. References to the layers of their rows may need more memory than narrow
+/// rows.
+const MOST: usize = 512;
+
+/// Divides the strips of a picture into bands that take about the same time.
+#[derive(Debug)]
+pub(super) struct Pace {
+    /// The number of strips of the next band.
+    strips: usize,
+}
+
+impl Pace {
+    /// Nothing is known yet, so the first band is as short as possible.
+    pub(super) fn new() -> Self {
+        Self { strips: 1 }
+    }
+
+    /// Calls `work` with bands of strips that together are all of `count`, until it returns an error.
+    pub(super) fn run(
+        &mut self,
+        count: usize,
+        mut work: impl FnMut(Range<usize>) -> Result<(), RenderError>,
+    ) -> Result<(), RenderError> {
+        let mut start = 0;
+        while start < count {
+            let end = count.min(start + self.strips);
+            let began = now();
+            work(start..end)?;
+            if let Some(began) = began {
+                self.adapt(end - start, began.elapsed());
+            }
+            start = end;
+        }
+        Ok(())
+    }
+
+    fn adapt(&mut self, strips: usize, elapsed: Duration) {
+        let fitting = strips as f64 * AIM.as_secs_f64() / elapsed.as_secs_f64().max(1e-6);
+        // Conversions saturate. A band may have been easier than the next.
+        self.strips = (fitting as usize).clamp(1, MOST).min(4 * self.strips);
+    }
+}
+
+/// The time; `None` in a browser, where the standard library has no clock.
+fn now() -> Option<Instant> {
+    (!cfg!(target_arch = "wasm32")).then(Instant::now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_grow_to_the_time_that_is_aimed_at() {
+        let mut pace = Pace::new();
+        for wanted in [4, 16, 64, 100, 100] {
+            // A strip takes a hundredth of the time.
+            pace.adapt(pace.strips, AIM * pace.strips as u32 / 100);
+            assert_eq!(pace.strips, wanted);
+        }
+        pace.adapt(100, 1000 * AIM);
+        assert_eq!(pace.strips, 1);
+    }
+
+    #[test]
+    fn bands_are_the_whole() {
+        let (mut pace, mut next) = (Pace::new(), 0);
+        pace.run(1000, |band| {
+            assert_eq!(band.start, next);
+            next = band.end;
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(next, 1000);
+        let stopped = Pace::new().run(3, |_| Err(RenderError::Stopped));
+        assert_eq!(stopped, Err(RenderError::Stopped));
+    }
+}
