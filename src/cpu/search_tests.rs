@@ -162,10 +162,9 @@ fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
 /// What boxes are wider by is needed, and has some to spare.
 #[test]
 fn without_the_margin_spheres_are_lost() {
-    let shares = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0 / 64.0, 0.5], [1.0, 0.5]].map(lost);
-    eprintln!("{shares:?}");
-    assert!(shares[0] > 1e-3, "{shares:?}");
-    assert!(shares[3] <= 0.0, "{shares:?}");
+    let shares = [[0.0, 0.0], [1.0, 0.0], [1.0 / 64.0, 0.5]].map(lost);
+    assert!(shares[..2].iter().all(|share| *share > 1e-3), "{shares:?}");
+    assert!(shares[2] <= 0.0, "{shares:?}");
 }
 
 #[test]
