@@ -190,7 +190,8 @@ mod tests {
             }
             let totals = film.totals();
             assert_eq!(totals.pixels, u64::from(width) * u64::from(height));
-            assert_eq!(totals.opacity, f64::from(image.samples().unwrap().iter().sum::<u32>()));
+            let taken: u32 = image.samples().unwrap().iter().sum();
+            assert_eq!(totals.opacity as u32, taken);
         }
     }
 }
