@@ -3,42 +3,12 @@
 // GPUs, so large a kernel leaves room for few invocations. Twin: src/cpu/light/path.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: whole_paths
-// needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SPHERE, LIGHTING_TRANSPARENT, NO_EMITTER, NO_ID, PATH_ALIVE,
-//   PATH_FULL, PATH_INSIDE, PATH_ON_GROUND, Ray, camera_ray, classify_hit, dispatch, distance_from_camera, emitter_of,
-//   enter_scene, excluded_by, filter_offset, frame, ground_vertex, has, hit_before, leave, light_of_miss, lighting,
-//   lighting_has, load_sums, nearest_hit, pixel_in_tile, pixel_seed, report_spent, sample_location, sample_pair,
-//   seen_light, spend, sphere_vertex, start_fences, store_sums, unit2, with_sample
+// needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SPHERE, NO_EMITTER, PATH_ALIVE, PATH_INSIDE, PATH_ON_GROUND,
+//   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by, frame,
+//   ground_vertex, has, hit_before, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile, pixel_seed,
+//   report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
 
-// A path whose next ray is to be traced, or that has ended.
-struct Path {
-    ray: Ray,
-    // Sum of PATH_ flags.
-    flags: u32,
-    // Density with which the last surface scattered the ray.
-    density: f32,
-    through: vec3f,
-    // Radiance of the sample so far, and its opacity.
-    radiance: vec4f,
-    // Albedo of the first surface, and the length of the ray so far; negative once the first surface is recorded.
-    first: vec4f,
-    departure: Departure,
-    // Number of surfaces so far.
-    surface: u32,
-}
-
-fn begin_path(pixel: vec2u, seed: u32, sample: u32) -> Path {
-    let offset = filter_offset(sample_pair(seed, sample, 0u));
-    let lens = unit2(sample_pair(seed, sample, 1u));
-    let made = camera_ray(sample_location(pixel, offset), lens);
-    let is_shown = !made.is_seen && !lighting_has(LIGHTING_TRANSPARENT);
-    let flags = select(0u, PATH_ALIVE, made.is_seen) | PATH_FULL;
-    let radiance = vec4f(select(vec3f(0.0), lighting.background, is_shown), 0.0);
-    let first = vec4f(0.0, 0.0, 0.0, made.distance);
-    return Path(made.ray, flags, 0.0, vec3f(1.0), radiance, first, Departure(NO_ID, 0u, 0.0, NO_EMITTER), 0u);
-}
-
-// The path after its next surface, or after it has left the scene. The dispatch has the number of the last surface. There
-// is no early return: with one, Mesa 22.3 fails to compile the kernel.
+// The path after its next surface, whose last number the dispatch has. An early return would crash Mesa 22.3.
 fn extended(path: Path, seed: u32, sample: u32) -> Path {
     let ray = path.ray;
     let goes_inside = has(path.flags, PATH_INSIDE);
@@ -51,16 +21,17 @@ fn extended(path: Path, seed: u32, sample: u32) -> Path {
         vertex = sphere_vertex(ray, hit, goes_inside && hit.id == path.departure.id);
     }
     let sky = path.through * light_of_miss(ray.direction, path.flags, path.density);
-    let next = leave(Arrived(ray, path.density, path.flags, path.through, vec3f(0.0), path.radiance, path.first,
+    let next = leave(Arrived(ray, path.density, path.flags, path.through, path.medium, path.radiance, path.first,
         seed, sample, path.surface, path.surface == dispatch.surface), vertex);
-    let to_light = Departure(vertex.id, vertex.shape_index, next.exit_distance, emitter_of(next.light));
-    let light = seen_light(next.light, next.position, to_light);
+    let departure = Departure(vertex.id, vertex.shape_index, next.exit_distance, emitter_of(next.light));
+    let light = seen_light(next.light, next.position, departure);
     let is_miss = kind == HIT_NOTHING;
     return Path(
         Ray(next.position, next.direction),
         select(next.flags, 0u, is_miss),
         next.density,
         next.through,
+        next.medium,
         select(next.radiance + vec4f(light, 0.0), path.radiance + vec4f(sky, 0.0), is_miss),
         select(next.first, path.first, is_miss),
         // Only the ray to the light excludes the light.

@@ -66,11 +66,11 @@ impl Prices {
             step: 6.0,
             element: 0.0,
             sphere: 3.4,
-            build: 165.0,
+            build: 132.0,
         },
-        balls: StructurePrices { ray: 10.0, step: 5.0, element: 2.1, sphere: 6.4, build: 200.0 },
-        tree: StructurePrices { ray: 13.0, step: 17.0, element: 0.0, sphere: 3.4, build: 250.0 },
-        upload_byte: 0.2,
+        balls: StructurePrices { ray: 10.0, step: 5.0, element: 2.1, sphere: 6.4, build: 152.0 },
+        tree: StructurePrices { ray: 13.0, step: 17.0, element: 0.0, sphere: 3.4, build: 155.0 },
+        upload_byte: 0.28,
     };
 
     /// Prices of GPUs. No GPU has been measured: they are predictions for a large one, from the instructions of the

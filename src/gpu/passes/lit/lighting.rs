@@ -144,8 +144,8 @@ impl LightingData {
     /// directions in a studio than several passes take at once, they would be summed in another order.
     pub(super) fn one_pass(&self, bricks: usize) -> Option<OnePass> {
         if let Mode::Path(materials, sources, sky) = self.mode {
-            let is_plain = materials == Materials::Matt && sky == SkyKind::Plain;
-            return (is_plain && bricks == 1).then_some(OnePass::Paths(sources));
+            let is_one = sky == SkyKind::Plain && bricks == 1;
+            return is_one.then_some(OnePass::Paths(materials, sources));
         }
         let is_few =
             self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;

@@ -19,23 +19,25 @@ pub(in crate::gpu) enum OnePass {
     Lamps,
     /// A studio of opaque spheres with any lamps and a ground.
     Ground,
-    /// Paths among surfaces that are matt or emissive, under a sky without an image.
-    Paths(Sources),
+    /// Paths under a sky without an image.
+    Paths(Materials, Sources),
 }
 
 impl OnePass {
     /// All of them.
-    pub(in crate::gpu) const ALL: [Self; 5] = [
+    pub(in crate::gpu) const ALL: [Self; 7] = [
         Self::Sharp,
         Self::Lamps,
         Self::Ground,
-        Self::Paths(Sources::None),
-        Self::Paths(Sources::Any),
+        Self::Paths(Materials::Matt, Sources::None),
+        Self::Paths(Materials::Matt, Sources::Any),
+        Self::Paths(Materials::Any, Sources::None),
+        Self::Paths(Materials::Any, Sources::Any),
     ];
 
     /// Whether the samples are paths.
     pub(super) fn is_paths(self) -> bool {
-        matches!(self, Self::Paths(_))
+        matches!(self, Self::Paths(..))
     }
 
     /// The kernel for a camera and a structure.
@@ -46,7 +48,9 @@ impl OnePass {
         exclude_by: ExcludeBy,
     ) -> Kernel {
         match self {
-            Self::Paths(sources) => paths_kernel(camera, structure, exclude_by, sources),
+            Self::Paths(materials, sources) => {
+                paths_kernel(camera, structure, exclude_by, materials, sources)
+            }
             studio => studio_kernel(camera, structure, exclude_by, studio),
         }
     }
@@ -109,11 +113,12 @@ fn studio_kernel(
     Kernel { entry_point: "one_pass", parts }
 }
 
-/// The kernel of paths among matt and emissive surfaces in one brick.
+/// The kernel of paths in one brick.
 fn paths_kernel(
     camera: CameraKind,
     structure: Structure,
     exclude_by: ExcludeBy,
+    materials: Materials,
     sources: Sources,
 ) -> Kernel {
     let mut parts = base(Schedule::Pixels);
@@ -136,13 +141,14 @@ fn paths_kernel(
         part!("math/luminance.wgsl"),
         part!("path/film_sums.wgsl"),
         part!("path/hit_before.wgsl", "first-brick"),
+        part!("path/begin_path.wgsl"),
         part!("path/whole_paths.wgsl"),
     ]);
     parts.extend(structure_parts(structure));
     // What cameras share is among the other parts.
     let [_, _, camera] = camera_parts(camera);
     parts.push(camera);
-    parts.extend(scattering(Materials::Matt, sources, SkyKind::Plain));
+    parts.extend(scattering(materials, sources, SkyKind::Plain));
     parts.push(match sources {
         Sources::None => part!("path/seen_light.wgsl", "none"),
         Sources::Any => part!("path/seen_light.wgsl", "any"),
