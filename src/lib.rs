@@ -9,7 +9,7 @@
 //! | color spheres by numbers, with a legend | `color_by::ColorBy`, `annotate::Annotations` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
-//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchTree`], not so slowly |
+//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchStructure`], not so slowly |
 //!
 //! A picture needs three things. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which
 //! says which ray belongs to a location in the picture, with a [`Film`], which is the picture's size.

@@ -35,7 +35,7 @@ use super::with_scene::{upload, watch_upload, with_structures};
 use pinhole::accel::AccelChoice;
 use pinhole::annotate::Annotations;
 use pinhole::camera::View;
-use pinhole::cpu::{self, SampledPicture, SearchTree};
+use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
@@ -242,12 +242,12 @@ fn on_cpu(
 ) -> Result<Views<Image>, Failure> {
     check_on_cpu(input, views, layers)?;
     let Input { scene, film, settings, .. } = input;
-    let bytes = SearchTree::BYTES_PER_SPHERE * scene.len() as u64;
-    let what = format!("a search tree of {} spheres needs", scene.len());
-    memory::check_bytes(&what, bytes, "fewer spheres").map_err(anyhow::Error::msg)?;
-    progress::stage("building the search tree");
+    let plan = SearchPlan::new(scene);
+    let what = format!("a structure of {} spheres needs", scene.len());
+    memory::check_bytes(&what, plan.bytes(), "fewer spheres").map_err(anyhow::Error::msg)?;
+    progress::stage("building the structure");
     let phase = profile::phase("build");
-    let tree = SearchTree::new(scene).context("the search tree cannot be built")?;
+    let structure = plan.build().context("the structure cannot be built")?;
     drop(phase);
     let _phase = profile::phase("render on the CPU");
     let is_lit = !settings.integrator.is_primary();
@@ -256,7 +256,7 @@ fn on_cpu(
         views.try_each(|view| {
             let watching = Watching::new(*stop_rule, views.count(), film.pixel_count(), is_lit);
             let watch = &mut |progress: &_| watching.decide(progress);
-            let picture = cpu::render_watched(&tree, view, settings, layers, watch);
+            let picture = cpu::render_watched(&structure, view, settings, layers, watch);
             too_short = watching.too_short();
             Ok((picture?, watching))
         })

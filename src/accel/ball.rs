@@ -109,6 +109,26 @@ impl PartInCell {
         Self { origin: (from + 1.0) * QUANTA, direction, length: length * QUANTA }
     }
 
+    /// A bit for each of four balls that the part meets.
+    #[inline]
+    pub(super) fn meets_four(&self, balls: &[u32; BALLS_PER_VECTOR]) -> u32 {
+        let axis = |axis: u32, from: f32| {
+            balls.map(|ball| (ball >> (axis * COORDINATE_BITS) & 255) as i32 as f32 - from)
+        };
+        let (x, y, z) = (axis(0, self.origin.x), axis(1, self.origin.y), axis(2, self.origin.z));
+        let mut bits = 0;
+        for i in 0..BALLS_PER_VECTOR {
+            let v = Vec3::new(x[i], y[i], z[i]);
+            let along = v.dot(self.direction);
+            let beyond = (along - self.length).max(-along).max(0.0);
+            let squared_radius =
+                f32::from_bits((balls[i] >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
+            let is_met = (v.dot(v) - along * along) + beyond * beyond <= squared_radius;
+            bits |= u32::from(is_met) << i;
+        }
+        bits
+    }
+
     /// Whether the part meets a ball.
     pub(super) fn meets(&self, ball: u32) -> bool {
         let (center, squared_radius) = unpack(ball);

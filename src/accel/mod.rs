@@ -31,6 +31,7 @@ mod grid_geometry;
 mod grid_lists;
 mod grid_slabs;
 mod grid_sort;
+pub(crate) mod grid_visit;
 mod grid_walk;
 mod leaf;
 pub(crate) mod list;

@@ -3,7 +3,7 @@
 //! GPU results are judged against it. Each ray tests every sphere, and nothing but scene, camera and film is shared with
 //! the GPU renderer. Where a choice is between clear and fast, it is clear.
 //!
-//! Where there is no device, the same code renders large scenes: with a [`SearchTree`], rays test only spheres that they
+//! Where there is no device, the same code renders large scenes: with a [`SearchStructure`], rays test only spheres that they
 //! may hit. The picture is the same, to the bit.
 
 use std::ops::Range;
@@ -19,6 +19,7 @@ mod light;
 pub(crate) mod live;
 mod pace;
 mod search;
+mod search_index;
 #[cfg(test)]
 mod search_tests;
 mod shade;
@@ -29,7 +30,7 @@ use pace::Pace;
 
 pub use denoise::denoise;
 pub use light::{Sample, SampledPicture, radiance};
-pub use search::{Search, SearchTree};
+pub use search::{Search, SearchPlan, SearchStructure};
 pub use shade::shade;
 pub use trace::trace;
 
@@ -58,7 +59,7 @@ pub enum RenderError {
 /// pixel's centre and its first sphere, whatever its material. The variance is that of the mean luminance.
 ///
 /// Given a reference to a scene, every ray tests every sphere. For scenes of more than a few spheres, build a
-/// [`SearchTree`] and give a reference to it: the picture is the same, to the bit, and soon finished.
+/// [`SearchStructure`] and give a reference to it: the picture is the same, to the bit, and soon finished.
 ///
 /// Rows are rendered in parallel with the feature `parallel`; the picture does not depend on it.
 ///

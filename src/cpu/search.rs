@@ -1,27 +1,24 @@
-//! How rays find spheres: by testing every sphere, or only those that a tree cannot rule out.
+//! How rays find spheres: by testing every sphere, or only those that a structure cannot rule out.
 //!
 //! Both ways apply the same tests in f64 and have the same answers, to the bit. Testing every sphere is the reference,
-//! which needs no proof. That the tree leaves out no sphere is proved in `accel/wide_tree_visit.rs`.
+//! which needs no proof. That structures leave out no sphere is proved in `accel/wide_tree_visit.rs` and
+//! `accel/grid_visit.rs`.
 
-use std::ops::Range;
-
-use glam::DVec3;
-
-use crate::accel::wide_tree::WideTree;
-use crate::accel::wide_tree_visit::BoxRay;
+use super::search_index::{GridIndex, TreeIndex};
+use crate::accel::{AccelChoice, AccelPlan, ListLayout, Structure};
 use crate::geometry::ray::Ray;
-use crate::parallel::try_map;
 use crate::scene::{Scene, SceneError};
 
 /// A scene, and how rays find its spheres. The picture does not depend on it.
 ///
-/// A reference to a [`Scene`] stands for [`Search::EverySphere`], and one to a [`SearchTree`] for [`Search::Tree`].
+/// A reference to a [`Scene`] stands for [`Search::EverySphere`], and one to a [`SearchStructure`] for
+/// [`Search::Structure`].
 #[derive(Clone, Copy, Debug)]
 pub enum Search<'a> {
     /// Each ray tests every sphere: the reference, for small scenes.
     EverySphere(&'a Scene),
-    /// Each ray tests the spheres whose boxes it meets.
-    Tree(&'a SearchTree<'a>),
+    /// Each ray tests the spheres that the structure cannot rule out.
+    Structure(&'a SearchStructure<'a>),
 }
 
 impl<'a> From<&'a Scene> for Search<'a> {
@@ -30,46 +27,105 @@ impl<'a> From<&'a Scene> for Search<'a> {
     }
 }
 
-impl<'a> From<&'a SearchTree<'a>> for Search<'a> {
-    fn from(tree: &'a SearchTree<'a>) -> Self {
-        Self::Tree(tree)
+impl<'a> From<&'a SearchStructure<'a>> for Search<'a> {
+    fn from(structure: &'a SearchStructure<'a>) -> Self {
+        Self::Structure(structure)
     }
 }
 
-/// The number of spheres up to which testing all takes less time than the tree.
+/// The number of spheres up to which testing all takes less time than a structure.
 const FEW: usize = 16;
 
-/// A tree over the spheres of a scene, which makes the CPU reference fast and changes none of its pictures.
-///
-/// It takes about 30 bytes for each sphere, at most 34, and 28 more while it is built.
+/// A structure over the spheres of a scene, which makes the CPU reference fast and changes none of its pictures: a grid
+/// or an 8-wide tree, as on a device for many pictures.
 #[derive(Debug)]
-pub struct SearchTree<'a> {
+pub struct SearchStructure<'a> {
     scene: &'a Scene,
-    pub(super) tree: WideTree,
-    /// Two opposite corners of a box around all spheres; `None` if there are few.
-    pub(super) corners: Option<[DVec3; 2]>,
-    /// The spheres in the order of the tree.
-    pub(super) spheres: Vec<[f32; 4]>,
+    kind: Kind,
 }
 
-impl<'a> SearchTree<'a> {
-    /// The most bytes for each sphere while a tree is built.
-    pub const BYTES_PER_SPHERE: u64 = 62;
+#[derive(Debug)]
+enum Kind {
+    /// None, for few spheres.
+    List,
+    Tree(TreeIndex),
+    Grid(GridIndex),
+}
 
-    /// Builds the tree of a scene, on all cores with the feature `parallel`.
+/// Which structure suits a scene, before it is built.
+#[derive(Debug)]
+pub struct SearchPlan<'a> {
+    scene: &'a Scene,
+    /// The plan of a grid, if that is what suits the scene.
+    grid: Option<AccelPlan>,
+}
+
+impl<'a> SearchPlan<'a> {
+    /// The most bytes for each sphere while a tree is built, of which 34 remain.
+    const TREE_BYTES: u64 = 62;
+
+    /// Plans a structure.
+    #[must_use]
+    pub fn new(scene: &'a Scene) -> Self {
+        let spheres = scene.spheres();
+        let is_grid = |structure| matches!(structure, Structure::Grid(_));
+        let grid = (spheres.len() > FEW)
+            .then(|| AccelPlan::new(spheres, AccelChoice::Auto, u64::MAX))
+            .filter(|plan| is_grid(plan.structure))
+            .map(|_| AccelPlan::of(spheres, Structure::Grid(ListLayout::Balls), u64::MAX))
+            // A walk is in one grid.
+            .filter(|plan| plan.brick_count == 1);
+        Self { scene, grid }
+    }
+
+    /// The most bytes that the structure needs while it is built, beside the scene.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        match &self.grid {
+            Some(plan) => plan.host_bytes(),
+            None => Self::TREE_BYTES * self.scene.len() as u64,
+        }
+    }
+
+    /// Builds the structure, on all cores with the feature `parallel`.
+    ///
+    /// # Errors
+    /// Returns an error if there is not enough memory for a copy of the spheres.
+    pub fn build(&self) -> Result<SearchStructure<'a>, SceneError> {
+        let scene = self.scene;
+        let grid = self.grid.as_ref().and_then(|plan| GridIndex::new(plan, scene));
+        let kind = match grid {
+            _ if scene.len() <= FEW => Kind::List,
+            Some(grid) => Kind::Grid(grid),
+            None => Kind::Tree(TreeIndex::new(scene)?),
+        };
+        Ok(SearchStructure { scene, kind })
+    }
+}
+
+impl<'a> SearchStructure<'a> {
+    /// Plans and builds the structure of a scene.
     ///
     /// # Errors
     /// Returns an error if there is not enough memory for a copy of the spheres.
     pub fn new(scene: &'a Scene) -> Result<Self, SceneError> {
-        let all = scene.spheres();
-        let tree = WideTree::build(all, 0.0);
-        let spheres = try_map(all.len(), |i| all[tree.ids()[i] as usize])
-            .map_err(|_| SceneError::Memory { count: all.len() })?;
-        let corners = tree.corners().filter(|_| all.len() > FEW);
-        Ok(Self { scene, tree, corners, spheres })
+        SearchPlan::new(scene).build()
     }
 
-    /// The scene of which this is the tree.
+    /// A structure of this kind, whatever suits the scene.
+    #[cfg(test)]
+    pub(super) fn of(scene: &'a Scene, layout: Option<ListLayout>) -> Self {
+        let kind = match layout {
+            None => Kind::Tree(TreeIndex::new(scene).unwrap()),
+            Some(layout) => {
+                let plan = AccelPlan::of(scene.spheres(), Structure::Grid(layout), u64::MAX);
+                Kind::Grid(GridIndex::new(&plan, scene).unwrap())
+            }
+        };
+        Self { scene, kind }
+    }
+
+    /// The scene of which this is the structure.
     #[must_use]
     pub fn scene(&self) -> &'a Scene {
         self.scene
@@ -79,21 +135,16 @@ impl<'a> SearchTree<'a> {
     /// its id. The return value of `offer` is the new limit, below zero to end the search.
     #[inline]
     fn visit(&self, ray: &Ray, limit: f64, mut offer: impl FnMut(u32, [f32; 4]) -> f64) {
-        let mut left = limit;
-        let mut offer_range = |range: Range<usize>| {
-            for (id, sphere) in self.tree.ids()[range.clone()].iter().zip(&self.spheres[range]) {
-                left = offer(*id, *sphere);
-                if left < 0.0 {
+        let is_done = match &self.kind {
+            Kind::List => false,
+            Kind::Tree(tree) => tree.visit(ray, limit, &mut offer),
+            Kind::Grid(grid) => grid.visit(ray, limit, &mut offer),
+        };
+        if !is_done {
+            for (id, sphere) in (0..).zip(self.scene.spheres()) {
+                if offer(id, *sphere) < 0.0 {
                     break;
                 }
-            }
-            left
-        };
-        let boxes = self.corners.and_then(|c| BoxRay::new(ray.origin, ray.direction, c));
-        match boxes {
-            Some(boxes) => self.tree.visit(&boxes, limit, offer_range),
-            None => {
-                offer_range(0..self.spheres.len());
             }
         }
     }
@@ -113,7 +164,7 @@ impl<'a> Search<'a> {
     pub fn scene(&self) -> &'a Scene {
         match self {
             Self::EverySphere(scene) => scene,
-            Self::Tree(tree) => tree.scene,
+            Self::Structure(structure) => structure.scene,
         }
     }
 
@@ -136,7 +187,7 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            Self::Tree(tree) => tree.visit(ray, f64::INFINITY, |id, sphere| {
+            Self::Structure(structure) => structure.visit(ray, f64::INFINITY, |id, sphere| {
                 if let Some(t) = distance(sphere)
                     && nearest.is_none_or(|nearest| (t, id) < (nearest.t, nearest.id))
                 {
@@ -156,9 +207,9 @@ impl<'a> Search<'a> {
             Self::EverySphere(scene) => {
                 (0..).zip(scene.spheres()).any(|(id, sphere)| test(id, *sphere))
             }
-            Self::Tree(tree) => {
+            Self::Structure(structure) => {
                 let mut is_any = false;
-                tree.visit(ray, t_max, |id, sphere| {
+                structure.visit(ray, t_max, |id, sphere| {
                     is_any = is_any || test(id, sphere);
                     if is_any { f64::NEG_INFINITY } else { t_max }
                 });

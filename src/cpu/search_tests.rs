@@ -1,11 +1,13 @@
-//! The tree against testing every sphere, ray by ray, to the bit; and without the margin, so that a loss is seen.
+//! Structures against testing every sphere, ray by ray, to the bit; and without the margin, so that a loss is seen.
 
 use fastrand::Rng;
 use glam::DVec3;
 
-use super::search::{Search, SearchTree};
+use super::search::{Search, SearchStructure};
+use super::search_index::{GridIndex, TreeIndex};
 use super::sphere::intersect;
 use crate::accel::wide_tree_visit::BoxRay;
+use crate::accel::{AccelPlan, ListLayout, Structure};
 use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
 use crate::image::color::LinearRgb;
@@ -84,27 +86,37 @@ fn nearest(search: Search<'_>, ray: &Ray) -> Option<(u32, u64)> {
     search.nearest(ray, distance(ray)).map(|nearest| (nearest.id, nearest.t.to_bits()))
 }
 
+/// A tree, and grids of both kinds of lists.
+const KINDS: [Option<ListLayout>; 3] =
+    [None, Some(ListLayout::Referenced), Some(ListLayout::Balls)];
+
 #[test]
-fn the_tree_has_the_answers_of_testing_every_sphere() {
+fn structures_have_the_answers_of_testing_every_sphere() {
     let mut random = Rng::with_seed(31);
     let mut misses = 0;
     for (name, spheres) in scenes() {
         let scene = scene(&spheres);
-        let tree = SearchTree::new(&scene).unwrap();
-        assert!(tree.corners.is_some(), "{name}");
-        tree.tree.validate(scene.spheres()).unwrap();
-        let searches = [Search::from(&scene), Search::from(&tree)];
+        TreeIndex::new(&scene).unwrap().tree.validate(scene.spheres()).unwrap();
+        let structures = KINDS.map(|kind| SearchStructure::of(&scene, kind));
         let mut hits = 0;
         for _ in 0..1500 {
             let ray = ray(&mut random, scene.spheres());
-            let [wanted, found] = searches.map(|search| nearest(search, &ray));
-            assert_eq!(wanted, found, "{name}: {ray:?}");
+            let every = Search::from(&scene);
+            let wanted = nearest(every, &ray);
+            let hit = distance(&ray);
             let t = wanted.map_or(random.f64(), |(_, t)| f64::from_bits(t));
-            for t_max in [t, t.next_up(), t * 3.0 * random.f64(), f64::INFINITY] {
-                let hit = distance(&ray);
-                let is_before = |_, sphere| hit(sphere).is_some_and(|t| t < t_max);
-                let [wanted, found] = searches.map(|search| search.any(&ray, t_max, is_before));
-                assert_eq!(wanted, found, "{name}: {ray:?} before {t_max}");
+            let limits = [t, t.next_up(), t * 3.0 * random.f64(), f64::INFINITY];
+            let any = |search: Search<'_>| {
+                limits.map(|t_max| {
+                    let is_before = |_, sphere| hit(sphere).is_some_and(|t| t < t_max);
+                    search.any(&ray, t_max, is_before)
+                })
+            };
+            let any_wanted = any(every);
+            for (kind, structure) in KINDS.iter().zip(&structures) {
+                let search = Search::from(structure);
+                assert_eq!(wanted, nearest(search, &ray), "{name}, {kind:?}: {ray:?}");
+                assert_eq!(any_wanted, any(search), "{name}, {kind:?}: {ray:?} before {limits:?}");
             }
             *if wanted.is_some() { &mut hits } else { &mut misses } += 1;
         }
@@ -113,12 +125,28 @@ fn the_tree_has_the_answers_of_testing_every_sphere() {
     assert!(misses > 3000, "{misses}");
 }
 
+/// The grids walk most of these rays, and not only those that start in the scene.
+#[test]
+fn grids_accept_rays_from_far_away() {
+    let mut random = Rng::with_seed(34);
+    let scene = scene(&spheres::random(300, 7, |_| 0.05));
+    let plan = AccelPlan::of(scene.spheres(), Structure::Grid(ListLayout::Balls), u64::MAX);
+    let grid = GridIndex::new(&plan, &scene).unwrap();
+    for (away, is_accepted) in [(1e6, true), (1e9, false)] {
+        for _ in 0..100 {
+            let toward = direction(&mut random);
+            let ray = Ray { origin: -away * toward, direction: toward };
+            assert_eq!(grid.visit(&ray, f64::INFINITY, &mut |_, _| f64::INFINITY), is_accepted);
+        }
+    }
+}
+
 /// A ray whose direction is not of unit length, and one with NaN or infinities, has the same answers too.
 #[test]
 fn odd_rays_have_the_same_answers() {
     let mut random = Rng::with_seed(32);
     let scene = scene(&spheres::random(300, 7, |_| 0.05));
-    let tree = SearchTree::new(&scene).unwrap();
+    let structures = KINDS.map(|kind| SearchStructure::of(&scene, kind));
     let odd = [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e200, -0.0];
     for i in 0..2000 {
         let mut ray = ray(&mut random, scene.spheres());
@@ -128,8 +156,10 @@ fn odd_rays_have_the_same_answers() {
             1 => ray.origin[axis] = odd[random.usize(0..5)],
             _ => ray.direction[axis] = odd[random.usize(0..5)],
         }
-        let [wanted, found] = [Search::from(&scene), Search::from(&tree)].map(|s| nearest(s, &ray));
-        assert_eq!(wanted, found, "{ray:?}");
+        for structure in &structures {
+            let found = [Search::from(&scene), Search::from(structure)].map(|s| nearest(s, &ray));
+            assert_eq!(found[0], found[1], "{ray:?}");
+        }
     }
 }
 
@@ -139,7 +169,7 @@ fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
     let (mut hits, mut losses) = (0, 0);
     for (_, spheres) in scenes() {
         let scene = scene(&spheres);
-        let tree = SearchTree::new(&scene).unwrap();
+        let tree = TreeIndex::new(&scene).unwrap();
         for _ in 0..1500 {
             let ray = ray(&mut random, scene.spheres());
             let Some((id, t)) = nearest(Search::from(&scene), &ray) else { continue };
@@ -170,7 +200,7 @@ fn without_the_margin_spheres_are_lost() {
 #[test]
 fn an_empty_scene_has_no_hits() {
     let scene = scene(&Vec::new());
-    let tree = SearchTree::new(&scene).unwrap();
+    let tree = SearchStructure::new(&scene).unwrap();
     let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
     assert_eq!(nearest(Search::from(&tree), &ray), None);
 }

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose};
-use pinhole::cpu::{self, SearchTree};
+use pinhole::cpu::{self, SearchStructure};
 use pinhole::glam::DVec3;
 use pinhole::light::{Ground, Light};
 use pinhole::render::{DepthCue, Occlusion, Studio};
@@ -14,7 +14,7 @@ use crate::support::random_light;
 
 /// Compares all layers, of which an image compares every number.
 fn assert_same(scene: &Scene, view: &View<'_>, settings: &RenderSettings, name: &str) -> Image {
-    let tree = SearchTree::new(scene).unwrap();
+    let tree = SearchStructure::new(scene).unwrap();
     let wanted = cpu::render(scene, view, settings, LayerSet::ALL).unwrap();
     let found = cpu::render(&tree, view, settings, LayerSet::ALL).unwrap();
     assert!(wanted == found, "{name}");

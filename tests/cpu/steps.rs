@@ -1,6 +1,6 @@
 //! Pictures that are rendered batch by batch, with a caller who watches and may finish early.
 
-use pinhole::cpu::{self, RenderError, SearchTree};
+use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::image::Layer;
 use pinhole::render::{Decision, Progress};
 use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View};
@@ -14,26 +14,31 @@ const FILM: [u32; 2] = [37, 29];
 const TALL: [u32; 2] = [37, 401];
 
 /// Calls `test` with a picture of paths and one of a studio.
-fn with_lit(samples: u32, test: impl Fn(&SearchTree<'_>, &View<'_>, &RenderSettings)) {
+fn with_lit(samples: u32, test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings)) {
     with_lit_of(FILM, samples, test);
 }
 
 fn with_lit_of(
     [width, height]: [u32; 2],
     samples: u32,
-    test: impl Fn(&SearchTree<'_>, &View<'_>, &RenderSettings),
+    test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings),
 ) {
     let view = random_light::view(3);
     for mut settings in [view.settings.clone(), RenderSettings::studio()] {
         settings.sampling.samples = samples;
-        let tree = SearchTree::new(&view.scene).unwrap();
+        let tree = SearchStructure::new(&view.scene).unwrap();
         let film = Film::new(width, height).unwrap();
         test(&tree, &View::new(view.camera.as_ref(), film), &settings);
     }
 }
 
 /// The picture that is rendered pixel by pixel.
-fn whole(tree: &SearchTree<'_>, view: &View<'_>, settings: &RenderSettings, count: u32) -> Image {
+fn whole(
+    tree: &SearchStructure<'_>,
+    view: &View<'_>,
+    settings: &RenderSettings,
+    count: u32,
+) -> Image {
     let mut settings = settings.clone();
     settings.sampling.samples = count;
     cpu::render(tree, view, &settings, LayerSet::ALL).unwrap()

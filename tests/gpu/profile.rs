@@ -65,7 +65,7 @@ fn passes(headless: &'static Headless) {
     let by_one_ray = ["trace", "shade"];
     let of_studio = ["surface", "shadow", "illuminate", "ambient", "gather"];
     for (name, wanted) in [
-        ("path_sun_and_lamps", [&common[..], &["scatter", "occlude"]].concat()),
+        ("path_sky_image", [&common[..], &["scatter", "occlude"]].concat()),
         ("studio_opacity", [&common[..], &of_studio].concat()),
         ("studio_key_and_fill", vec!["one_pass"]),
         ("path_emissive_both", vec!["whole_paths"]),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use pinhole::accel::AccelChoice;
-use pinhole::cpu::{self, RenderError, SearchTree};
+use pinhole::cpu::{self, RenderError, SearchStructure};
 use pinhole::gpu::{Decision, GpuError, Headless, Picture, SceneBuffers};
 use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, LayerSet};
@@ -171,9 +171,10 @@ fn on_cpu(
     layers: LayerSet,
     is_wanted: &dyn Fn() -> bool,
 ) -> Result<Option<Image>, Failure> {
-    let tree = SearchTree::new(&shown.input.scene).context("the search tree cannot be built")?;
+    let structure =
+        SearchStructure::new(&shown.input.scene).context("the structure cannot be built")?;
     let watch = &mut |_: &_| if is_wanted() { Decision::GoOn } else { Decision::Stop };
-    match cpu::render_watched(&tree, &shown.input.view(), settings, layers, watch) {
+    match cpu::render_watched(&structure, &shown.input.view(), settings, layers, watch) {
         Ok(picture) => Ok(Some(picture.image)),
         Err(RenderError::Stopped) => Ok(None),
         Err(error) => {

@@ -2,7 +2,7 @@
 
 use libtest_mimic::Trial;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::cpu::{self, SearchTree};
+use pinhole::cpu::{self, SearchStructure};
 use pinhole::glam::DVec3;
 use pinhole::gpu::Headless;
 use pinhole::light::{Ground, Sky, SkyLight};
@@ -46,7 +46,7 @@ fn several_layers(_: &'static Headless) {
         film: Film::new(24, 24).unwrap(),
         settings,
     };
-    let tree = SearchTree::new(&view.scene).unwrap();
+    let tree = SearchStructure::new(&view.scene).unwrap();
     let wanted = cpu::render(&tree, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
     let mean = wanted.color().iter().map(|c| f64::from(c[1])).sum::<f64>() / 576.0;
     assert!(mean > 0.01, "{mean}");
