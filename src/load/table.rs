@@ -383,6 +383,22 @@ pub(super) fn guessed_radius(
     digits
 }
 
+impl Loaded {
+    /// Spheres without radii in the file, which all get one radius: half of the median distance to the nearest neighbour,
+    /// so that neighbours about touch. A note says which. The radii of `centers` are not used.
+    #[must_use]
+    pub fn of_centers(mut centers: SphereArray) -> Self {
+        let mut notes = Vec::new();
+        let place = |index| center(&centers, index);
+        let radius = guessed_radius(centers.len(), place, &mut notes);
+        match &mut centers {
+            SphereArray::F32(spheres) => spheres.iter_mut().for_each(|s| s[3] = radius as f32),
+            SphereArray::F64(spheres) => spheres.iter_mut().for_each(|s| s[3] = radius),
+        }
+        Self { notes, ..Self::new(centers) }
+    }
+}
+
 fn numbers_of(column: TableColumn) -> Result<Vec<f64>, TableError> {
     match column.values {
         ColumnValues::Numbers(numbers) => Ok(numbers),

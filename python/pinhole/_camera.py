@@ -1,0 +1,104 @@
+"""Cameras: where they stand, or how they frame the spheres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ._errors import InputError
+
+
+class Camera:
+    """A camera. Lengths are in scene units, and angles in degrees.
+
+    ``Camera.look_at`` places a camera, and ``Camera.frame`` lets it frame all spheres. ``kind`` is ``"pinhole"``,
+    ``"orthographic"``, ``"thin-lens"``, ``"panorama"`` or ``"fisheye"``; further keywords are the keys of the scene file's
+    table ``[camera.KIND]``, such as ``aperture_radius``, ``focus_on``, ``half_extent`` or ``stereo``.
+    """
+
+    __slots__ = ("kind", "keys", "view", "turn", "up")
+
+    def __init__(
+        self,
+        kind: str = "pinhole",
+        *,
+        view: str | tuple[float, float] | None = None,
+        turn: float = 0.0,
+        up: Sequence[float] | None = None,
+        fov: float | None = None,
+        **keys: Any,
+    ) -> None:
+        if isinstance(view, tuple):
+            view = ",".join(repr(float(angle)) for angle in view)
+        if view is not None and any(key in keys for key in ("eye", "look_at", "direction")):
+            raise InputError("view and eye, look_at or direction exclude each other; remove one of them")
+        if fov is not None:
+            keys["vertical_fov"] = fov
+        self.kind = kind
+        self.keys = {key: item for key, item in keys.items() if item is not None}
+        self.view = view
+        self.turn = float(turn)
+        self.up = None if up is None else tuple(float(number) for number in up)
+
+    @classmethod
+    def look_at(
+        cls,
+        eye: Sequence[float],
+        at: Sequence[float],
+        *,
+        up: Sequence[float] = (0.0, 1.0, 0.0),
+        fov: float | None = None,
+        kind: str = "pinhole",
+        **keys: Any,
+    ) -> Camera:
+        """A camera at the point ``eye`` that looks at the point ``at``. ``fov`` is the vertical field of view."""
+        return cls(kind, eye=_point("eye", eye), look_at=_point("at", at), up=up, fov=fov, **keys)
+
+    @classmethod
+    def frame(
+        cls,
+        view: str | tuple[float, float] | None = None,
+        *,
+        turn: float = 0.0,
+        up: Sequence[float] | None = None,
+        zoom: float | None = None,
+        margin: float | None = None,
+        fov: float | None = None,
+        kind: str = "pinhole",
+        **keys: Any,
+    ) -> Camera:
+        """A camera that frames all spheres.
+
+        ``view`` is ``"x"``, ``"-x"``, ``"y"``, ``"-y"``, ``"z"``, ``"-z"``, ``"iso"`` or (azimuth, elevation); ``turn``
+        turns the camera about the direction that is up; ``margin`` is the free part of the picture on each side.
+        """
+        return cls(kind, view=view, turn=turn, up=up, zoom=zoom, margin=margin, fov=fov, **keys)
+
+    def _is_placed(self) -> bool:
+        """Whether the keys say where the camera looks."""
+        return "eye" in self.keys or "direction" in self.keys or self.kind in ("panorama", "fisheye")
+
+    def _table(self, data: Any) -> dict[str, Any]:
+        """The table ``camera`` of a scene file, for spheres that it frames."""
+        keys: dict[str, Any] = dict(self.keys)
+        if self.view is not None or not self._is_placed():
+            direction, up = data.view_axes(self.view, self.turn, self.up)
+            keys["direction"], keys["up"] = list(direction), list(up)
+        elif self.turn != 0.0:
+            raise InputError("turn applies to a camera that frames the spheres; remove turn, eye or direction")
+        elif self.up is not None:
+            keys["up"] = list(self.up)
+        return {self.kind: keys}
+
+    def __repr__(self) -> str:
+        shown = {"view": self.view, "turn": self.turn or None, "up": self.up, **self.keys}
+        words = [repr(self.kind), *(f"{key}={item!r}" for key, item in shown.items() if item is not None)]
+        return f"Camera({', '.join(words)})"
+
+
+def _point(name: str, point: Sequence[float]) -> list[float]:
+    try:
+        x, y, z = (float(number) for number in point)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {point!r}; write three numbers, x, y and z") from None
+    return [x, y, z]

@@ -1,0 +1,29 @@
+"""Exceptions and warnings. Each exception is a ``pinhole.Error`` and a built-in one of the same meaning."""
+
+
+class Error(Exception):
+    """Any error of pinhole."""
+
+
+class InputError(Error, ValueError):
+    """An argument, a setting, an array or the content of a file is not valid."""
+
+
+class FileError(Error, OSError):
+    """A file cannot be read or written."""
+
+
+class DeviceError(Error, RuntimeError):
+    """A device cannot do the work."""
+
+
+class InternalError(Error, RuntimeError):
+    """A defect of pinhole."""
+
+
+class Note(UserWarning):
+    """Something that the user should know and that is not an error."""
+
+
+for _class in (Error, InputError, FileError, DeviceError, InternalError, Note):
+    _class.__module__ = "pinhole"

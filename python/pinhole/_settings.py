@@ -1,0 +1,205 @@
+"""Settings: Python values become the text of a scene file, in which the library checks every key."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ._errors import InputError
+
+#: The keys of a scene file that are about data. They are arguments of ``Spheres`` and ``read``.
+DATA_KEYS = (
+    "radius_scale",
+    "color",
+    "material",
+    "materials",
+    "opacity",
+    "elements",
+    "elements_by",
+    "leave_out",
+    "select",
+    "box",
+    "bonds",
+    "color_by",
+    "radius_by",
+    "opacity_by",
+    "emission_by",
+)
+
+#: The keys of a scene file that are about pictures. They are arguments of ``render``.
+PICTURE_KEYS = (
+    "style",
+    "film",
+    "camera",
+    "output",
+    "background",
+    "shading",
+    "integrator",
+    "studio",
+    "path",
+    "sampling",
+    "lights",
+    "sky",
+    "sun",
+    "ground",
+    "legend",
+    "scale_bar",
+    "labels",
+    "text",
+)
+
+#: Short forms of keys of tables.
+SHORT = {
+    "samples": ("sampling", "samples"),
+    "seed": ("sampling", "seed"),
+    "denoise": ("sampling", "denoise"),
+    "transparent": ("output", "transparent"),
+    "exposure": ("output", "exposure"),
+    "tone": ("output", "tone"),
+    "bits": ("output", "bits"),
+    "dpi": ("output", "dpi"),
+}
+
+#: A text, and the argument of each of its lines.
+Text = tuple[str, list[str]]
+
+
+def value(item: Any, argument: str) -> str:
+    """Writes a value in TOML."""
+    if hasattr(item, "tolist"):  # NumPy arrays and scalars
+        item = item.tolist()
+    if isinstance(item, bool):
+        return "true" if item else "false"
+    if isinstance(item, int):
+        return str(item)
+    if isinstance(item, float):
+        if math.isnan(item):
+            return "nan"
+        return repr(item) if math.isfinite(item) else ("inf" if item > 0 else "-inf")
+    if isinstance(item, str):
+        return quoted(item)
+    if isinstance(item, Mapping):
+        pairs = (f"{bare(key)} = {value(of, f'{argument}.{key}')}" for key, of in item.items() if of is not None)
+        return "{ " + ", ".join(pairs) + " }"
+    if isinstance(item, (list, tuple)):
+        return "[" + ", ".join(value(of, argument) for of in item) + "]"
+    if hasattr(item, "__fspath__"):
+        return quoted(str(item))
+    raise InputError(
+        f"{argument}: {type(item).__name__} cannot be a setting; write a number, a text, a list or a dict"
+    )
+
+
+def quoted(text: str) -> str:
+    """Writes a text in TOML."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04X}" for c in escaped) + '"'
+
+
+def bare(key: object) -> str:
+    """Writes a key in TOML."""
+    text = str(key)
+    return text if re.fullmatch("[A-Za-z0-9_-]+", text) else quoted(text)
+
+
+def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
+    """Writes the text of a scene file, and the argument that each line is of."""
+    lines: list[tuple[str, str]] = []
+    tables: list[tuple[str, str]] = []
+    for key, item in settings.items():
+        if item is None:
+            continue
+        if isinstance(item, Mapping):
+            tables.append((f"[{key}]", key))
+            for inner, of in item.items():
+                if of is not None:
+                    argument = f"{key}.{inner}"
+                    tables.append((f"{bare(inner)} = {value(of, argument)}", argument))
+        elif isinstance(item, (list, tuple)) and item and all(isinstance(of, Mapping) for of in item):
+            for index, of in enumerate(item):
+                argument = f"{key}[{index}]"
+                tables.append((f"[[{key}]]", argument))
+                for inner, inside in of.items():
+                    if inside is not None:
+                        tables.append((f"{bare(inner)} = {value(inside, argument)}", f"{argument}.{inner}"))
+        else:
+            lines.append((f"{key} = {value(item, key)}", key))
+    all_lines = lines + tables
+    return "".join(f"{line}\n" for line, _ in all_lines), [argument for _, argument in all_lines]
+
+
+def refuse_unknown(settings: Mapping[str, Any], known: tuple[str, ...], other: tuple[str, ...], where: str) -> None:
+    """Refuses arguments that do not exist."""
+    for name in settings:
+        if name in known:
+            continue
+        if name in other:
+            raise InputError(f"{name} is not an argument here; give it to {where}")
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f"; did you mean {close[0]}?" if close else f"; the settings are {', '.join(known)}"
+        raise InputError(f"there is no argument {name}{hint}")
+
+
+def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns checked settings about data."""
+    refuse_unknown(settings, DATA_KEYS, (*PICTURE_KEYS, *SHORT, "size"), "render(...)")
+    settings = {key: item for key, item in settings.items() if item is not None}
+    material = settings.get("material")
+    if isinstance(material, Mapping):
+        # A table of its own is what a scene file would name.
+        settings["materials"] = {**settings.get("materials", {}), "given": dict(material)}
+        settings["material"] = "given"
+    return settings
+
+
+def data_text(settings: Mapping[str, Any]) -> Text:
+    """Writes settings about data as the text of a scene file."""
+    if not settings:
+        return ("", [])
+    return scene_text({"data": "spheres", **settings})
+
+
+def picture_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns checked settings about a picture, with short forms in their tables."""
+    refuse_unknown(settings, (*PICTURE_KEYS, *SHORT, "size", "light"), DATA_KEYS, "Spheres(...), read(...) or with_(...)")
+    tables: dict[str, Any] = {key: item for key, item in settings.items() if key in PICTURE_KEYS and item is not None}
+    light = settings.get("light")
+    if light is not None:
+        if "integrator" in tables:
+            raise InputError("light and integrator say the same; remove one of them")
+        tables["integrator"] = light
+    size = settings.get("size")
+    if size is not None:
+        try:
+            width, height = size
+        except (TypeError, ValueError):
+            raise InputError(f"size is {size!r}; write (width, height) in pixels") from None
+        tables["film"] = {**tables.get("film", {}), "width": width, "height": height}
+    for name, (table, key) in SHORT.items():
+        if settings.get(name) is None:
+            continue
+        inside = tables.setdefault(table, {})
+        if not isinstance(inside, Mapping):
+            raise InputError(f"{table} is {inside!r}; it must be a dict")
+        if key in inside:
+            raise InputError(f"{name} is given twice, also in {table}; remove one of them")
+        tables[table] = {**inside, key: settings[name]}
+    if tables.get("style") == "path" and "integrator" not in tables and "studio" not in tables:
+        # Otherwise materials and samples alone would ask for a studio.
+        tables["integrator"] = "path"
+    return tables
+
+
+def style_of(tables: Mapping[str, Any]) -> Any:
+    """Returns the style of a picture: as for a data file of the program, if its settings name none."""
+    if "style" in tables:
+        return tables["style"]
+    integrator = tables.get("integrator")
+    if integrator == "primary":
+        return "fast"
+    if integrator == "path" or (integrator is None and ("path" in tables or "sky" in tables)):
+        return "path"
+    return "default"

@@ -1,0 +1,119 @@
+//! NumPy arrays become spheres and colours. Python has checked shapes and types; strides may be any.
+
+use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pinhole::{LinearRgb, SphereArray};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::fault::{Fault, Outcome};
+
+/// Centres, an array of shape (n, 3).
+#[derive(FromPyObject)]
+pub(crate) enum Centers<'py> {
+    /// In f32.
+    Narrow(PyReadonlyArray2<'py, f32>),
+    /// In f64.
+    Wide(PyReadonlyArray2<'py, f64>),
+}
+
+/// One radius, or an array of shape (n,) with the type of the centres.
+#[derive(FromPyObject)]
+pub(crate) enum Radii<'py> {
+    /// In f32.
+    Narrow(PyReadonlyArray1<'py, f32>),
+    /// In f64.
+    Wide(PyReadonlyArray1<'py, f64>),
+    /// The radius of all spheres.
+    All(f64),
+}
+
+/// Colours, an array of shape (n, 3) or (n, 4).
+#[derive(FromPyObject)]
+pub(crate) enum ColorArray<'py> {
+    /// Red, green, blue and perhaps alpha in bytes, sRGB.
+    Bytes(PyReadonlyArray2<'py, u8>),
+    /// Linear red, green and blue.
+    Linear(PyReadonlyArray2<'py, f32>),
+}
+
+impl Centers<'_> {
+    /// The spheres with these centres; radii are 0 if there are none.
+    pub(crate) fn spheres(&self, radii: Option<&Radii<'_>>) -> Outcome<SphereArray> {
+        Ok(match (self, radii) {
+            (Self::Narrow(centers), Some(Radii::Narrow(radii))) => {
+                SphereArray::F32(each(centers.as_array(), radii.as_array()))
+            }
+            (Self::Wide(centers), Some(Radii::Wide(radii))) => {
+                SphereArray::F64(each(centers.as_array(), radii.as_array()))
+            }
+            (Self::Narrow(centers), Some(Radii::All(radius))) => {
+                SphereArray::F32(all(centers.as_array(), *radius as f32))
+            }
+            (Self::Wide(centers), Some(Radii::All(radius))) => {
+                SphereArray::F64(all(centers.as_array(), *radius))
+            }
+            (Self::Narrow(centers), None) => SphereArray::F32(all(centers.as_array(), 0.0)),
+            (Self::Wide(centers), None) => SphereArray::F64(all(centers.as_array(), 0.0)),
+            _ => return Err(Fault::Internal("radii have another type than positions".to_owned())),
+        })
+    }
+}
+
+/// Spheres of one radius.
+fn all<T: Copy + Send + Sync>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
+    match centers.as_slice() {
+        Some(numbers) => {
+            numbers.as_chunks::<3>().0.par_iter().map(|[x, y, z]| [*x, *y, *z, radius]).collect()
+        }
+        None => centers.rows().into_iter().map(|c| [c[0], c[1], c[2], radius]).collect(),
+    }
+}
+
+/// Spheres with radii of their own.
+fn each<T: Copy + Send + Sync>(
+    centers: ArrayView2<'_, T>,
+    radii: ArrayView1<'_, T>,
+) -> Vec<[T; 4]> {
+    let rows = centers.rows().into_iter().zip(radii);
+    rows.map(|(center, radius)| [center[0], center[1], center[2], *radius]).collect()
+}
+
+impl ColorArray<'_> {
+    /// The colours as sRGB with alpha, if they are bytes.
+    pub(crate) fn rgba8(&self) -> Option<Vec<[u8; 4]>> {
+        let Self::Bytes(bytes) = self else { return None };
+        let rgba = |row: ArrayView1<'_, u8>| {
+            [row[0], row[1], row[2], row.get(3).copied().unwrap_or(u8::MAX)]
+        };
+        Some(bytes.as_array().rows().into_iter().map(rgba).collect())
+    }
+
+    /// The colours as linear light.
+    pub(crate) fn linear(&self) -> Outcome<Vec<LinearRgb>> {
+        match self {
+            Self::Bytes(bytes) => {
+                let rows = bytes.as_array();
+                let rows = rows.rows().into_iter();
+                Ok(rows.map(|row| LinearRgb::from_srgb8([row[0], row[1], row[2]])).collect())
+            }
+            Self::Linear(rgb) => {
+                let rgb = rgb.as_array();
+                let rows = rgb.rows().into_iter().enumerate();
+                rows.map(|(index, row)| {
+                    let color = LinearRgb::new([row[0], row[1], row[2]]);
+                    color.map_err(|error| Fault::Input(format!("color: sphere {index}: {error}")))
+                })
+                .collect()
+            }
+        }
+    }
+
+    /// How opaque each sphere is, if the colours have alpha.
+    pub(crate) fn opacities(&self) -> Option<Vec<f32>> {
+        let Self::Bytes(bytes) = self else { return None };
+        let bytes = bytes.as_array();
+        (bytes.ncols() == 4)
+            .then(|| bytes.column(3).iter().map(|alpha| f32::from(*alpha) / 255.0).collect())
+    }
+}

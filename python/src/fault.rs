@@ -1,0 +1,82 @@
+//! What may go wrong, and the Python exceptions that say so.
+
+use pinhole::gpu::GpuError;
+use pinhole::load::LoadError;
+use pyo3::prelude::*;
+
+/// A failure, by the kind of exception that it becomes.
+pub(crate) enum Fault {
+    /// Bad input: `pinhole.InputError`, a `ValueError`.
+    Input(String),
+    /// A file cannot be read: `pinhole.FileError`, an `OSError`.
+    File(String),
+    /// A device cannot do the work: `pinhole.DeviceError`, a `RuntimeError`.
+    Device(String),
+    /// The device was lost, so that a new one may do the work.
+    Lost(String),
+    /// The work was stopped, because Python has an exception of its own, such as `KeyboardInterrupt`.
+    Stopped,
+    /// A defect of this package: `pinhole.InternalError`, a `RuntimeError`.
+    Internal(String),
+    /// An exception that Python raised.
+    Python(PyErr),
+}
+
+/// The result of work that may fail.
+pub(crate) type Outcome<T> = Result<T, Fault>;
+
+impl Fault {
+    /// Bad input, in the words of an error of the library.
+    pub(crate) fn input(error: impl std::fmt::Display) -> Self {
+        Self::Input(error.to_string())
+    }
+
+    /// An error of reading the file at `path`.
+    pub(crate) fn reading(path: &str, error: &LoadError) -> Self {
+        match error {
+            LoadError::File { .. } => Self::File(error.to_string()),
+            _ => Self::Input(format!("{path}: {error}")),
+        }
+    }
+}
+
+impl From<GpuError> for Fault {
+    fn from(error: GpuError) -> Self {
+        let message = error.to_string();
+        match error {
+            GpuError::Stopped => Self::Stopped,
+            GpuError::DeviceLost { .. } => Self::Lost(message),
+            GpuError::Settings(_) | GpuError::Scene(_) | GpuError::Image(_) => Self::Input(message),
+            GpuError::Limit { .. } => {
+                Self::Device(format!("{message}; use backend=\"cpu\", which has no such limit"))
+            }
+            _ => Self::Device(message),
+        }
+    }
+}
+
+impl From<PyErr> for Fault {
+    fn from(error: PyErr) -> Self {
+        Self::Python(error)
+    }
+}
+
+impl From<Fault> for PyErr {
+    fn from(fault: Fault) -> Self {
+        let (class, message) = match fault {
+            Fault::Python(error) => return error,
+            Fault::Input(message) => ("InputError", message),
+            Fault::File(message) => ("FileError", message),
+            Fault::Device(message) | Fault::Lost(message) => ("DeviceError", message),
+            Fault::Stopped => ("DeviceError", "stopped before the work was finished".to_owned()),
+            Fault::Internal(message) => ("InternalError", message),
+        };
+        Python::attach(|py| {
+            let raised = py.import("pinhole._errors").and_then(|errors| {
+                let class = errors.getattr(class)?;
+                class.call1((message,))
+            });
+            raised.map_or_else(|error| error, PyErr::from_value)
+        })
+    }
+}

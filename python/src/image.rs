@@ -1,0 +1,147 @@
+//! Pictures: layers as NumPy arrays, and files.
+
+use std::io::Cursor;
+
+use numpy::{Element, IntoPyArray, PyArrayMethods};
+use pinhole::annotate::Annotations;
+use pinhole::image::encoding::Bits;
+use pinhole::image::{Image, Layer};
+use pinhole::write::{exr, npy, png};
+use pinhole::{Encoding, LayerSet};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::fault::{Fault, Outcome};
+use crate::worker;
+
+/// A picture with its layers, and how it is encoded.
+#[pyclass(frozen, module = "pinhole._pinhole")]
+pub(crate) struct Picture {
+    pub(crate) image: Image,
+    pub(crate) encoding: Encoding,
+    pub(crate) annotations: Annotations,
+    /// The name of the adapter, if an adapter rendered.
+    pub(crate) adapter: Option<String>,
+    /// The layers that were asked for, which EXR files have.
+    pub(crate) layers: LayerSet,
+    pub(crate) all_notes: Vec<String>,
+}
+
+#[pymethods]
+impl Picture {
+    /// Width in pixels.
+    #[getter]
+    fn width(&self) -> u32 {
+        self.image.width()
+    }
+
+    /// Height in pixels.
+    #[getter]
+    fn height(&self) -> u32 {
+        self.image.height()
+    }
+
+    /// The name of the adapter that rendered; None if the CPU did.
+    #[getter]
+    fn adapter(&self) -> Option<&str> {
+        self.adapter.as_deref()
+    }
+
+    /// What the user should know.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.all_notes.clone()
+    }
+
+    /// The names of the layers that the picture has.
+    fn layer_names(&self) -> Vec<&'static str> {
+        self.image.layers().iter().map(Layer::name).collect()
+    }
+
+    /// A layer as a new array; None if the picture lacks it.
+    fn layer<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let layer: Layer = name.parse().map_err(Fault::input)?;
+        let image = &self.image;
+        Ok(match layer {
+            Layer::Color => Some(self.vectors(py, image.color())?),
+            Layer::Normal => image.normal().map(|layer| self.vectors(py, layer)).transpose()?,
+            Layer::Position => image.position().map(|layer| self.vectors(py, layer)).transpose()?,
+            Layer::Albedo => image.albedo().map(|layer| self.vectors(py, layer)).transpose()?,
+            Layer::Alpha => image.alpha().map(|layer| self.numbers(py, layer)).transpose()?,
+            Layer::Depth => image.depth().map(|layer| self.numbers(py, layer)).transpose()?,
+            Layer::Variance => image.variance().map(|layer| self.numbers(py, layer)).transpose()?,
+            Layer::Id => image.id().map(|layer| self.numbers(py, layer)).transpose()?,
+            Layer::Samples => image.samples().map(|layer| self.numbers(py, layer)).transpose()?,
+            _ => None,
+        })
+    }
+
+    /// The encoded picture with its annotations: uint8 of shape (height, width, 3), or 4 channels if it is transparent.
+    fn rgb8<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let encoding = self.encoding.with_bits(Bits::Eight);
+        let samples = worker::run(py, None, |_| {
+            png::samples_annotated(&self.image, &encoding, &self.annotations).map_err(Fault::input)
+        })?;
+        let channels = if encoding.transparent() { 4 } else { 3 };
+        self.shaped(py, samples, Some(channels))
+    }
+
+    /// The bytes of a PNG file.
+    fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = worker::run(py, None, |_| {
+            png::encode_annotated(&self.image, &self.encoding, &self.annotations)
+                .map_err(Fault::input)
+        })?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The bytes of an OpenEXR file with the layers that were asked for.
+    fn exr<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = worker::run(py, None, |_| self.exr_bytes())?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The bytes of an .npy file of a layer.
+    fn npy<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let layer: Layer = name.parse().map_err(Fault::input)?;
+        let bytes = npy::encode(&self.image, layer).map_err(Fault::input)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+}
+
+impl Picture {
+    fn exr_bytes(&self) -> Outcome<Vec<u8>> {
+        let mut sink = Cursor::new(Vec::new());
+        let adapter = self.adapter.as_deref();
+        exr::write(&self.image, self.layers, &self.encoding, adapter, &mut sink)
+            .map_err(Fault::input)?;
+        Ok(sink.into_inner())
+    }
+
+    fn vectors<'py>(&self, py: Python<'py>, layer: &[[f32; 3]]) -> PyResult<Bound<'py, PyAny>> {
+        self.shaped(py, layer.as_flattened().to_vec(), Some(3))
+    }
+
+    fn numbers<'py, T: Element + Copy>(
+        &self,
+        py: Python<'py>,
+        layer: &[T],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.shaped(py, layer.to_vec(), None)
+    }
+
+    /// An array of shape (height, width) or (height, width, channels).
+    fn shaped<'py, T: Element>(
+        &self,
+        py: Python<'py>,
+        values: Vec<T>,
+        channels: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let array = values.into_pyarray(py);
+        let (height, width) = (self.image.height() as usize, self.image.width() as usize);
+        match channels {
+            Some(channels) => Ok(array.reshape([height, width, channels])?.into_any()),
+            None => Ok(array.reshape([height, width])?.into_any()),
+        }
+    }
+}

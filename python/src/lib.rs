@@ -1,0 +1,26 @@
+//! The compiled half of the Python package `pinhole`: arrays, files, rendering and verification. `python/pinhole/` is the
+//! other half, which checks arguments and writes settings as the text of a scene file.
+
+mod arrays;
+mod device;
+mod fault;
+mod image;
+mod look;
+mod render;
+mod scene;
+mod scene_text;
+mod spheres;
+mod worker;
+
+use pyo3::prelude::*;
+
+/// The compiled half of `pinhole`, which is not for use by itself.
+#[pymodule]
+fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    // What a panic says becomes an exception.
+    std::panic::set_hook(Box::new(|_| {}));
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<image::Picture>()?;
+    module.add_class::<spheres::SphereData>()?;
+    Ok(())
+}

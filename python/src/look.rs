@@ -1,0 +1,85 @@
+//! From the text of a scene file to cameras, settings and encoding, for a scene that exists.
+
+use pinhole::annotate::{AnnotationError, Annotations};
+use pinhole::camera::{Camera, CameraError};
+use pinhole::color_by::ColorKey;
+use pinhole::light::environment::Environment;
+use pinhole::load::environment;
+use pinhole::scene_file::IntegratorKind;
+use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
+
+use crate::fault::{Fault, Outcome};
+use crate::scene_text::SceneText;
+
+/// How a scene is seen, lit and encoded.
+pub(crate) struct Look {
+    pub(crate) film: Film,
+    /// The camera; for a stereo camera, the view from the middle between the eyes.
+    pub(crate) camera: Box<dyn Camera>,
+    /// The left and the right eye of a stereo camera.
+    pub(crate) eyes: Option<[Box<dyn Camera>; 2]>,
+    pub(crate) settings: RenderSettings,
+    pub(crate) encoding: Encoding,
+    /// What is drawn over the picture.
+    pub(crate) annotations: Annotations,
+    pub(crate) notes: Vec<String>,
+}
+
+impl Look {
+    /// Reads the text for a scene, of which `key` says what colours mean.
+    pub(crate) fn new(text: &SceneText, scene: &Scene, key: Option<&ColorKey>) -> Outcome<Self> {
+        let file = text.parse()?;
+        let film = file.film;
+        let free_sides = file.annotations.free_sides(key, film);
+        let subject = scene.subject().with_free_sides(free_sides);
+        let parameters = file.camera_parameters();
+        let refused = |error: CameraError| text.fault(&file.at_camera(&error));
+        let aspect = film.aspect();
+        let camera = parameters.camera(aspect, &subject).map_err(refused)?;
+        let eyes = parameters.stereo_pair(aspect, &subject).map_err(refused)?;
+        let kind = file.integrator().unwrap_or_default();
+        let sky = file.sky_image().filter(|_| kind == IntegratorKind::Path);
+        let sky = sky.map(environment_of).transpose()?;
+        let settings = file.settings(kind, scene, camera.as_ref(), sky);
+        let mut settings = settings.map_err(|error| text.fault(&error))?;
+        let encoding = file.encoding.with_background(settings.visible_background());
+        settings.is_transparent = encoding.transparent();
+        let mut notes: Vec<String> =
+            settings.notes(scene).iter().map(ToString::to_string).collect();
+        let middle = scene.bounds_to_frame();
+        let middle = 0.5 * (middle.min() + middle.max());
+        let view = View::new(camera.as_ref(), film);
+        let made = file.annotations.annotations(key, &view, middle);
+        let (annotations, more) = made.map_err(|error| match error {
+            AnnotationError::NoKey => Fault::Input(format!("{error}, with color_by or cmap")),
+            error => Fault::input(error),
+        })?;
+        notes.extend(more);
+        Ok(Self { film, camera, eyes, settings, encoding, annotations, notes })
+    }
+
+    /// The view of the camera, or of the middle between two eyes.
+    pub(crate) fn view(&self) -> View<'_> {
+        View::new(self.camera.as_ref(), self.film)
+    }
+
+    /// The views that are rendered: one, or those of two eyes.
+    pub(crate) fn views(&self) -> Vec<View<'_>> {
+        match &self.eyes {
+            None => vec![self.view()],
+            Some(eyes) => eyes.iter().map(|eye| View::new(eye.as_ref(), self.film)).collect(),
+        }
+    }
+
+    /// These layers and those that encoding needs.
+    pub(crate) fn layers(&self, asked: LayerSet) -> LayerSet {
+        asked.iter().chain(self.encoding.layers().iter()).collect()
+    }
+}
+
+/// Reads the image of the sky.
+fn environment_of(path: &str) -> Outcome<Environment> {
+    let bytes = std::fs::read(path)
+        .map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
+    environment::read(&bytes).map_err(|error| Fault::Input(format!("sky: {path}: {error}")))
+}

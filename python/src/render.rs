@@ -1,0 +1,191 @@
+//! Renders a look of a scene: on the shared device, where the scene stays between pictures, or on the CPU.
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pinhole::accel::AccelChoice;
+use pinhole::cpu::{self, RenderError, SearchTree};
+use pinhole::gpu::{Decision, GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
+use pinhole::render::Integrator;
+use pinhole::scene::SceneUpdate;
+use pinhole::{Image, LayerSet, RenderSettings, Scene};
+
+use crate::device::{self, Backend, Opened};
+use crate::fault::{Fault, Outcome};
+use crate::look::Look;
+use crate::worker::Stop;
+
+/// A scene on a device.
+struct Uploaded {
+    opened: Arc<Opened>,
+    buffers: SceneBuffers,
+    for_light: Light,
+}
+
+/// Which settings a scene was copied for, because structures differ.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Light {
+    None,
+    Studio,
+    Path,
+}
+
+impl Light {
+    fn of(settings: &RenderSettings) -> Self {
+        match settings.integrator {
+            Integrator::Studio(_) => Self::Studio,
+            Integrator::Path(_) => Self::Path,
+            _ => Self::None,
+        }
+    }
+}
+
+/// A scene on the device, if it was copied there. It is taken while a picture is rendered.
+#[derive(Default)]
+pub(crate) struct OnDevice {
+    uploaded: Mutex<Option<Uploaded>>,
+}
+
+/// A picture, and by whom it was rendered.
+pub(crate) struct Rendered {
+    pub(crate) image: Image,
+    /// The name of the adapter, if an adapter rendered.
+    pub(crate) adapter: Option<String>,
+    pub(crate) warning: Option<String>,
+}
+
+impl OnDevice {
+    /// Renders the scene, on a new device if the shared one was lost.
+    pub(crate) fn render(
+        &self,
+        scene: &Scene,
+        look: &Look,
+        layers: LayerSet,
+        backend: Backend,
+        stop: &Stop,
+    ) -> Outcome<Rendered> {
+        let Some(opened) = device::device(backend)? else {
+            return on_cpu(scene, look, layers, stop);
+        };
+        match self.on_gpu(&opened, scene, look, layers, stop) {
+            Err(Fault::Lost(_)) => {
+                device::forget(&opened);
+                let Some(again) = device::device(backend)? else {
+                    return on_cpu(scene, look, layers, stop);
+                };
+                self.on_gpu(&again, scene, look, layers, stop)
+            }
+            done => done,
+        }
+    }
+
+    fn on_gpu(
+        &self,
+        opened: &Arc<Opened>,
+        scene: &Scene,
+        look: &Look,
+        layers: LayerSet,
+        stop: &Stop,
+    ) -> Outcome<Rendered> {
+        let (headless, light) = (&opened.headless, Light::of(&look.settings));
+        let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+        let fits = |found: &Uploaded| {
+            Arc::ptr_eq(&found.opened, opened) && [Light::None, found.for_light].contains(&light)
+        };
+        let mut kept = slot.take().filter(fits);
+        let views = look.views();
+        let plan = |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, 20);
+        let work = |buffers: &SceneBuffers| {
+            let pictures = views.iter().enumerate().map(|(done, view)| {
+                let watch = &mut |progress: &pinhole::gpu::Progress| {
+                    stop.report((done as f64 + progress.part) / views.len() as f64);
+                    decision(stop)
+                };
+                let picture =
+                    headless.render_uploaded(buffers, view, &look.settings, layers, watch);
+                Ok(picture?.image)
+            });
+            pictures.collect::<Result<Vec<Image>, GpuError>>()
+        };
+        let known = match kept.as_ref().map(|kept| work(&kept.buffers)) {
+            Some(Err(GpuError::Steps)) | None => None,
+            Some(done) => Some(done),
+        };
+        let images = match known {
+            Some(done) => done,
+            None => {
+                drop(kept);
+                let copied = Mutex::new(None);
+                let copy_and_work = |plan: &RenderPlan| {
+                    plan.check(&headless.device().limits(), None)?;
+                    let watch = &mut |_: &UploadProgress| decision(stop);
+                    let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
+                    let images = work(&buffers)?;
+                    *copied.lock().unwrap_or_else(PoisonError::into_inner) = Some(buffers);
+                    Ok(images)
+                };
+                let tried = with_retries(
+                    AccelChoice::Auto,
+                    plan,
+                    |_| {},
+                    |plan| Ok::<_, GpuError>(copy_and_work(plan)),
+                );
+                let done = tried.and_then(|done| done);
+                let copied = copied.into_inner().unwrap_or_else(PoisonError::into_inner);
+                kept = copied.map(|buffers| Uploaded {
+                    opened: Arc::clone(opened),
+                    buffers,
+                    for_light: light,
+                });
+                done
+            }
+        };
+        let images = images?;
+        *slot = kept;
+        let adapter = Some(headless.adapter_info().name.clone());
+        Ok(Rendered { image: joined(images)?, adapter, warning: opened.warning.clone() })
+    }
+
+    /// Brings what the device has up to date with a scene to which an update was applied. What cannot be updated is
+    /// copied again when it is needed.
+    pub(crate) fn update(&self, scene: &Scene, update: &SceneUpdate<'_>) {
+        let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(uploaded) = slot.as_mut() {
+            let Uploaded { opened, buffers, .. } = uploaded;
+            if opened.headless.update(buffers, scene, update).is_err() {
+                *slot = None;
+            }
+        }
+    }
+}
+
+fn decision(stop: &Stop) -> Decision {
+    if stop.is_wanted() { Decision::Stop } else { Decision::GoOn }
+}
+
+fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
+    let tree = SearchTree::new(scene).map_err(Fault::input)?;
+    let views = look.views();
+    let pictures = views.iter().enumerate().map(|(done, view)| {
+        let watch = |part: f64| {
+            stop.report((done as f64 + part) / views.len() as f64);
+            if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let picture = cpu::render_watched(&tree, view, &look.settings, layers, &watch);
+        picture.map_err(|error| match error {
+            RenderError::Stopped => Fault::Stopped,
+            error => Fault::input(error),
+        })
+    });
+    let images = pictures.collect::<Outcome<Vec<Image>>>()?;
+    Ok(Rendered { image: joined(images)?, adapter: None, warning: None })
+}
+
+/// The picture, or those of two eyes side by side.
+fn joined(mut images: Vec<Image>) -> Outcome<Image> {
+    match (images.pop(), images.pop()) {
+        (Some(right), Some(left)) => Image::side_by_side([&left, &right]).map_err(Fault::input),
+        (Some(image), None) => Ok(image),
+        _ => Err(Fault::Internal("there is no picture".to_owned())),
+    }
+}

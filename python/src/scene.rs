@@ -1,0 +1,76 @@
+//! Spheres with what a scene file says about data become a scene.
+
+use pinhole::color_by::ColorKey;
+use pinhole::load::Loaded;
+use pinhole::scene::material::SurfaceProperties;
+use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, SceneFile};
+use pinhole::{Appearance, Colors, LinearRgb, Scene};
+
+use crate::fault::{Fault, Outcome};
+use crate::scene_text::SceneText;
+
+/// A scene, and what is known about its spheres.
+pub(crate) struct Made {
+    pub(crate) scene: Scene,
+    /// What colours mean, if a column gives them.
+    pub(crate) key: Option<ColorKey>,
+    pub(crate) notes: Vec<String>,
+}
+
+/// Makes the scene of data. `colors` are those of spheres that have bytes for colours, where nothing else gives them.
+pub(crate) fn scene_of(
+    mut loaded: Loaded,
+    text: &SceneText,
+    colors: Option<Vec<[u8; 4]>>,
+) -> Outcome<Made> {
+    let file = text.parse()?;
+    let plain = Data::of_file("");
+    let data = file.data().unwrap_or(&plain);
+    if !is_plain(data) {
+        return applied(loaded, &file, data, text);
+    }
+    let kept = data.select.as_ref().map(|select| select.apply(&mut loaded)).transpose();
+    let kept = kept.map_err(|error| Fault::Input(format!("select: {error}")))?;
+    loaded.correct_notes(data.mapping.color.is_some(), data.mapping.radius.is_some(), |_| false);
+    let mut notes = std::mem::take(&mut loaded.notes);
+    notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()));
+    if let Some(colors) = colors.filter(|_| data.mapping.is_empty() && is_simple(data)) {
+        // These need no list of distinct colours, which takes long.
+        let appearance = Appearance::new(Colors::Rgba8(colors));
+        let scene = Scene::from_parts(loaded.spheres, appearance).map_err(Fault::input)?;
+        return Ok(Made { scene, key: None, notes });
+    }
+    let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
+    let made = data.mapping.scene_with(loaded, color, &data.additions);
+    let (scene, mapped, added) = made.map_err(Fault::input)?;
+    notes.extend_from_slice(mapped.notes());
+    notes.extend_from_slice(added.notes());
+    Ok(Made { scene, key: mapped.key().cloned(), notes })
+}
+
+/// Makes a scene as of a scene file with data.
+fn applied(loaded: Loaded, file: &SceneFile, data: &Data, text: &SceneText) -> Outcome<Made> {
+    let color = data.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
+    let applied = data.apply(loaded).map_err(Fault::input)?;
+    let scene = match applied.spheres {
+        DataSpheres::Spheres(spheres) => file.scene(&spheres),
+        DataSpheres::Array(spheres) => file.scene_with_array(spheres, color),
+        DataSpheres::Mapped(spheres, mapped) => file.scene_with_mapped(spheres, &mapped, color),
+    };
+    let scene = scene.map_err(|error| text.fault(&error))?.with_added(applied.added.len());
+    Ok(Made { scene, key: applied.color_key, notes: applied.notes })
+}
+
+/// Whether the keys say no more about the data than flags of the program can.
+fn is_plain(data: &Data) -> bool {
+    data.surface == SurfaceProperties::default()
+        && data.elements.is_empty()
+        && data.elements_by.is_empty()
+        && data.leave_out.is_empty()
+        && data.radius_scale.to_bits() == 1.0_f64.to_bits()
+}
+
+/// Whether nothing is selected or added.
+fn is_simple(data: &Data) -> bool {
+    data.select.is_none() && data.additions.is_empty()
+}

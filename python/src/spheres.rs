@@ -1,0 +1,284 @@
+//! Spheres that Python holds: a checked scene, and what of it a device has.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pinhole::camera::Viewpoint;
+use pinhole::color_by::ColorKey;
+use pinhole::glam::DVec3;
+use pinhole::image::Layer;
+use pinhole::load::{Column, ColumnValues, Labels, Loaded};
+use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
+use pinhole::{LayerSet, Scene};
+use pyo3::prelude::*;
+
+use crate::arrays::{Centers, ColorArray, Radii};
+use crate::device::Backend;
+use crate::fault::{Fault, Outcome};
+use crate::image::Picture;
+use crate::look::Look;
+use crate::render::OnDevice;
+use crate::scene::{Made, scene_of};
+use crate::scene_text::SceneText;
+use crate::worker;
+
+/// Spheres: arrays or a file, and the settings that concern data.
+#[pyclass(frozen, module = "pinhole._pinhole")]
+pub(crate) struct SphereData {
+    /// The scene; replaced or changed by updates.
+    scene: Mutex<Arc<Scene>>,
+    /// What colours mean, if a column gives them.
+    key: Option<ColorKey>,
+    /// What was loaded, if it says more than the scene does.
+    pub(crate) loaded: Option<Arc<Loaded>>,
+    z_is_up: bool,
+    notes: Vec<String>,
+    pub(crate) on_device: OnDevice,
+}
+
+/// The values of a column.
+#[derive(FromPyObject)]
+enum Values<'py> {
+    Numbers(PyReadonlyArray1<'py, f64>),
+    /// The different texts, and the index of each sphere's text.
+    Texts(Vec<String>, PyReadonlyArray1<'py, u32>),
+}
+
+impl SphereData {
+    /// Makes spheres of what was loaded.
+    pub(crate) fn of_loaded(
+        loaded: Loaded,
+        text: &SceneText,
+        colors: Option<Vec<[u8; 4]>>,
+        z_is_up: bool,
+    ) -> Outcome<Self> {
+        let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
+        let kept = has_more.then(|| Arc::new(loaded.clone()));
+        let Made { scene, key, notes } = scene_of(loaded, text, colors)?;
+        let scene = Mutex::new(Arc::new(scene));
+        Ok(Self { scene, key, loaded: kept, z_is_up, notes, on_device: OnDevice::default() })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Arc<Scene>> {
+        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The scene as it is now.
+    pub(crate) fn scene(&self) -> Arc<Scene> {
+        Arc::clone(&self.lock())
+    }
+
+    /// What the text of a scene file says about a picture of the scene.
+    pub(crate) fn look(&self, scene: &Scene, text: &SceneText) -> Outcome<Look> {
+        Look::new(text, scene, self.key.as_ref())
+    }
+}
+
+#[pymethods]
+impl SphereData {
+    /// Makes spheres of arrays that Python has checked.
+    #[staticmethod]
+    #[pyo3(signature = (positions, radius, color, columns, text))]
+    fn of_arrays(
+        py: Python<'_>,
+        positions: Centers<'_>,
+        radius: Option<Radii<'_>>,
+        color: Option<ColorArray<'_>>,
+        columns: Vec<(String, Values<'_>)>,
+        text: SceneText,
+    ) -> PyResult<Self> {
+        let spheres = positions.spheres(radius.as_ref())?;
+        let rgba8 = color.as_ref().and_then(ColorArray::rgba8);
+        // Simple spheres take their bytes as they are.
+        let is_simple = rgba8.is_some() && columns.is_empty() && text.is_empty();
+        let linear = color.as_ref().filter(|_| !is_simple).map(ColorArray::linear).transpose()?;
+        let opacities = color.as_ref().filter(|_| !is_simple).and_then(ColorArray::opacities);
+        let columns: Vec<Column> = columns.into_iter().map(column).collect::<Result<_, _>>()?;
+        let has_radius = radius.is_some();
+        Ok(worker::run(py, None, move |_| {
+            let mut loaded =
+                if has_radius { Loaded::new(spheres) } else { Loaded::of_centers(spheres) };
+            (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
+            Self::of_loaded(loaded, &text, rgba8.filter(|_| is_simple), false)
+        })?)
+    }
+
+    /// The same data with other settings.
+    fn restyled(&self, py: Python<'_>, text: SceneText) -> PyResult<Self> {
+        let Some(loaded) = &self.loaded else {
+            return Err(Fault::Input(
+                "these spheres have no columns; make new Spheres(...) with other settings"
+                    .to_owned(),
+            )
+            .into());
+        };
+        Ok(worker::run(py, None, |_| {
+            Self::of_loaded(loaded.as_ref().clone(), &text, None, self.z_is_up)
+        })?)
+    }
+
+    fn __len__(&self) -> usize {
+        let scene = self.lock();
+        scene.len() - scene.added()
+    }
+
+    /// Notes for the user.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// The smallest and the largest coordinates of the spheres; None if there are none.
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let bounds = self.lock().bounds()?;
+        Some((bounds.min().to_array(), bounds.max().to_array()))
+    }
+
+    /// The centres as they are rendered, float64 of shape (n, 3).
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let scene = self.scene();
+        let origin = scene.origin().to_array();
+        let place = |[x, y, z, _]: &[f32; 4]| {
+            let offset = [*x, *y, *z];
+            [0, 1, 2].map(|axis| origin[axis] + f64::from(offset[axis]))
+        };
+        let places: Vec<f64> = scene.spheres().iter().flat_map(place).collect();
+        places.into_pyarray(py).reshape([scene.len(), 3])
+    }
+
+    /// The radii as they are rendered, float32 of shape (n,).
+    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f32>> {
+        let scene = self.scene();
+        scene.spheres().iter().map(|sphere| sphere[3]).collect::<Vec<_>>().into_pyarray(py)
+    }
+
+    /// The names of the columns.
+    fn column_names(&self) -> Vec<String> {
+        let columns = self.loaded.iter().flat_map(|loaded| &loaded.columns);
+        columns.map(|column| column.name.clone()).collect()
+    }
+
+    /// A column: an array of numbers, or the different texts and an array of indices into them.
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let loaded = self.loaded.as_ref();
+        match loaded.and_then(|loaded| loaded.column(name)) {
+            Some(ColumnValues::Numbers(numbers)) => Ok(numbers.clone().into_pyarray(py).into_any()),
+            Some(ColumnValues::Labels(Labels { names, indices })) => {
+                let indices = indices.clone().into_pyarray(py);
+                Ok((names.clone(), indices).into_pyobject(py)?.into_any())
+            }
+            _ => Ok(py.None().into_bound(py)),
+        }
+    }
+
+    /// The three edges of the periodic cell; None if there is none.
+    fn cell(&self) -> Option<[[f64; 3]; 3]> {
+        self.loaded.as_ref()?.cell
+    }
+
+    /// The direction in which a camera looks that frames the spheres, and the direction that is up: from `view`, or else
+    /// from where the program stands.
+    #[pyo3(signature = (view, turn, up))]
+    fn view_axes(
+        &self,
+        view: Option<&str>,
+        turn: f64,
+        up: Option<[f64; 3]>,
+    ) -> PyResult<([f64; 3], [f64; 3])> {
+        let viewpoint = match view {
+            Some(name) => name
+                .parse::<Viewpoint>()
+                .map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))?,
+            None => {
+                let flat = self.lock().subject().flat_axis();
+                flat.map_or(Viewpoint::OBLIQUE, Viewpoint::on_axis)
+            }
+        };
+        let usual = if self.z_is_up { DVec3::Z } else { DVec3::Y };
+        let [direction, up] = viewpoint.axes(up.map_or(usual, DVec3::from), turn);
+        Ok((direction.to_array(), up.to_array()))
+    }
+
+    /// Renders a picture.
+    fn render(
+        &self,
+        py: Python<'_>,
+        text: SceneText,
+        layers: Vec<String>,
+        backend: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Picture> {
+        let backend = Backend::of_name(backend)?;
+        let layers = layers.iter().map(|name| name.parse::<Layer>());
+        let layers = layers.collect::<Result<LayerSet, _>>().map_err(Fault::input)?;
+        Ok(worker::run(py, progress.as_ref(), |stop| {
+            let scene = self.scene();
+            let mut look = self.look(&scene, &text)?;
+            let rendered =
+                self.on_device.render(&scene, &look, look.layers(layers), backend, stop)?;
+            look.notes.extend(rendered.warning);
+            Ok(Picture {
+                image: rendered.image,
+                encoding: look.encoding,
+                annotations: look.annotations,
+                adapter: rendered.adapter,
+                layers,
+                all_notes: look.notes,
+            })
+        })?)
+    }
+
+    /// Gives spheres new centres, radii or colours, from the sphere `first` on.
+    #[pyo3(signature = (first, positions, radius, color))]
+    fn update(
+        &self,
+        py: Python<'_>,
+        first: u32,
+        positions: Option<Centers<'_>>,
+        radius: Option<PyReadonlyArray1<'_, f32>>,
+        color: Option<PyReadonlyArray2<'_, u8>>,
+    ) -> PyResult<()> {
+        let not_in_order = || Fault::Internal("an array is not contiguous".to_owned());
+        let (mut narrow, mut wide): (&[[f32; 3]], &[[f64; 3]]) = (&[], &[]);
+        match &positions {
+            Some(Centers::Narrow(centers)) => {
+                narrow = centers.as_slice().map_err(|_| not_in_order())?.as_chunks::<3>().0;
+            }
+            Some(Centers::Wide(centers)) => {
+                wide = centers.as_slice().map_err(|_| not_in_order())?.as_chunks::<3>().0;
+            }
+            None => {}
+        }
+        let centers = positions.as_ref().map(|centers| match centers {
+            Centers::Narrow(_) => NewCenters::F32(narrow),
+            Centers::Wide(_) => NewCenters::F64(wide),
+        });
+        let radii = radius.as_ref().map(|radii| radii.as_slice()).transpose();
+        let colors = color.as_ref().map(|colors| colors.as_slice()).transpose();
+        let colors = colors.map_err(|_| not_in_order())?.map(|bytes| bytes.as_chunks::<4>().0);
+        let update = SceneUpdate {
+            first,
+            centers,
+            radii: radii.map_err(|_| not_in_order())?,
+            colors: colors.map(NewColors::Rgba8),
+        };
+        Ok(worker::run(py, None, |_| {
+            let mut scene = self.lock();
+            let shared = Arc::make_mut(&mut scene);
+            shared.apply(&update).map_err(Fault::input)?;
+            let scene = Arc::clone(&scene);
+            self.on_device.update(&scene, &update);
+            Ok(())
+        })?)
+    }
+}
+
+fn column((name, values): (String, Values<'_>)) -> Outcome<Column> {
+    let values = match values {
+        Values::Numbers(numbers) => ColumnValues::Numbers(numbers.as_array().to_vec()),
+        Values::Texts(names, indices) => {
+            ColumnValues::Labels(Labels { names, indices: indices.as_array().to_vec() })
+        }
+    };
+    Ok(Column { name, values })
+}
