@@ -5,22 +5,9 @@ use pinhole::load::Loaded;
 
 use super::data::DataOptions;
 
-/// Names of the columns of kinds, of which the first is taken.
-const KINDS: [&str; 2] = ["species", "type"];
-
-/// More kinds than this cannot be told apart by color.
-const MOST_KINDS: usize = 32;
-
-/// The column that colors the spheres of a data file where neither the file nor a flag does: that of their kinds, if there
-/// is one, it is text, and there are some to tell apart.
+/// The column that colors the spheres of a data file where neither the file nor a flag does; see [`ColorBy::of_kinds`].
 pub(super) fn by_kind(loaded: &Loaded, options: &DataOptions) -> Option<ColorBy> {
-    if loaded.colors.is_some() || options.color.is_some() {
-        return None;
-    }
-    let are_kinds = |name: &&str| {
-        loaded.labels(name).is_some_and(|labels| (2..=MOST_KINDS).contains(&labels.names.len()))
-    };
-    KINDS.into_iter().find(are_kinds).map(ColorBy::column)
+    ColorBy::of_kinds(loaded).filter(|_| options.color.is_none())
 }
 
 /// The note about such colors.

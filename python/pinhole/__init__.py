@@ -8,13 +8,17 @@
 """
 
 from ._camera import Camera
+from ._certificate import Certificate
 from ._errors import DeviceError, Error, FileError, InputError, InternalError, Note
+from ._files import Trajectory, read
 from ._image import Image
+from ._movie import movie
 from ._pinhole import __version__
 from ._spheres import Spheres
 
 __all__ = [
     "Camera",
+    "Certificate",
     "DeviceError",
     "Error",
     "FileError",
@@ -23,5 +27,8 @@ __all__ = [
     "InternalError",
     "Note",
     "Spheres",
+    "Trajectory",
     "__version__",
+    "movie",
+    "read",
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -11,8 +13,10 @@ import numpy.typing as npt
 
 from . import _arrays, _progress, _settings
 from ._camera import Camera
+from ._certificate import Certificate
 from ._errors import InputError, Note
 from ._image import Image
+from ._movie import movie
 from ._pinhole import SphereData
 
 Array = npt.NDArray[Any]
@@ -99,7 +103,7 @@ class Spheres:
         self.camera = None
         text = _settings.data_text(self._settings)
         self._data = SphereData.of_arrays(centers, radii, colors, list(named.items()), text)
-        _warn(self._data.notes)
+        warn(self._data.notes)
 
     @classmethod
     def _of(cls, data: SphereData, settings: dict[str, Any], camera: Camera | None = None) -> Spheres:
@@ -111,7 +115,7 @@ class Spheres:
         """The same data with other settings, for spheres with columns. Arguments are the settings of ``Spheres``."""
         checked = {**self._settings, **_settings.data_settings(settings)}
         made = self._of(self._data.restyled(_settings.data_text(checked)), checked, self.camera)
-        _warn(made._data.notes)
+        warn(made._data.notes)
         return made
 
     def __len__(self) -> int:
@@ -146,6 +150,11 @@ class Spheres:
         """The three edges of the periodic cell: float64, (3, 3), one in each row; None if there is none."""
         cell = self._data.cell()
         return None if cell is None else np.array(cell)
+
+    @property
+    def notes(self) -> list[str]:
+        """What the user should know about the data, such as the range of colours."""
+        return self._data.notes
 
     @property
     def columns(self) -> list[str]:
@@ -225,8 +234,50 @@ class Spheres:
         finally:
             if line is not None:
                 line.close()
-        _warn(picture.notes)
+        warn(picture.notes)
         return Image(picture)
+
+    def verify(self, size: tuple[int, int] | None = None, **settings: Any) -> Certificate:
+        """Renders the view with one ray for each pixel on the device, and decides pixel by pixel whether a conforming device
+        may have made that picture. Light is not checked. Arguments are those of ``render``.
+        """
+        text = self._text({**settings, "size": size})
+        return Certificate(self._data.verify(text))
+
+    def _placed(
+        self, settings: Mapping[str, Any], corners: tuple[list[float], list[float]] | None = None
+    ) -> dict[str, Any]:
+        """The table of a camera with its position, which frames a box, or else these spheres."""
+        settings = {key: of for key, of in settings.items() if key not in ("backend", "layers", "progress")}
+        placed: dict[str, dict[str, Any]] = json.loads(self._data.placed(self._text(settings), corners))
+        return {kind: {key: of for key, of in keys.items() if of is not None} for kind, keys in placed.items()}
+
+    def turntable(
+        self, path: str | os.PathLike[str], *, frames: int = 120, fps: float = 30.0, **settings: Any
+    ) -> None:
+        """Renders a movie in which the camera goes once around the spheres, about the direction that is up.
+
+        ``path`` is that of ``pinhole.movie``; further arguments are those of ``render``.
+        """
+        camera = settings.pop("camera", None) or self.camera or Camera()
+        if isinstance(camera, str):
+            camera = Camera(view=camera)
+        if not isinstance(camera, Camera) or camera.kind != "pinhole":
+            raise InputError("a turntable needs a pinhole camera, such as Camera.frame(view, zoom=...)")
+        (kind, placed), = self._placed({**settings, "camera": camera}).items()
+        eye, up = np.array(placed["eye"]), np.array(camera.up or self._data.view_axes("x", 0.0, None)[1])
+        bounds = self.bounds
+        middle = np.zeros(3) if bounds is None else (bounds[0] + bounds[1]) / 2
+        look = np.array(placed["look_at"]) - eye if "look_at" in placed else np.array(placed["direction"])
+        top = np.array(placed.get("up", up))
+        rest = {key: of for key, of in placed.items() if key not in ("eye", "look_at", "direction", "up")}
+
+        def turned(number: int) -> dict[str, Any]:
+            turn = _rotation(up, 2 * np.pi * number / frames)
+            place = {"eye": middle + turn @ (eye - middle), "direction": turn @ look, "up": turn @ top}
+            return {kind: {**place, **rest}}
+
+        movie(path, (self.render(camera=turned(number), **settings) for number in range(frames)), fps=fps)
 
     def update(self, *, positions: Any = None, radius: Any = None, color: Any = None, first: int = 0) -> None:
         """Gives spheres new centres, radii or colours in place, from the sphere ``first`` on.
@@ -252,6 +303,14 @@ class Spheres:
         self._data.update(first, centers, radii, colors)
 
 
+def _rotation(axis: Array, angle: float) -> Array:
+    """The matrix that turns by an angle about an axis, counter-clockwise seen from its end."""
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    return turn
+
+
 def _is_triple(color: Any, count: int) -> bool:
     """Whether three numbers are one colour, and not those of three spheres."""
     return np.shape(color) == (3,) and (count != 3 or isinstance(color, (tuple, list)))
@@ -262,7 +321,10 @@ def _triple(color: Any) -> Any:
     return color if isinstance(color, str) else [float(number) for number in _arrays.numbers("color", color)]
 
 
-def _warn(notes: Iterable[str]) -> None:
+def warn(notes: Iterable[str]) -> None:
     """Tells the user what is not an error."""
     for note in notes:
+        if note.startswith("colors show "):
+            # A range that nobody gave is what is expected; `Spheres.notes` has it.
+            continue
         warnings.warn(note.replace("--radius sets it", "radius=... sets it"), Note, stacklevel=3)

@@ -2,8 +2,10 @@
 //! other half, which checks arguments and writes settings as the text of a scene file.
 
 mod arrays;
+mod certificate;
 mod device;
 mod fault;
+mod files;
 mod image;
 mod look;
 mod render;
@@ -20,6 +22,8 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // What a panic says becomes an exception.
     std::panic::set_hook(Box::new(|_| {}));
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<certificate::Judged>()?;
+    module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
     module.add_class::<spheres::SphereData>()?;
     Ok(())

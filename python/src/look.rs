@@ -3,6 +3,7 @@
 use pinhole::annotate::{AnnotationError, Annotations};
 use pinhole::camera::{Camera, CameraError};
 use pinhole::color_by::ColorKey;
+use pinhole::geometry::bounds::Bounds;
 use pinhole::light::environment::Environment;
 use pinhole::load::environment;
 use pinhole::scene_file::IntegratorKind;
@@ -82,4 +83,20 @@ fn environment_of(path: &str) -> Outcome<Environment> {
     let bytes = std::fs::read(path)
         .map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
     environment::read(&bytes).map_err(|error| Fault::Input(format!("sky: {path}: {error}")))
+}
+
+/// The camera of a text with its position, as JSON. It frames a box from one corner to the other, or else the scene.
+pub(crate) fn placed(
+    text: &SceneText,
+    scene: &Scene,
+    corners: Option<([f64; 3], [f64; 3])>,
+) -> Outcome<String> {
+    let file = text.parse()?;
+    let boxed = corners.map(|(low, high)| {
+        Bounds::of_sphere(low.into(), 0.0).union(Bounds::of_sphere(high.into(), 0.0))
+    });
+    let subject = boxed.map_or_else(|| scene.subject(), Into::into);
+    let placed = file.camera_parameters().placed(file.film.aspect(), &subject);
+    let placed = placed.map_err(|error| text.fault(&file.at_camera(&error)))?;
+    serde_json::to_string(&placed).map_err(|error| Fault::Internal(error.to_string()))
 }

@@ -1,6 +1,6 @@
 //! Spheres with what a scene file says about data become a scene.
 
-use pinhole::color_by::ColorKey;
+use pinhole::color_by::{ColorBy, ColorKey};
 use pinhole::load::Loaded;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, SceneFile};
@@ -17,18 +17,45 @@ pub(crate) struct Made {
     pub(crate) notes: Vec<String>,
 }
 
-/// Makes the scene of data. `colors` are those of spheres that have bytes for colours, where nothing else gives them.
-pub(crate) fn scene_of(
-    mut loaded: Loaded,
-    text: &SceneText,
-    colors: Option<Vec<[u8; 4]>>,
-) -> Outcome<Made> {
+/// What is known of data besides what was loaded.
+#[derive(Default)]
+pub(crate) struct Given {
+    /// The colours of spheres that have bytes for colours, where nothing else gives them.
+    pub(crate) colors: Option<Vec<[u8; 4]>>,
+    /// Whether the caller gave radii, which bonds then leave as they are.
+    pub(crate) radii: bool,
+}
+
+/// Makes the scene of data.
+pub(crate) fn scene_of(loaded: Loaded, text: &SceneText, given: Given) -> Outcome<Made> {
     let file = text.parse()?;
-    let plain = Data::of_file("");
-    let data = file.data().unwrap_or(&plain);
-    if !is_plain(data) {
-        return applied(loaded, &file, data, text);
+    let mut data = file.data().cloned().unwrap_or_else(|| Data::of_file(""));
+    if data.color.is_some() && loaded.colors.is_some() {
+        return Err(Fault::Input(
+            "color applies only to data without colors; use color_by, or elements={...}".to_owned(),
+        ));
     }
+    let mut by_kind = None;
+    if given.colors.is_none() && data.color.is_none() && data.mapping.color.is_none() {
+        by_kind = ColorBy::of_kinds(&loaded);
+        data.mapping.color.clone_from(&by_kind);
+    }
+    data.additions.keeps_radii = given.radii;
+    let mut made = match is_plain(&data) {
+        true => dressed(loaded, &data, given.colors)?,
+        false => applied(loaded, &file, &data, text)?,
+    };
+    made.notes.extend(by_kind.map(|by| {
+        let column = &by.column;
+        format!(
+            "there are no colors; the spheres are colored by {column}; color=... gives all one color"
+        )
+    }));
+    Ok(made)
+}
+
+/// Makes a scene as of a data file with flags.
+fn dressed(mut loaded: Loaded, data: &Data, colors: Option<Vec<[u8; 4]>>) -> Outcome<Made> {
     let kept = data.select.as_ref().map(|select| select.apply(&mut loaded)).transpose();
     let kept = kept.map_err(|error| Fault::Input(format!("select: {error}")))?;
     loaded.correct_notes(data.mapping.color.is_some(), data.mapping.radius.is_some(), |_| false);

@@ -1,5 +1,6 @@
 //! Spheres that Python holds: a checked scene, and what of it a device has.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -13,12 +14,13 @@ use pinhole::{LayerSet, Scene};
 use pyo3::prelude::*;
 
 use crate::arrays::{Centers, ColorArray, Radii};
+use crate::certificate::{self, Judged};
 use crate::device::Backend;
 use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
-use crate::look::Look;
+use crate::look::{self, Look};
 use crate::render::OnDevice;
-use crate::scene::{Made, scene_of};
+use crate::scene::{Given, Made, scene_of};
 use crate::scene_text::SceneText;
 use crate::worker;
 
@@ -31,9 +33,13 @@ pub(crate) struct SphereData {
     key: Option<ColorKey>,
     /// What was loaded, if it says more than the scene does.
     pub(crate) loaded: Option<Arc<Loaded>>,
+    /// Whether the caller gave radii.
+    has_radii: bool,
     z_is_up: bool,
     notes: Vec<String>,
     pub(crate) on_device: OnDevice,
+    /// Whether the scene has changed since it was made of what was loaded.
+    is_updated: AtomicBool,
 }
 
 /// The values of a column.
@@ -49,14 +55,24 @@ impl SphereData {
     pub(crate) fn of_loaded(
         loaded: Loaded,
         text: &SceneText,
-        colors: Option<Vec<[u8; 4]>>,
+        given: Given,
         z_is_up: bool,
     ) -> Outcome<Self> {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
-        let Made { scene, key, notes } = scene_of(loaded, text, colors)?;
+        let has_radii = given.radii;
+        let Made { scene, key, notes } = scene_of(loaded, text, given)?;
         let scene = Mutex::new(Arc::new(scene));
-        Ok(Self { scene, key, loaded: kept, z_is_up, notes, on_device: OnDevice::default() })
+        Ok(Self {
+            scene,
+            key,
+            loaded: kept,
+            has_radii,
+            z_is_up,
+            notes,
+            on_device: OnDevice::default(),
+            is_updated: AtomicBool::new(false),
+        })
     }
 
     fn lock(&self) -> MutexGuard<'_, Arc<Scene>> {
@@ -99,12 +115,19 @@ impl SphereData {
             let mut loaded =
                 if has_radius { Loaded::new(spheres) } else { Loaded::of_centers(spheres) };
             (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
-            Self::of_loaded(loaded, &text, rgba8.filter(|_| is_simple), false)
+            let given = Given { colors: rgba8.filter(|_| is_simple), radii: has_radius };
+            Self::of_loaded(loaded, &text, given, false)
         })?)
     }
 
     /// The same data with other settings.
     fn restyled(&self, py: Python<'_>, text: SceneText) -> PyResult<Self> {
+        if self.is_updated.load(Ordering::Acquire) {
+            return Err(Fault::Input(
+                "these spheres were updated; make new Spheres(...) with other settings".to_owned(),
+            )
+            .into());
+        }
         let Some(loaded) = &self.loaded else {
             return Err(Fault::Input(
                 "these spheres have no columns; make new Spheres(...) with other settings"
@@ -113,7 +136,8 @@ impl SphereData {
             .into());
         };
         Ok(worker::run(py, None, |_| {
-            Self::of_loaded(loaded.as_ref().clone(), &text, None, self.z_is_up)
+            let given = Given { colors: None, radii: self.has_radii };
+            Self::of_loaded(loaded.as_ref().clone(), &text, given, self.z_is_up)
         })?)
     }
 
@@ -199,6 +223,19 @@ impl SphereData {
         Ok((direction.to_array(), up.to_array()))
     }
 
+    /// The camera of a text with its position, as JSON; it frames a box from one corner to the other, or else the spheres.
+    fn placed(&self, text: SceneText, corners: Option<([f64; 3], [f64; 3])>) -> PyResult<String> {
+        Ok(look::placed(&text, &self.scene(), corners)?)
+    }
+
+    /// Renders the view by one ray for each pixel on the device, and decides whether the picture is legal.
+    fn verify(&self, py: Python<'_>, text: SceneText) -> PyResult<Judged> {
+        Ok(worker::run(py, None, |stop| {
+            let scene = self.scene();
+            certificate::verified(&scene, &self.look(&scene, &text)?, stop)
+        })?)
+    }
+
     /// Renders a picture.
     fn render(
         &self,
@@ -266,6 +303,7 @@ impl SphereData {
             let mut scene = self.lock();
             let shared = Arc::make_mut(&mut scene);
             shared.apply(&update).map_err(Fault::input)?;
+            self.is_updated.store(true, Ordering::Release);
             let scene = Arc::clone(&scene);
             self.on_device.update(&scene, &update);
             Ok(())

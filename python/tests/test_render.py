@@ -207,6 +207,7 @@ def test_many_renders_and_updates_leak_nothing():
     assert more_memory - memory < 30_000, "kilobytes"
 
 
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
 def test_updates_give_the_picture_of_new_spheres():
     before, after = cloud(300, 1), cloud(300, 2)
     colors = np.random.default_rng(5).integers(0, 255, (300, 3), np.uint8)
@@ -217,6 +218,10 @@ def test_updates_give_the_picture_of_new_spheres():
     spheres.update(positions=after.astype("f4"), radius=0.3, color=colors[::-1])
     wanted = ph.Spheres(after.astype("f4"), 0.3, colors[::-1])
     assert np.array_equal(spheres.render(**keys).rgb8, wanted.render(**keys).rgb8)
+    with_columns = ph.Spheres(before, 0.2, columns={"a": np.arange(300)}, color_by={"column": "a"})
+    with_columns.update(radius=0.3, first=299)
+    with pytest.raises(ph.InputError, match="were updated"):
+        with_columns.with_(color="red")
     with pytest.raises(ph.InputError, match="there is no sphere"):
         spheres.update(positions=after[:2], first=299)
     with pytest.raises(ph.InputError, match="sphere 7: its center"):

@@ -20,6 +20,7 @@ pub mod column;
 mod error;
 mod joined;
 mod key;
+mod kinds;
 mod limits;
 mod mapping;
 mod maps;

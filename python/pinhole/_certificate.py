@@ -1,0 +1,53 @@
+"""Certificates: whether a device rendered as it should."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy.typing as npt
+
+from ._pinhole import Judged
+
+
+class Certificate:
+    """Whether the picture of a device is one that a conforming device may have made, pixel by pixel."""
+
+    __slots__ = ("_judged",)
+
+    def __init__(self, judged: Judged) -> None:
+        self._judged = judged
+
+    @property
+    def is_legal(self) -> bool:
+        """Whether every pixel is legal."""
+        return self._judged.is_legal
+
+    @property
+    def adapter(self) -> str:
+        """The name of the adapter that rendered."""
+        return self._judged.adapter
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """The number of pixels with each verdict: decided, silhouette, tie, violation."""
+        return dict(self._judged.counts())
+
+    @property
+    def verdicts(self) -> npt.NDArray[Any]:
+        """The verdict about every pixel as an index into ``list(counts)``: uint8, (height, width)."""
+        return self._judged.verdicts()
+
+    @property
+    def violations(self) -> list[str]:
+        """The first violations, in words."""
+        return self._judged.violations()
+
+    def __bool__(self) -> bool:
+        return self.is_legal
+
+    def __str__(self) -> str:
+        return str(self._judged)
+
+    def __repr__(self) -> str:
+        words = ", ".join(f"{count} {name}" for name, count in self.counts.items() if count)
+        return f"<pinhole.Certificate: {'legal' if self.is_legal else 'NOT LEGAL'}, {words}>"

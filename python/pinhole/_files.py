@@ -1,0 +1,126 @@
+"""Files of spheres, and trajectories."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any, overload
+
+from . import _settings
+from ._camera import Camera
+from ._errors import InputError
+from ._image import Image
+from ._movie import movie
+from ._pinhole import FileData
+from ._spheres import Spheres, warn
+
+
+class Trajectory(Sequence[Spheres]):
+    """The frames of a file, of which each is read when it is asked for. A slice is another trajectory, and reads nothing.
+
+    ``render`` renders the first frame, and ``movie`` all of them.
+    """
+
+    __slots__ = ("_file", "_frames", "_settings", "camera")
+
+    #: The camera of pictures for which ``render`` or ``movie`` is given none.
+    camera: Camera | None
+
+    def __init__(self, file: FileData, frames: range, settings: dict[str, Any]) -> None:
+        self._file, self._frames, self._settings = file, frames, settings
+        self.camera = None
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    @overload
+    def __getitem__(self, index: int) -> Spheres: ...
+    @overload
+    def __getitem__(self, index: slice) -> Trajectory: ...
+    def __getitem__(self, index: int | slice) -> Spheres | Trajectory:
+        """The spheres of a frame, or a part of the trajectory."""
+        if isinstance(index, slice):
+            part = Trajectory(self._file, self._frames[index], self._settings)
+            part.camera = self.camera
+            return part
+        try:
+            frame = self._frames[index]
+        except IndexError:
+            raise IndexError(f"there is no frame {index}; there are {len(self)}") from None
+        data = self._file.frame(frame, _settings.data_text(self._settings))
+        warn(data.notes)
+        return Spheres._of(data, self._settings, self.camera)
+
+    def with_(self, **settings: Any) -> Trajectory:
+        """The same frames with other settings about data, such as ``color_by``."""
+        checked = {**self._settings, **_settings.data_settings(settings)}
+        made = Trajectory(self._file, self._frames, checked)
+        made.camera = self.camera
+        return made
+
+    def render(self, size: tuple[int, int] | None = None, **settings: Any) -> Image:
+        """Renders the first frame; arguments are those of ``Spheres.render``."""
+        return self[0].render(size, **settings)
+
+    def movie(self, path: str | os.PathLike[str], *, fps: float = 30.0, **settings: Any) -> None:
+        """Renders all frames into a movie, as ``pinhole.movie`` does, with one camera that frames all of them.
+
+        All files are read twice, because the camera must know where spheres will be. For colours with one meaning in all
+        frames, give the range: ``color_by={"column": "x", "range": [0, 1]}``.
+        """
+        camera = settings.pop("camera", None) or self.camera
+        boxes = [bounds for frame in self if (bounds := frame.bounds) is not None]
+        corners = None
+        if boxes:
+            low, high = zip(*boxes)
+            corners = ([min(x) for x in zip(*low)], [max(x) for x in zip(*high)])
+        placed = self[0]._placed({**settings, "camera": camera}, corners)
+        movie(path, (frame.render(camera=placed, **settings) for frame in self), fps=fps)
+
+    def __repr__(self) -> str:
+        return f"<pinhole.Trajectory: {len(self)} {'frame' if len(self) == 1 else 'frames'}>"
+
+    def _repr_png_(self) -> bytes:
+        return self[0]._repr_png_()
+
+
+def read(
+    path: str | os.PathLike[str],
+    topology: str | os.PathLike[str] | None = None,
+    *,
+    frame: int | None = None,
+    radius: float | None = None,
+    format: str | None = None,
+    columns: Iterable[str] = (),
+    **settings: Any,
+) -> Any:
+    """Reads a file of spheres: PDB, mmCIF, XYZ, LAMMPS, GSD, GROMACS, DCD, PLY, VTK, LAS, CSV, NumPy and more.
+
+    Returns ``Spheres``, or a ``Trajectory`` if the file has several frames and ``frame`` names none.
+
+    Parameters
+    ----------
+    topology
+        The file that says what the spheres of a trajectory are, for formats that have positions alone.
+    frame
+        The frame of a trajectory, counted from 0.
+    radius
+        The radius of all spheres, for files without radii.
+    format
+        The name of the format, if neither the file's extension nor its content shows it.
+    columns
+        The names of the columns of a table without a header.
+    settings
+        Settings about data, as for ``Spheres``.
+    """
+    checked = _settings.data_settings(settings)
+    where = None if topology is None else os.fspath(topology)
+    file = FileData(os.fspath(path), format, radius, where, list(columns))
+    if file.problem is not None:
+        warn([f"{os.fspath(path)}: after the {len(file)} complete frames: {file.problem}"])
+    frames = Trajectory(file, range(len(file)), checked)
+    if frame is not None:
+        if not 0 <= frame < len(file):
+            raise InputError(f"{os.fspath(path)}: there is no frame {frame}; the file has {len(file)}, counted from 0")
+        return frames[frame]
+    return frames[0] if len(file) == 1 else frames

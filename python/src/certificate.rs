@@ -1,0 +1,82 @@
+//! Whether a device rendered as it should.
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use pinhole::Scene;
+use pinhole::accel::AccelChoice;
+use pinhole::gpu::{Decision, GpuError, Progress, RenderPlan, UploadProgress, with_retries};
+use pinhole::verify::{Certificate, Checker, Verdict};
+use pyo3::prelude::*;
+
+use crate::device::{self, Backend};
+use crate::fault::{Fault, Outcome};
+use crate::look::Look;
+use crate::worker::Stop;
+
+/// The result of the checker.
+#[pyclass(frozen, module = "pinhole._pinhole")]
+pub(crate) struct Judged {
+    certificate: Certificate,
+    adapter: String,
+}
+
+#[pymethods]
+impl Judged {
+    /// Whether every pixel is one that a conforming device may have made.
+    #[getter]
+    fn is_legal(&self) -> bool {
+        self.certificate.is_legal()
+    }
+
+    /// The name of the adapter that rendered.
+    #[getter]
+    fn adapter(&self) -> &str {
+        &self.adapter
+    }
+
+    /// The number of pixels with each verdict.
+    fn counts(&self) -> Vec<(&'static str, usize)> {
+        Verdict::ALL.iter().map(|v| (v.name(), self.certificate.count(*v))).collect()
+    }
+
+    /// The verdict about every pixel, as an index into `counts`: uint8 of shape (height, width).
+    fn verdicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u8>>> {
+        let place = |of: &Verdict| Verdict::ALL.iter().position(|v| v == of).unwrap_or(0) as u8;
+        let all: Vec<u8> = self.certificate.verdicts.iter().map(place).collect();
+        let [width, height] = self.certificate.size.map(|side| side as usize);
+        let height = if all.is_empty() { 0 } else { height };
+        all.into_pyarray(py).reshape([height, width])
+    }
+
+    /// The first violations, in words.
+    fn violations(&self) -> Vec<String> {
+        let upload = self.certificate.upload.iter().map(ToString::to_string);
+        upload.chain(self.certificate.violations.iter().map(ToString::to_string)).collect()
+    }
+
+    fn __str__(&self) -> String {
+        self.certificate.to_string()
+    }
+}
+
+/// Renders a view with one ray for each pixel, records it, and judges it.
+pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judged> {
+    let Some(opened) = device::device(Backend::Gpu)? else {
+        return Err(Fault::Device(GpuError::NoAdapter.to_string()));
+    };
+    let (headless, view) = (&opened.headless, look.view());
+    let settings = look.settings.by_primary_rays();
+    let decide = || if stop.is_wanted() { Decision::Stop } else { Decision::GoOn };
+    let plan = |choice| headless.plan_record(scene, &view, choice, 0);
+    let record = |plan: &RenderPlan| {
+        plan.check(&headless.device().limits(), None)?;
+        let watch = &mut |_: &UploadProgress| decide();
+        let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
+        headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| decide())
+    };
+    let tried =
+        with_retries(AccelChoice::Auto, plan, |_| {}, |plan| Ok::<_, GpuError>(record(plan)));
+    let recording = tried.and_then(|done| done)?;
+    let checker = Checker::new(scene).map_err(Fault::input)?;
+    let certificate = checker.certify(&recording);
+    Ok(Judged { certificate, adapter: headless.adapter_info().name.clone() })
+}

@@ -1,0 +1,116 @@
+//! Reads files: as a whole, or frame by frame.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
+use pyo3::prelude::*;
+
+use crate::fault::{Fault, Outcome};
+use crate::scene::Given;
+use crate::scene_text::SceneText;
+use crate::spheres::SphereData;
+use crate::worker;
+
+/// A file of spheres, perhaps with several frames, of which one at a time is read.
+#[pyclass(frozen, module = "pinhole._pinhole")]
+pub(crate) struct FileData {
+    path: String,
+    format: &'static Format,
+    options: Options,
+    /// The frames, if files of this format can have several.
+    frames: Option<Mutex<Trajectory>>,
+    count: usize,
+    problem: Option<String>,
+}
+
+#[pymethods]
+impl FileData {
+    /// Opens a file, and finds its frames.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        path: String,
+        format: Option<&str>,
+        radius: Option<f64>,
+        topology: Option<PathBuf>,
+        columns: Vec<String>,
+    ) -> PyResult<Self> {
+        Ok(worker::run(py, None, move |_| {
+            let format = format_of(&path, format)?;
+            let mut options = Options::default().with_format(format).with_columns(columns);
+            (options.radius, options.topology) = (radius, topology);
+            format.check(&options).map_err(Fault::input)?;
+            let fault = |error: LoadError| Fault::reading(&path, &error);
+            let is_regular = PathBuf::from(&path).is_file();
+            let found = (format.has_frames() && is_regular)
+                .then(|| Trajectory::open(&path, &options))
+                .transpose()
+                .map_err(fault)?;
+            let count = found.as_ref().map_or(1, Trajectory::len);
+            let problem = found.as_ref().and_then(Trajectory::problem).map(ToString::to_string);
+            Ok(Self { path, format, options, frames: found.map(Mutex::new), count, problem })
+        })?)
+    }
+
+    /// The number of complete frames.
+    fn __len__(&self) -> usize {
+        self.count
+    }
+
+    /// What is wrong after the last complete frame, if anything is.
+    #[getter]
+    fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// Reads a frame, counted from 0.
+    fn frame(&self, py: Python<'_>, index: usize, text: SceneText) -> PyResult<SphereData> {
+        Ok(worker::run(py, None, |_| {
+            let mut loaded = self.read(index)?;
+            for note in &mut loaded.notes {
+                *note = format!("{}: {note}", self.path);
+            }
+            let given = Given { colors: None, radii: self.options.radius.is_some() };
+            SphereData::of_loaded(loaded, &text, given, self.format.z_is_up)
+                .map_err(|fault| self.in_file(fault))
+        })?)
+    }
+}
+
+impl FileData {
+    fn read(&self, index: usize) -> Outcome<Loaded> {
+        let read = match &self.frames {
+            Some(frames) => frames.lock().unwrap_or_else(PoisonError::into_inner).frame(index),
+            None => load::open(&self.path, &self.options),
+        };
+        read.map_err(|error| Fault::reading(&self.path, &error))
+    }
+
+    /// Adds the file's name to what is wrong with its spheres.
+    fn in_file(&self, fault: Fault) -> Fault {
+        match fault {
+            Fault::Input(message) => Fault::Input(format!("{}: {message}", self.path)),
+            other => other,
+        }
+    }
+}
+
+/// The format of a name, or that of a file.
+fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
+    let names = || load::FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ");
+    match name {
+        Some(name) => Format::of_name(name).ok_or_else(|| {
+            Fault::Input(format!("format is {name:?}; the formats are {}", names()))
+        }),
+        None => {
+            let found = Format::of_path(path.as_ref());
+            let found =
+                found.map_err(|error| Fault::File(format!("{path}: cannot be read: {error}")))?;
+            found.ok_or_else(|| {
+                let error = LoadError::UnknownFormat { formats: names() };
+                Fault::Input(format!("{path}: {error}"))
+            })
+        }
+    }
+}
