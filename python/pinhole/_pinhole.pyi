@@ -7,6 +7,8 @@ import numpy.typing as npt
 
 __version__: str
 
+def panic_for_tests(index: int) -> int: ...
+
 _Array = npt.NDArray[Any]
 _Text = tuple[str, list[str]]
 _Column = tuple[list[str], _Array] | _Array

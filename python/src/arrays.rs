@@ -4,7 +4,6 @@ use numpy::ndarray::{ArrayView1, ArrayView2};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pinhole::{LinearRgb, SphereArray};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 use crate::fault::{Fault, Outcome};
 
@@ -60,21 +59,18 @@ impl Centers<'_> {
     }
 }
 
-/// Spheres of one radius.
-fn all<T: Copy + Send + Sync>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
+/// Spheres of one radius. The GIL is held, so that nobody changes the array meanwhile.
+fn all<T: Copy>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
     match centers.as_slice() {
         Some(numbers) => {
-            numbers.as_chunks::<3>().0.par_iter().map(|[x, y, z]| [*x, *y, *z, radius]).collect()
+            numbers.as_chunks::<3>().0.iter().map(|[x, y, z]| [*x, *y, *z, radius]).collect()
         }
         None => centers.rows().into_iter().map(|c| [c[0], c[1], c[2], radius]).collect(),
     }
 }
 
 /// Spheres with radii of their own.
-fn each<T: Copy + Send + Sync>(
-    centers: ArrayView2<'_, T>,
-    radii: ArrayView1<'_, T>,
-) -> Vec<[T; 4]> {
+fn each<T: Copy>(centers: ArrayView2<'_, T>, radii: ArrayView1<'_, T>) -> Vec<[T; 4]> {
     let rows = centers.rows().into_iter().zip(radii);
     rows.map(|(center, radius)| [center[0], center[1], center[2], *radius]).collect()
 }

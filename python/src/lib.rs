@@ -16,6 +16,12 @@ mod worker;
 
 use pyo3::prelude::*;
 
+/// Panics in work, so that tests see what becomes of it.
+#[pyfunction]
+fn panic_for_tests(py: Python<'_>, index: usize) -> PyResult<u8> {
+    Ok(worker::run(py, None, |_| Ok([1, 2, 3][index]))?)
+}
+
 /// The compiled half of `pinhole`, which is not for use by itself.
 #[pymodule]
 fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -26,5 +32,6 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
     module.add_class::<spheres::SphereData>()?;
+    module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -14,6 +15,7 @@ import pytest
 from conftest import cloud
 
 import pinhole as ph
+from pinhole import _pinhole
 
 ALL = ["alpha", "depth", "normal", "position", "albedo", "id", "samples", "variance"]
 
@@ -229,7 +231,48 @@ def test_updates_give_the_picture_of_new_spheres():
 
 
 def test_panics_become_exceptions_without_a_message_on_the_terminal(capfd):
-    # Nothing that a user can pass panics, so what is tested is that the hook is silent.
-    with pytest.raises(ph.InputError):
-        ph.Spheres([[0, 0, 0]], 1.0).render(size=(100_000, 100_000), backend="cpu")
-    assert "panicked" not in capfd.readouterr().err
+    assert _pinhole.panic_for_tests(0) == 1
+    with pytest.raises(ph.InternalError, match="please report it: index out of bounds") as error:
+        _pinhole.panic_for_tests(3)
+    assert isinstance(error.value, RuntimeError)
+    assert capfd.readouterr().err == ""
+
+
+def test_a_picture_that_does_not_fit_is_refused():
+    with pytest.raises(ph.Error, match="memory"):
+        ph.Spheres([[0, 0, 0]], 1.0).render(size=(4_000_000, 4_000_000), backend="cpu")
+
+
+WITHOUT_DRIVER = """
+import pinhole as ph
+spheres = ph.Spheres([[0, 0, 0]], 1.0)
+assert spheres.render(size=(16, 12)).adapter is None
+for work in (lambda: spheres.render(size=(16, 12), backend="gpu"), spheres.verify):
+    try:
+        work()
+    except ph.DeviceError as error:
+        assert "no Vulkan, Metal or DX12 adapter was found" in str(error), error
+    else:
+        raise AssertionError
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the variable is that of the Vulkan loader of Linux")
+def test_without_a_driver_the_cpu_renders():
+    without = {**os.environ, "VK_DRIVER_FILES": "/nonexistent", "VK_ICD_FILENAMES": "/nonexistent"}
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_DRIVER], env=without, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def spawned(seed):
+    """Renders in another process."""
+    return ph.Spheres(cloud(50, seed), 0.1).render(size=(32, 24), samples=1).rgb8
+
+
+def test_spawned_processes_render():
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        found = pool.map(spawned, [1, 2])
+    for seed, picture in zip([1, 2], found):
+        assert np.array_equal(picture, spawned(seed))
