@@ -1,12 +1,11 @@
 //! Renders a look of a scene: on the shared device, where the scene stays between pictures, or on the CPU.
 
-use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pinhole::accel::AccelChoice;
-use pinhole::cpu::{self, RenderError, SearchTree};
-use pinhole::gpu::{Decision, GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
-use pinhole::render::Integrator;
+use pinhole::cpu::{self, RenderError, SearchStructure};
+use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
+use pinhole::render::{Decision, Integrator, Progress};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
 
@@ -97,7 +96,7 @@ impl OnDevice {
         let plan = |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, 20);
         let work = |buffers: &SceneBuffers| {
             let pictures = views.iter().enumerate().map(|(done, view)| {
-                let watch = &mut |progress: &pinhole::gpu::Progress| {
+                let watch = &mut |progress: &Progress| {
                     stop.report((done as f64 + progress.part) / views.len() as f64);
                     decision(stop)
                 };
@@ -164,15 +163,15 @@ fn decision(stop: &Stop) -> Decision {
 }
 
 fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
-    let tree = SearchTree::new(scene).map_err(Fault::input)?;
+    let structure = SearchStructure::new(scene).map_err(Fault::input)?;
     let views = look.views();
     let pictures = views.iter().enumerate().map(|(done, view)| {
-        let watch = |part: f64| {
-            stop.report((done as f64 + part) / views.len() as f64);
-            if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let watch = &mut |progress: &Progress| {
+            stop.report((done as f64 + progress.part) / views.len() as f64);
+            decision(stop)
         };
-        let picture = cpu::render_watched(&tree, view, &look.settings, layers, &watch);
-        picture.map_err(|error| match error {
+        let picture = cpu::render_watched(&structure, view, &look.settings, layers, watch);
+        picture.map(|picture| picture.image).map_err(|error| match error {
             RenderError::Stopped => Fault::Stopped,
             error => Fault::input(error),
         })
