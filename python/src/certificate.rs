@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::device::{self, Backend};
 use crate::fault::{Fault, Outcome};
 use crate::look::Look;
+use crate::memory;
 use crate::worker::Stop;
 
 /// The result of the checker.
@@ -68,7 +69,7 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judge
     let decide = || if stop.is_wanted() { Decision::Stop } else { Decision::GoOn };
     let plan = |choice| headless.plan_record(scene, &view, choice, 0);
     let record = |plan: &RenderPlan| {
-        plan.check(&headless.device().limits(), None)?;
+        plan.check(&headless.device().limits(), memory::available())?;
         let watch = &mut |_: &UploadProgress| decide();
         let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
         headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| decide())

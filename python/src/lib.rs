@@ -1,6 +1,11 @@
 //! The compiled half of the Python package `pinhole`: arrays, files, rendering and verification. `python/pinhole/` is the
 //! other half, which checks arguments and writes settings as the text of a scene file.
 
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "functions of Python own what PyO3 makes of their arguments"
+)]
+
 mod arrays;
 mod certificate;
 mod device;
@@ -8,6 +13,7 @@ mod fault;
 mod files;
 mod image;
 mod look;
+mod memory;
 mod render;
 mod scene;
 mod scene_text;

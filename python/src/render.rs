@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pinhole::accel::AccelChoice;
-use pinhole::cpu::{self, RenderError, SearchStructure};
+use pinhole::cpu::{self, RenderError, SearchPlan};
 use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
 use pinhole::render::{Decision, Integrator, Progress};
 use pinhole::scene::SceneUpdate;
@@ -12,6 +12,7 @@ use pinhole::{Image, LayerSet, RenderSettings, Scene};
 use crate::device::{self, Backend, Opened};
 use crate::fault::{Fault, Outcome};
 use crate::look::Look;
+use crate::memory;
 use crate::worker::Stop;
 
 /// A scene on a device.
@@ -93,7 +94,9 @@ impl OnDevice {
         };
         let mut kept = slot.take().filter(fits);
         let views = look.views();
-        let plan = |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, 20);
+        let extra = memory::ENCODING_BYTES_PER_PIXEL;
+        let plan =
+            |choice| headless.plan(scene, &look.view(), &look.settings, layers, choice, extra);
         let work = |buffers: &SceneBuffers| {
             let pictures = views.iter().enumerate().map(|(done, view)| {
                 let watch = &mut |progress: &Progress| {
@@ -116,7 +119,7 @@ impl OnDevice {
                 drop(kept);
                 let copied = Mutex::new(None);
                 let copy_and_work = |plan: &RenderPlan| {
-                    plan.check(&headless.device().limits(), None)?;
+                    plan.check(&headless.device().limits(), memory::available())?;
                     let watch = &mut |_: &UploadProgress| decision(stop);
                     let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
                     let images = work(&buffers)?;
@@ -163,7 +166,9 @@ fn decision(stop: &Stop) -> Decision {
 }
 
 fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
-    let structure = SearchStructure::new(scene).map_err(Fault::input)?;
+    let plan = SearchPlan::new(scene);
+    memory::check_on_cpu(&plan, look, layers)?;
+    let structure = plan.build().map_err(Fault::input)?;
     let views = look.views();
     let pictures = views.iter().enumerate().map(|(done, view)| {
         let watch = &mut |progress: &Progress| {

@@ -238,9 +238,10 @@ def test_panics_become_exceptions_without_a_message_on_the_terminal(capfd):
     assert capfd.readouterr().err == ""
 
 
-def test_a_picture_that_does_not_fit_is_refused():
-    with pytest.raises(ph.Error, match="memory"):
-        ph.Spheres([[0, 0, 0]], 1.0).render(size=(4_000_000, 4_000_000), backend="cpu")
+@pytest.mark.parametrize("backend", ["auto", "cpu"])
+def test_a_picture_that_does_not_fit_is_refused(backend):
+    with pytest.raises(ph.Error, match="bytes of (host )?memory, but .* free; choose"):
+        ph.Spheres([[0, 0, 0]], 1.0).render(size=(1_000_000, 1_000_000), backend=backend)
 
 
 WITHOUT_DRIVER = """

@@ -78,6 +78,12 @@ impl<'a> SearchPlan<'a> {
         Self { scene, grid }
     }
 
+    /// The scene of the plan.
+    #[must_use]
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
     /// The most bytes that the structure needs while it is built, beside the scene.
     #[must_use]
     pub fn bytes(&self) -> u64 {

@@ -10,7 +10,7 @@ fn root() -> &'static Path {
 
 /// Markdown files: those at the top, and those in `cli`, `docs` and `shaders`.
 fn pages() -> Vec<PathBuf> {
-    let folders = ["", "cli", "docs", "shaders"];
+    let folders = ["", "cli", "docs", "python", "shaders"];
     let entries = folders.iter().flat_map(|folder| fs::read_dir(root().join(folder)).unwrap());
     let paths = entries.map(|entry| entry.unwrap().path());
     let mut pages: Vec<PathBuf> =
