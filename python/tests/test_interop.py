@@ -64,4 +64,4 @@ def test_matplotlib_shows_every_pixel():
 
     image = ph.Spheres([[0, 0, 0]], 1.0).render((30, 20), backend="cpu")
     shown = interop.imshow(image, Figure().subplots())
-    assert np.array_equal(shown.get_array(), image.rgb8) and shown.get_extent() == (0, 30, 20, 0)
+    assert np.array_equal(shown.get_array(), image.rgb8) and tuple(shown.get_extent()) == (0, 30, 20, 0)
