@@ -39,7 +39,7 @@ class Image:
                     f"this picture has no layer {name}; ask for it with render(layers=[{name!r}]); "
                     f"it has {', '.join(self.layers)}"
                 )
-            array.flags.writeable = False
+            array.setflags(write=False)
             self._arrays[name] = array
         return self._arrays[name]
 

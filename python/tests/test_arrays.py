@@ -22,7 +22,7 @@ def layouts(array):
     wide[::2, 1::2] = array
     reversed_ = np.ascontiguousarray(array[::-1])[::-1]
     read_only = array.copy()
-    read_only.flags.writeable = False
+    read_only.setflags(write=False)
     return [np.ascontiguousarray(array), np.asfortranarray(array), wide[::2, 1::2], reversed_, read_only]
 
 
