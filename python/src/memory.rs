@@ -25,11 +25,7 @@ pub(crate) fn available() -> Option<u64> {
 }
 
 /// Refuses a picture of the CPU for which there is not enough memory. That of a device is in its plan.
-pub(crate) fn check_on_cpu(
-    plan: &SearchPlan<'_>,
-    look: &Look,
-    layers: LayerSet,
-) -> Outcome<()> {
+pub(crate) fn check_on_cpu(plan: &SearchPlan<'_>, look: &Look, layers: LayerSet) -> Outcome<()> {
     let Some(available) = available() else { return Ok(()) };
     let views = if look.eyes.is_some() { 4 } else { 1 };
     let is_lit = !look.settings.integrator.is_primary();
