@@ -359,7 +359,7 @@ pub(super) struct BenchArgs {
     /// Choose the structure for this many pictures of the size [default: very many]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     pub(super) pictures: Option<u64>,
-    /// Also count on the CPU what some thousand of the rays do in each structure, beside what was expected of them
+    /// Also count on the CPU what up to 4096 of the rays do in each structure, beside what was expected of them
     #[arg(long)]
     pub(super) counts: bool,
     /// Measure the prices of this adapter on small generated scenes, and keep them: `render`, `plan` and `bench` then

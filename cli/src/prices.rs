@@ -179,7 +179,9 @@ pub(super) fn keep(
     };
     // A file that is of no use is replaced.
     let mut adapters = read(path).ok().flatten().map_or_else(Vec::new, |kept| kept.adapters);
-    adapters.retain(|other| other.name != kept.name || other.backend != kept.backend);
+    let names =
+        |of: &KeptAdapter| [&of.name, &of.backend, &of.driver, &of.driver_info].map(String::clone);
+    adapters.retain(|other| names(other) != names(&kept));
     adapters.push(kept);
     let kept = Kept { version: VERSION, adapters };
     let text = serde_json::to_string_pretty(&kept).map_err(|error| error.to_string())? + "\n";

@@ -20,6 +20,8 @@ struct Uploaded {
     opened: Arc<Opened>,
     buffers: SceneBuffers,
     for_light: Light,
+    /// The number of updates that the scene had.
+    version: u64,
 }
 
 /// Which settings a scene was copied for, because structures differ.
@@ -58,7 +60,7 @@ impl OnDevice {
     /// Renders the scene, on a new device if the shared one was lost.
     pub(crate) fn render(
         &self,
-        scene: &Scene,
+        (scene, version): (&Scene, u64),
         look: &Look,
         layers: LayerSet,
         backend: Backend,
@@ -67,13 +69,13 @@ impl OnDevice {
         let Some(opened) = device::device(backend)? else {
             return on_cpu(scene, look, layers, stop);
         };
-        match self.on_gpu(&opened, scene, look, layers, stop) {
+        match self.on_gpu(&opened, (scene, version), look, layers, stop) {
             Err(Fault::Lost(_)) => {
                 device::forget(&opened);
                 let Some(again) = device::device(backend)? else {
                     return on_cpu(scene, look, layers, stop);
                 };
-                self.on_gpu(&again, scene, look, layers, stop)
+                self.on_gpu(&again, (scene, version), look, layers, stop)
             }
             done => done,
         }
@@ -82,7 +84,7 @@ impl OnDevice {
     fn on_gpu(
         &self,
         opened: &Arc<Opened>,
-        scene: &Scene,
+        (scene, version): (&Scene, u64),
         look: &Look,
         layers: LayerSet,
         stop: &Stop,
@@ -90,7 +92,9 @@ impl OnDevice {
         let (headless, light) = (&opened.headless, Light::of(&look.settings));
         let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |found: &Uploaded| {
-            Arc::ptr_eq(&found.opened, opened) && [Light::None, found.for_light].contains(&light)
+            Arc::ptr_eq(&found.opened, opened)
+                && [Light::None, found.for_light].contains(&light)
+                && found.version == version
         };
         let mut kept = slot.take().filter(fits);
         let views = look.views();
@@ -138,6 +142,7 @@ impl OnDevice {
                     opened: Arc::clone(opened),
                     buffers,
                     for_light: light,
+                    version,
                 });
                 done
             }
@@ -150,11 +155,15 @@ impl OnDevice {
 
     /// Brings what the device has up to date with a scene to which an update was applied. What cannot be updated is
     /// copied again when it is needed.
-    pub(crate) fn update(&self, scene: &Scene, update: &SceneUpdate<'_>) {
+    pub(crate) fn update(&self, (scene, version): (&Scene, u64), update: &SceneUpdate<'_>) {
         let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(uploaded) = slot.as_mut() {
+            // Of two updates at the same time, the later may come first.
+            let is_next = uploaded.version + 1 == version;
             let Uploaded { opened, buffers, .. } = uploaded;
-            if opened.headless.update(buffers, scene, update).is_err() {
+            if is_next && opened.headless.update(buffers, scene, update).is_ok() {
+                uploaded.version = version;
+            } else {
                 *slot = None;
             }
         }

@@ -1,6 +1,6 @@
 //! Spheres that Python holds: a checked scene, and what of it a device has.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -38,8 +38,8 @@ pub(crate) struct SphereData {
     z_is_up: bool,
     notes: Vec<String>,
     pub(crate) on_device: OnDevice,
-    /// Whether the scene has changed since it was made of what was loaded.
-    is_updated: AtomicBool,
+    /// The number of updates of the scene since it was made of what was loaded. It changes while the scene is locked.
+    updates: AtomicU64,
 }
 
 /// The values of a column.
@@ -71,7 +71,7 @@ impl SphereData {
             z_is_up,
             notes,
             on_device: OnDevice::default(),
-            is_updated: AtomicBool::new(false),
+            updates: AtomicU64::new(0),
         })
     }
 
@@ -82,6 +82,12 @@ impl SphereData {
     /// The scene as it is now.
     pub(crate) fn scene(&self) -> Arc<Scene> {
         Arc::clone(&self.lock())
+    }
+
+    /// The scene as it is now, and the number of its updates.
+    fn versioned(&self) -> (Arc<Scene>, u64) {
+        let scene = self.lock();
+        (Arc::clone(&scene), self.updates.load(Ordering::Acquire))
     }
 
     /// What the text of a scene file says about a picture of the scene.
@@ -122,7 +128,7 @@ impl SphereData {
 
     /// The same data with other settings.
     fn restyled(&self, py: Python<'_>, text: SceneText) -> PyResult<Self> {
-        if self.is_updated.load(Ordering::Acquire) {
+        if self.updates.load(Ordering::Acquire) > 0 {
             return Err(Fault::Input(
                 "these spheres were updated; make new Spheres(...) with other settings".to_owned(),
             )
@@ -249,10 +255,11 @@ impl SphereData {
         let layers = layers.iter().map(|name| name.parse::<Layer>());
         let layers = layers.collect::<Result<LayerSet, _>>().map_err(Fault::input)?;
         Ok(worker::run(py, progress.as_ref(), |stop| {
-            let scene = self.scene();
+            let (scene, version) = self.versioned();
             let mut look = self.look(&scene, &text)?;
+            let layers_of_look = look.layers(layers);
             let rendered =
-                self.on_device.render(&scene, &look, look.layers(layers), backend, stop)?;
+                self.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
             look.notes.extend(rendered.warning);
             Ok(Picture {
                 image: rendered.image,
@@ -276,36 +283,37 @@ impl SphereData {
         color: Option<PyReadonlyArray2<'_, u8>>,
     ) -> PyResult<()> {
         let not_in_order = || Fault::Internal("an array is not contiguous".to_owned());
-        let (mut narrow, mut wide): (&[[f32; 3]], &[[f64; 3]]) = (&[], &[]);
+        // Copies, because other threads of Python may write into arrays while this one does not hold the GIL.
+        let (mut narrow, mut wide): (Vec<[f32; 3]>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
         match &positions {
             Some(Centers::Narrow(centers)) => {
-                narrow = centers.as_slice().map_err(|_| not_in_order())?.as_chunks::<3>().0;
+                let centers = centers.as_slice().map_err(|_| not_in_order())?;
+                narrow = centers.as_chunks::<3>().0.to_vec();
             }
             Some(Centers::Wide(centers)) => {
-                wide = centers.as_slice().map_err(|_| not_in_order())?.as_chunks::<3>().0;
+                let centers = centers.as_slice().map_err(|_| not_in_order())?;
+                wide = centers.as_chunks::<3>().0.to_vec();
             }
             None => {}
         }
         let centers = positions.as_ref().map(|centers| match centers {
-            Centers::Narrow(_) => NewCenters::F32(narrow),
-            Centers::Wide(_) => NewCenters::F64(wide),
+            Centers::Narrow(_) => NewCenters::F32(&narrow),
+            Centers::Wide(_) => NewCenters::F64(&wide),
         });
         let radii = radius.as_ref().map(|radii| radii.as_slice()).transpose();
+        let radii = radii.map_err(|_| not_in_order())?.map(<[f32]>::to_vec);
         let colors = color.as_ref().map(|colors| colors.as_slice()).transpose();
-        let colors = colors.map_err(|_| not_in_order())?.map(|bytes| bytes.as_chunks::<4>().0);
-        let update = SceneUpdate {
-            first,
-            centers,
-            radii: radii.map_err(|_| not_in_order())?,
-            colors: colors.map(NewColors::Rgba8),
-        };
+        let colors = colors.map_err(|_| not_in_order())?.map(|all| all.as_chunks::<4>().0.to_vec());
+        let colors = colors.as_deref().map(NewColors::Rgba8);
+        let update = SceneUpdate { first, centers, radii: radii.as_deref(), colors };
         Ok(worker::run(py, None, |_| {
-            let mut scene = self.lock();
-            let shared = Arc::make_mut(&mut scene);
-            shared.apply(&update).map_err(Fault::input)?;
-            self.is_updated.store(true, Ordering::Release);
-            let scene = Arc::clone(&scene);
-            self.on_device.update(&scene, &update);
+            let mut locked = self.lock();
+            Arc::make_mut(&mut locked).apply(&update).map_err(Fault::input)?;
+            let version = 1 + self.updates.fetch_add(1, Ordering::AcqRel);
+            let scene = Arc::clone(&locked);
+            // A render may keep the device for long, and others ask for the scene meanwhile.
+            drop(locked);
+            self.on_device.update((&scene, version), &update);
             Ok(())
         })?)
     }

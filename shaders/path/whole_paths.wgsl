@@ -63,8 +63,8 @@ fn whole_paths(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
             sample++;
             path = begin_path(in_film, seed, sample);
         }
-        // With the loops over lights, and the search for an emitter.
-        if (sample == end || !spend(33u + 2u * lighting.light_count)) {
+        // With the loops over lights, and two searches for emitters. Twin: `loops_of_path` in passes/lit/lighting.rs.
+        if (sample == end || !spend(65u + 2u * lighting.light_count)) {
             break;
         }
         if (has(path.flags, PATH_ALIVE)) {

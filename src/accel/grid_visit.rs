@@ -2,17 +2,19 @@
 //!
 //! # Why it leaves out no sphere
 //! The terms are those of `wide_tree_visit.rs`: if `intersect` of `src/cpu/sphere.rs` accepts the distance t, the point
-//! of the ray at t, or one before it, is within r + w of the centre, where w = (128 u + 8 β) D bounds all errors of that
-//! test and of the walk. [`GridRay::new`] accepts only rays for which twice that is at most a quarter of the grid's margin,
-//! which is at least 2⁻¹⁸ of the longest side S of the grid ([`LEAST_MARGIN`]). So:
+//! of the ray at t, or one before it, is within w of the sphere's surface, where w = (128 u + 8 β) D bounds all errors of
+//! that test and of the walk: the test computes a point of the surface, or the quotient of its third case, which is no
+//! earlier than the entry into the widened sphere or the origin, if that lies in it and not in the sphere. `Grid::ray`
+//! accepts only rays for which twice w is at most a quarter of the grid's margin, which is more than 2⁻¹⁹ of the longest
+//! side of all cells ([`LEAST_MARGIN`]): 2⁻¹⁸ of the scene's diagonal, where cells reach less than twice as far. So:
 //!
 //! 1. *Cells.* The walk enters every cell that the ray crosses, up to a rounding of less than 8 u D. The sphere is listed in
-//!    the cell of that point and in all cells within its margin, because lists hold all spheres that come within the margin
-//!    of the cell. A ray along the plane between two cells may be on the far side of it by rounding; as no cell is left
+//!    the cell of that point and in all cells within its margin, because lists hold all spheres whose surfaces come within
+//!    the margin of the cell. A ray along the plane between two cells may be on the far side of it by rounding; as no cell is left
 //!    before it is entered, such a ray goes to the next cell at once.
 //! 2. *Balls.* The budget of `ball.rs` is the same but for the ray's position in the cell, its direction and the length of
 //!    its part, which are computed in f64 and rounded to f32: each of the roundings moves the part by less than 2⁻²⁴ of two
-//!    cells' sides, together less than 2⁻²¹ of a side, an eighth of the margin.
+//!    cells' sides, together less than 2⁻²¹ of a side, a quarter of the margin.
 //! 3. *The end.* A walk ends behind a cell that the ray leaves at or after the limit. Spheres that the ray hits at the limit
 //!    are in the lists of the cell in which the limit lies.
 
@@ -22,7 +24,7 @@ use super::ball::{BALLS_PER_VECTOR, PartInCell};
 use super::grid::{Grid, LAST, word};
 
 /// The margin of every grid, as a part of its longest side, is at least this.
-const LEAST_MARGIN: f64 = 1.0 / (1 << 18) as f64;
+const LEAST_MARGIN: f64 = 1.0 / (1 << 19) as f64;
 
 /// The smallest magnitude of a direction's component; smaller ones are replaced by it, as in `wide_tree_visit.rs`.
 const SMALLEST: f64 = 1e-18;

@@ -88,7 +88,8 @@ pub fn render<'a>(
 /// If a picture is finished within a batch, some rows have more samples than others, which the layer of samples tells.
 ///
 /// # Errors
-/// Returns an error as [`render`] does, or if `watch` ends the work before every pixel has a sample.
+/// Returns an error as [`render`] does, if `watch` stops the work, or if it finishes the picture before every pixel has a
+/// sample.
 pub fn render_watched<'a>(
     search: impl Into<Search<'a>>,
     view: &View<'_>,

@@ -37,7 +37,7 @@ impl<'a> From<&'a SearchStructure<'a>> for Search<'a> {
 const FEW: usize = 16;
 
 /// A structure over the spheres of a scene, which makes the CPU reference fast and changes none of its pictures: a grid
-/// or an 8-wide tree, as on a device for many pictures.
+/// with balls where all spheres are opaque and a plan for many pictures chooses a grid, and otherwise an 8-wide tree.
 #[derive(Debug)]
 pub struct SearchStructure<'a> {
     scene: &'a Scene,
@@ -69,7 +69,8 @@ impl<'a> SearchPlan<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let spheres = scene.spheres();
         let is_grid = |structure| matches!(structure, Structure::Grid(_));
-        let grid = (spheres.len() > FEW)
+        // Of equal spheres, a long list of a grid has only the first, but another may be the one that hides a light.
+        let grid = (spheres.len() > FEW && scene.is_opaque())
             .then(|| AccelPlan::new(spheres, AccelChoice::Auto, u64::MAX))
             .filter(|plan| is_grid(plan.structure))
             .map(|_| AccelPlan::of(spheres, Structure::Grid(ListLayout::Balls), u64::MAX))

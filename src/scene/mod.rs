@@ -212,6 +212,11 @@ impl Scene {
         self.added
     }
 
+    /// Whether all spheres are opaque.
+    pub(crate) fn is_opaque(&self) -> bool {
+        self.appearance.is_opaque()
+    }
+
     /// A scene of only the opaque spheres in the same frame; `None` if all spheres are opaque.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque(&self) -> Option<Self> {

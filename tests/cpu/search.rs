@@ -1,4 +1,4 @@
-//! Pictures with a search tree against those of testing every sphere: equal to the bit.
+//! Pictures with a structure against those of testing every sphere: equal to the bit.
 
 use fastrand::Rng;
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose};
@@ -29,7 +29,7 @@ fn point(random: &mut Rng) -> DVec3 {
     DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0))
 }
 
-/// The scene with so many more spheres that there is a tree.
+/// The scene with so many more spheres that there is a structure.
 fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
     let mut spheres: Vec<Sphere> = (0..scene.len() as u32)
         .map(|id| {
@@ -150,4 +150,36 @@ fn studios_and_primary_rays() {
         assert_same(&scene, &view, &studio(&mut random, size), &name);
     }
     assert!(shown > 150 * 60, "{shown}");
+}
+
+/// Of many equal spheres only some hide light, whichever comes first; and many opaque ones, for which there is a grid.
+#[test]
+fn many_equal_spheres_hide_light_by_their_own_opacity() {
+    let mut random = Rng::with_seed(43);
+    for opaque_from in [0, 1, 60] {
+        let mut spheres: Vec<Sphere> = (0..60)
+            .map(|i| {
+                let opacity = if i < opaque_from { 0.5 } else { 1.0 };
+                Sphere::new([0.0, 0.4, 0.0], 0.3, color(&mut random)).with_opacity(opacity)
+            })
+            .collect();
+        spheres.extend(
+            (0..400).map(|_| Sphere::new(point(&mut random).to_array(), 0.05, color(&mut random))),
+        );
+        let scene = Scene::new(&spheres).unwrap();
+        let pose = Pose::looking_at([0.2, 2.5, 3.0], DVec3::ZERO, DVec3::Y).unwrap();
+        let camera = PinholeCamera::with_vertical_fov(pose, 0.8, 4.0 / 3.0).unwrap();
+        let view = View::new(&camera, Film::new(40, 30).unwrap());
+        let mut settings = RenderSettings {
+            integrator: Integrator::Studio(Studio {
+                has_shadows: true,
+                occlusion: Some(Occlusion { radius: None, samples: 4 }),
+                ..Studio::default()
+            }),
+            lights: Light::key_and_fill().to_vec(),
+            ..RenderSettings::default()
+        };
+        settings.sampling.samples = 2;
+        assert_same(&scene, &view, &settings, &format!("opaque from {opaque_from}"));
+    }
 }

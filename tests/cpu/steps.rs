@@ -11,7 +11,7 @@ use crate::support::random_light;
 const FILM: [u32; 2] = [37, 29];
 
 /// A picture for which a batch of samples takes a while.
-const TALL: [u32; 2] = [37, 401];
+const TALL: [u32; 2] = [37, 1601];
 
 /// Calls `test` with a picture of paths and one of a studio.
 fn with_lit(samples: u32, test: impl Fn(&SearchStructure<'_>, &View<'_>, &RenderSettings)) {

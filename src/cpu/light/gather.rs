@@ -28,9 +28,9 @@ impl SampledPicture<'_> {
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
         let mut sums = FilmSums::new(film.width(), film.height())?;
-        let mut pace = Pace::new();
-        self.data_layers(&mut image, &mut pace, watch)?;
-        self.gather(&mut sums, &mut pace, watch)?;
+        // A sample may take many times as long as what the layers of data need.
+        self.data_layers(&mut image, &mut Pace::new(), watch)?;
+        self.gather(&mut sums, &mut Pace::new(), watch)?;
         sums.write(&mut image);
         let (samples, totals) = (sums.samples(), sums.totals());
         drop(sums);

@@ -158,6 +158,18 @@ impl LightingData {
         })
     }
 
+    /// Number of iterations of loops that a path takes at most apart from searching, as `shaders/path/whole_paths.wgsl`
+    /// counts them; 0 in a studio.
+    pub(super) fn loops_of_path(&self) -> u32 {
+        match self.mode {
+            Mode::Path(..) => {
+                let of_surface = self.parameters.light_count.saturating_mul(2).saturating_add(65);
+                (1 + self.max_surfaces).saturating_mul(of_surface)
+            }
+            Mode::Studio => 0,
+        }
+    }
+
     /// Number of rays that a sample takes at most, in a studio of opaque spheres or along a path.
     pub(super) fn rays_of_sample(&self) -> u32 {
         if let Mode::Path(..) = self.mode {

@@ -70,6 +70,7 @@ impl LitScene<'_> {
             one_pass: lighting
                 .one_pass(self.all.bricks().len())
                 .filter(|pass| !pass.is_paths() || self.all.shape().paths_in_one_pass)
+                .filter(|_| lighting.loops_of_path() <= round::MOST_LOOPS)
                 .filter(|_| one_pass::one_pass_fits(self.all.structure(), limits))
                 .filter(|_| {
                     let rays = lighting.rays_of_sample();

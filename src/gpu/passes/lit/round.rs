@@ -106,6 +106,10 @@ pub(in crate::gpu) const AT_ONCE: u32 = 32;
 /// Number of samples that an invocation of the pass over whole samples takes.
 const SAMPLES_AT_ONCE: u32 = 8;
 
+/// Number of iterations of its loops apart from searching, which leaves the larger part of the limit of software devices
+/// to searching.
+pub(super) const MOST_LOOPS: u32 = 2500;
+
 impl<'a> Round<'a> {
     /// The dispatches of some samples, which are traced together.
     pub(in crate::gpu) fn steps(&self, samples: Range<u32>) -> Result<Vec<Step<'a>>, GpuError> {
@@ -141,7 +145,10 @@ impl<'a> Round<'a> {
     fn one_pass(&self, pass: &'a Pass, dispatch: DispatchParameters) -> Vec<Step<'a>> {
         let brick = &self.scene.bricks()[0];
         let rays = self.lighting.rays_of_sample();
-        let at_once = (self.scene.rays_at_once(SAMPLES_AT_ONCE * rays) / rays).max(1);
+        // In a studio there are no such loops.
+        let by_loops = MOST_LOOPS / self.lighting.loops_of_path().max(1);
+        let most = SAMPLES_AT_ONCE.min(by_loops).max(1);
+        let at_once = (self.scene.rays_at_once(most * rays) / rays).max(1);
         let starts = (0..dispatch.count).step_by(at_once as usize);
         starts
             .map(|start| {
