@@ -9,7 +9,7 @@
 
 from ._camera import Camera
 from ._certificate import Certificate
-from ._errors import DeviceError, Error, FileError, InputError, InternalError, Note
+from ._errors import DeviceError, Error, FileError, InputError, InternalError, Note, PackageError
 from ._files import Trajectory, read
 from ._image import Image
 from ._movie import movie
@@ -26,6 +26,7 @@ __all__ = [
     "InputError",
     "InternalError",
     "Note",
+    "PackageError",
     "Spheres",
     "Trajectory",
     "__version__",

@@ -17,6 +17,10 @@ class DeviceError(Error, RuntimeError):
     """A device cannot do the work."""
 
 
+class PackageError(Error, ImportError):
+    """A package that is not installed is needed."""
+
+
 class InternalError(Error, RuntimeError):
     """A defect of pinhole."""
 
@@ -25,5 +29,5 @@ class Note(UserWarning):
     """Something that the user should know and that is not an error."""
 
 
-for _class in (Error, InputError, FileError, DeviceError, InternalError, Note):
+for _class in (Error, InputError, FileError, DeviceError, InternalError, Note, PackageError):
     _class.__module__ = "pinhole"

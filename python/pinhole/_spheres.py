@@ -6,7 +6,7 @@ import json
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,14 @@ import numpy.typing as npt
 from . import _arrays, _progress, _settings
 from ._camera import Camera
 from ._certificate import Certificate
-from ._errors import InputError, Note
+from ._errors import InputError, Note, PackageError
 from ._image import Image
 from ._movie import movie
+from ._orbit import rotation
 from ._pinhole import SphereData
+
+if TYPE_CHECKING:
+    from ._view import View
 
 Array = npt.NDArray[Any]
 
@@ -237,6 +241,29 @@ class Spheres:
         warn(picture.notes)
         return Image(picture)
 
+    def view(
+        self,
+        size: tuple[int, int] = (640, 480),
+        *,
+        style: str | None = None,
+        camera: Camera | str | Mapping[str, Any] | None = None,
+        **settings: Any,
+    ) -> View:
+        """A view in a notebook, which is turned by dragging, zoomed by the wheel, and in which a click picks a sphere.
+
+        It needs the package anywidget: ``pip install pinhole-rt[notebook]``. ``size`` is in the pixels of the page, of which
+        screens may have several for each. Further arguments are those of ``render``.
+        """
+        try:
+            from ._view import View
+        except ModuleNotFoundError as error:
+            if (error.name or "").split(".")[0] not in ("anywidget", "ipywidgets", "traitlets"):
+                raise
+            raise PackageError(
+                f"views need the package {error.name}: pip install 'pinhole-rt[notebook]'; render(...) needs none"
+            ) from None
+        return View(self, size, camera, {"style": style, **settings})
+
     def verify(self, size: tuple[int, int] | None = None, **settings: Any) -> Certificate:
         """Renders the view with one ray for each pixel on the device, and decides pixel by pixel whether a conforming device
         may have made that picture. Light is not checked. Arguments are those of ``render``.
@@ -273,7 +300,7 @@ class Spheres:
         rest = {key: of for key, of in placed.items() if key not in ("eye", "look_at", "direction", "up")}
 
         def turned(number: int) -> dict[str, Any]:
-            turn = _rotation(up, 2 * np.pi * number / frames)
+            turn = rotation(up, 2 * np.pi * number / frames)
             place = {"eye": middle + turn @ (eye - middle), "direction": turn @ look, "up": turn @ top}
             return {kind: {**place, **rest}}
 
@@ -301,14 +328,6 @@ class Spheres:
                 colors = np.concatenate([colors, np.full((count, 1), 255, np.uint8)], axis=1)
             colors = np.ascontiguousarray(colors)
         self._data.update(first, centers, radii, colors)
-
-
-def _rotation(axis: Array, angle: float) -> Array:
-    """The matrix that turns by an angle about an axis, counter-clockwise seen from its end."""
-    x, y, z = axis / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    turn: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    return turn
 
 
 def _is_triple(color: Any, count: int) -> bool:

@@ -1,0 +1,252 @@
+"""Renders the newest of the pictures that are asked for, on a thread: quick ones while a camera moves, and then one that
+gets better by and by.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _settings
+from ._camera import Camera
+from ._errors import Error
+from ._image import Image
+
+if TYPE_CHECKING:
+    from ._spheres import Spheres
+
+#: Seconds without a movement after which the picture is refined.
+STILL_AFTER = 0.25
+
+#: Seconds that a quick picture may take. Slower ones get fewer pixels.
+QUICK = 0.06
+
+#: The smallest and the largest part of the whole sides that quick pictures have, and that of the first one.
+PARTS = (0.125, 1.0, 0.5)
+
+#: How many times as many samples each picture has as the one before it, while pictures are refined.
+GROWTH = 4
+
+#: The most pixels of a side and of a whole picture on a screen.
+LARGEST = (8192, 16_000_000)
+
+#: Settings that pictures by primary rays have as well.
+OF_QUICK = ("film", "output", "transparent", "exposure", "tone", "background")
+
+
+class Superseded(Exception):
+    """A newer picture is wanted."""
+
+
+class Stage(NamedTuple):
+    """A picture, and what it is."""
+
+    image: Image
+    camera: Camera
+    is_quick: bool
+    #: Whether nothing better follows: the picture has all samples.
+    is_final: bool
+    samples: int
+
+
+class Refiner:
+    """Renders spheres with the settings of ``Spheres.render``. ``show`` is called on the thread with every picture, and
+    ``fail`` with an error.
+    """
+
+    def __init__(
+        self,
+        spheres: Spheres,
+        camera: Camera,
+        size: tuple[int, int],
+        settings: Mapping[str, Any],
+        show: Callable[[Stage], object],
+        fail: Callable[[Error], object],
+    ) -> None:
+        self.spheres, self.size = spheres, size
+        self.settings = dict(settings)
+        self.backend: str = self.settings.pop("backend", None) or "auto"
+        self.show, self.fail = show, fail
+        self.samples, background = self._probe(camera)
+        known = {key: of for key, of in self.settings.items() if key in OF_QUICK and of is not None}
+        self.quick = {"background": background, **known, "style": "fast"}
+        self.part = PARTS[2]
+        self.stage: Stage | None = None
+        self.error: Error | None = None
+        # What is wanted: the newest camera, whether it moves, and since when.
+        self._camera, self._moves, self._since, self._serial = camera, False, 0.0, 0
+        #: The number of the request that the newest picture is for, and its samples, which are 0 for a quick one.
+        self._reached = (-1, 0)
+        self._picks: list[tuple[Camera, float, float, Callable[[int | None], object]]] = []
+        self._thread: threading.Thread | None = None
+        self._changed = threading.Condition()
+
+    def _probe(self, camera: Camera) -> tuple[int, list[float]]:
+        """The number of samples of a pixel, and the background, from a picture of what is behind the camera, far away. It
+        also checks the settings and brings the spheres to the device.
+        """
+        bounds = self.spheres.bounds
+        low, high = bounds if bounds is not None else (np.zeros(3), np.ones(3))
+        up = np.array(camera.up or (0.0, 1.0, 0.0))
+        up = up / np.linalg.norm(up)
+        eye = (low + high) / 2 + 10 * float(np.linalg.norm(high - low)) * up
+        side = [1.0, 0.0, 0.0] if abs(up[0]) < 0.7 else [0.0, 1.0, 0.0]
+        away = Camera(eye=eye.tolist(), direction=up.tolist(), up=side)
+        settings = {key: of for key, of in self.settings.items() if key not in ("legend", "scale_bar", "labels", "text")}
+        image = self._render({**settings, "camera": away, "size": (4, 4)}, layers=["samples"])
+        return int(image.samples.max()), [float(part) for part in image.color[0, 0]]
+
+    def _render(
+        self, settings: Mapping[str, Any], serial: int | None = None, layers: list[str] | None = None
+    ) -> Image:
+        """Renders a picture, which stops if something else than the request of this number is wanted."""
+
+        def look(_: float) -> None:
+            if serial is not None and (serial != self._serial or self._picks):
+                raise Superseded
+
+        text = self.spheres._text(settings)
+        return Image(self.spheres._data.render(text, layers or [], self.backend, look))
+
+    def image_at(self, camera: Camera, samples: int | None = None, serial: int | None = None) -> Image:
+        """The picture with the given number of samples, or all."""
+        settings = {**self.settings, "camera": camera, "size": self.size}
+        if samples is not None:
+            settings.pop("samples", None)
+            settings["sampling"] = {**(self.settings.get("sampling") or {}), "samples": samples}
+        return self._render(settings, serial)
+
+    def ask(self, camera: Camera, *, moves: bool) -> None:
+        """Wants a picture. What was wanted before is dropped."""
+        with self._changed:
+            self._camera, self._moves, self._since = camera, moves, time.monotonic()
+            self._serial += 1
+            self.error = None
+            self._start()
+
+    def settle(self) -> None:
+        """Says that the camera no longer moves."""
+        with self._changed:
+            self._moves = False
+            self._changed.notify_all()
+
+    def pick(self, camera: Camera, x: float, y: float, tell: Callable[[int | None], object]) -> None:
+        """Looks which sphere is at a place, in parts of the width and height from the upper left, and calls ``tell``."""
+        with self._changed:
+            self._picks.append((camera, x, y, tell))
+            self._start()
+
+    def _start(self) -> None:
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._work, name="pinhole view", daemon=True)
+            self._thread.start()
+        self._changed.notify_all()
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the thread has nothing to do."""
+        return self._thread is None
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Waits until there is nothing to do. Returns whether that is so."""
+        with self._changed:
+            return self._changed.wait_for(lambda: self._thread is None, timeout)
+
+    def _work(self) -> None:
+        done = -1
+        while True:
+            with self._changed:
+                picks, self._picks = self._picks, []
+                serial, camera, moves = self._serial, self._camera, self._moves
+                if not picks and serial == done:
+                    self._thread = None
+                    self._changed.notify_all()
+                    return
+            try:
+                for pick in picks:
+                    self._answer(*pick)
+                if serial != done and (not moves or self._move(serial, camera)):
+                    self._refine(serial, camera)
+                    done = serial
+            except Superseded:
+                pass
+            except Error as error:
+                done = serial
+                with self._changed:
+                    self.error = error
+                self.fail(error)
+            except BaseException:
+                with self._changed:
+                    self._thread = None
+                    self._changed.notify_all()
+                raise
+
+    def _answer(self, camera: Camera, x: float, y: float, tell: Callable[[int | None], object]) -> None:
+        settings = {**self.quick, "camera": camera, "size": self.size}
+        ids = self._render(settings, layers=["id"]).id
+        height, width = ids.shape
+        if not (0 <= x < 1 and 0 <= y < 1):
+            tell(None)
+            return
+        found = int(ids[int(y * height), int(x * width)])
+        # Bonds and what else was added have larger indices than spheres.
+        tell(found if found < len(self.spheres) else None)
+
+    def _move(self, serial: int, camera: Camera) -> bool:
+        """Shows a quick picture, and returns whether the camera then stays still."""
+        if self._reached[0] == serial:
+            return self._stays_still(serial)
+        started = time.monotonic()
+        size = (max(1, round(self.size[0] * self.part)), max(1, round(self.size[1] * self.part)))
+        # This is not stopped: otherwise, nothing would be seen while the camera moves on and on.
+        image = self._render({**self.quick, "camera": camera, "size": size})
+        taken = time.monotonic() - started
+        self._reached = (serial, 0)
+        self._show(Stage(image, camera, True, False, 1))
+        part = self.part * min(max(math.sqrt(QUICK / max(taken, 1e-6)), 0.5), 1.5)
+        self.part = min(max(part, PARTS[0]), PARTS[1])
+        return self._stays_still(serial)
+
+    def _stays_still(self, serial: int) -> bool:
+        """Waits until the camera has stayed still for a while, and returns whether nothing else is wanted first."""
+        with self._changed:
+            left = self._since + STILL_AFTER - time.monotonic()
+            self._changed.wait_for(lambda: serial != self._serial or bool(self._picks) or not self._moves, left)
+            return serial == self._serial and not self._picks
+
+    def _refine(self, serial: int, camera: Camera) -> None:
+        """Shows pictures with more and more samples."""
+        samples = 1
+        while samples < self.samples:
+            if self._reached[0] != serial or self._reached[1] < samples:
+                self._show(Stage(self.image_at(camera, samples, serial), camera, False, False, samples), serial)
+                self._reached = (serial, samples)
+            samples *= GROWTH
+        self._show(Stage(self.image_at(camera, None, serial), camera, False, True, self.samples), serial)
+
+    def _show(self, stage: Stage, serial: int | None = None) -> None:
+        with self._changed:
+            if serial is not None and serial != self._serial:
+                raise Superseded
+            self.stage = stage
+        self.show(stage)
+
+
+def screen_size(size: tuple[int, int], ratio: float) -> tuple[int, int]:
+    """The pixels of a picture of so many CSS pixels on a screen with so many pixels for each of them."""
+    side, area = LARGEST
+    most = min(side / max(size), math.sqrt(area / (size[0] * size[1])))
+    factor = min(max(ratio, 1.0), max(most, 1.0))
+    return (round(size[0] * factor), round(size[1] * factor))
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """A size that can be shown."""
+    _settings.picture_settings({"size": size})
+    width, height = size
+    return (int(width), int(height))
