@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 import sys
@@ -304,11 +305,57 @@ def test_without_anywidget_the_remedy_is_said():
     assert done.stdout == words
 
 
-def test_the_pages_half_is_a_module(tmp_path):
-    node = shutil.which("node")
-    if node is None:
-        pytest.skip("node, which checks the syntax, is missing")
+@pytest.fixture
+def page(tmp_path):
+    """The page's half, for node."""
+    if shutil.which("node") is None:
+        pytest.skip("node, which runs the page's half of the view, is missing")
     copy = tmp_path / "view.mjs"
     copy.write_bytes(Path(ph.__file__).with_name("_view.js").read_bytes())
-    done = subprocess.run([node, "--check", str(copy)], capture_output=True, text=True, timeout=60)
+    return copy
+
+
+def test_the_pages_half_is_a_module(page):
+    done = subprocess.run(["node", "--check", str(page)], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
+
+
+def test_what_the_page_sends(page):
+    script = Path(__file__).with_name("view_page.mjs")
+    done = subprocess.run(["node", str(script), str(page)], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    steps = json.loads(done.stdout)
+
+    def moved(turn=(0, 0), pan=(0, 0), zoom=0, roll=0):
+        return {"kind": "move", "turn": list(turn), "pan": list(pan), "zoom": zoom, "roll": roll}
+
+    still = {"kind": "still"}
+    # Parts of the height, 240, in pixels.
+    wanted = {
+        "start": [{"kind": "screen", "ratio": 2}],
+        "click": [{"kind": "pick", "at": [0.5, 0.5]}],
+        "drag": [moved(turn=(0.1, 0.1))],
+        "without an answer": [],
+        "with an answer": [moved(turn=(0.1, 0))],
+        "release": [still],
+        "shift": [moved(pan=(0.1, 0)), still],
+        "ctrl": [moved(roll=0.2), still],
+        "pinch": [moved(pan=(50 / 240, 0), zoom=pytest.approx(np.log(2) / 0.003)), still],
+        "wheel": [moved(zoom=-100), still],
+        "keys": [{"kind": "pick", "at": [0.5, 0.5]}, {"kind": "unpick"}, {"kind": "reset"}],
+    }
+    for name, messages in wanted.items():
+        for message in steps[name]:
+            for key in ("turn", "pan", "roll"):
+                if key in message:
+                    message[key] = np.round(message[key], 12).tolist()
+        for message in messages:
+            for key in ("turn", "pan", "roll"):
+                if key in message:
+                    message[key] = np.round(message[key], 12).tolist()
+        assert steps[name] == messages, name
+    assert steps["wheelIsTaken"] and steps["keysAreTaken"] == [True] * 4 + [False]
+    assert (steps["label"], steps["status"], steps["tabIndex"]) == ("sphere 7", "4 of 16 samples", 0)
+    assert (steps["name"], steps["width"], steps["isNew"]) == ("picture of 3 spheres", 320, True)
+    # Old pictures are given back.
+    assert (steps["urls"], steps["urlsAtTheEnd"], steps["listenersAtTheEnd"]) == (1, 0, 0)
