@@ -32,7 +32,7 @@ rm -rf "$work/wheels"
 cargo build --quiet --locked --profile "${PINHOLE_PROFILE:-dev}" -p pinhole-cli
 
 "$python" -m venv --clear "$work/venv"
-"$work/venv/bin/pip" install --quiet "$work"/wheels/pinhole_rt-*.whl pytest mypy anywidget nbclient ipykernel
+"$work/venv/bin/pip" install --quiet "$work"/wheels/pinhole_rt-*.whl pytest mypy anywidget nbclient ipykernel pillow
 
 profile=${PINHOLE_PROFILE:-debug}
 [ "$profile" = dev ] && profile=debug

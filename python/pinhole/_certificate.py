@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy.typing as npt
 
+from . import _report
+from ._errors import InputError
+from ._image import write
 from ._pinhole import Judged
 
 
@@ -41,6 +45,16 @@ class Certificate:
     def violations(self) -> list[str]:
         """The first violations, in words."""
         return self._judged.violations()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a page for people, .html, that needs no other files."""
+        path = os.fspath(path)
+        if os.path.splitext(path)[1].lower() not in (".html", ".htm"):
+            raise InputError(f"{path}: a certificate is written as .html; change the extension")
+        write(path, _report.page(self).encode())
+
+    def _repr_html_(self) -> str:
+        return _report.part(self)
 
     def __bool__(self) -> bool:
         return self.is_legal

@@ -1,0 +1,124 @@
+"""Certificates as HTML: one page that needs no other files. All text that comes from elsewhere is escaped."""
+
+from __future__ import annotations
+
+import base64
+import struct
+import zlib
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ._certificate import Certificate
+
+#: The colour and the meaning of each verdict; those of the program's report.
+VERDICTS = {
+    "decided": ("e4ebef", "one answer is legal, and the device gave it"),
+    "silhouette": ("0072b2", "a sphere and a miss are legal; the device gave one of them"),
+    "tie": ("56b4e9", "several spheres are legal; the device gave one of them"),
+    "violation": ("d55e00", "the device gave an answer that is not legal"),
+}
+
+#: The colour of a verdict that has none.
+OTHER = ("808080", "")
+
+#: The longest side of the picture of the verdicts. A pixel of a smaller one shows the worst of those that it stands for.
+LONGEST = 1024
+
+#: The largest number of violations that are listed.
+LISTED = 50
+
+
+def part(certificate: Certificate) -> str:
+    """The report as a part of a page."""
+    counts = certificate.counts
+    pixels = sum(counts.values())
+    legal = certificate.is_legal
+    color, ground = ("#00563f", "#e6f2ee") if legal else ("#9a3f00", "#fdeee3")
+    verdicts = certificate.verdicts
+    height, width = verdicts.shape
+    says = (
+        "Every pixel is one that a conforming device may have made."
+        if legal
+        else "The device gave answers that no conforming device gives."
+    )
+    rows = "".join(_row(name, count, pixels) for name, count in counts.items())
+    parts = [
+        '<div style="max-width: 60em; padding: 1em; color: #1b1f23; background: #fbfbfa; '
+        'font: 15px/1.5 system-ui, sans-serif">',
+        f'<div style="padding: 0.8em 1.2em; border-left: 8px solid {color}; background: {ground}">'
+        f'<b style="font-size: 1.6em; color: {color}">{"Legal" if legal else "Not legal"}</b><br>{says}<br>'
+        f"{width}\u2009×\u2009{height} pixels on {escape(certificate.adapter)}, one ray for each. "
+        "Light is not checked.</div>",
+        '<table style="margin: 1em 0; border-collapse: collapse; color: inherit">'
+        "<tr><th></th><th style='text-align: left'>verdict</th><th style='text-align: right'>pixels</th>"
+        f"<th></th><th style='text-align: left'>meaning</th></tr>{rows}</table>",
+        _violations(certificate.violations),
+    ]
+    if verdicts.size:
+        shown = max(width, min(640, 8 * width))
+        parts.append(
+            f'<img alt="the verdict about each pixel" src="data:image/png;base64,{_picture(verdicts, list(counts))}" '
+            f'style="width: {shown}px; max-width: 100%; image-rendering: pixelated; border: 1px solid #dde1e5">'
+            "<br>The verdict about each pixel, in the colors of the table."
+        )
+    numbers = escape(str(certificate))
+    parts.append(f"<details><summary>All numbers</summary><pre style='color: inherit'>{numbers}</pre></details></div>")
+    return "\n".join(parts)
+
+
+def page(certificate: Certificate) -> str:
+    """The report as a page."""
+    title = f"{'Legal' if certificate.is_legal else 'Not legal'}: {escape(certificate.adapter)}"
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<title>{title}</title>\n</head>\n<body style="margin: 0; background: #fbfbfa">\n{part(certificate)}\n</body>\n</html>\n'
+    )
+
+
+def _row(name: str, count: int, pixels: int) -> str:
+    color, meaning = VERDICTS.get(name, OTHER)
+    swatch = f'<span style="display: inline-block; width: 1em; height: 1em; background: #{color}"></span>'
+    percent = 100 * count / max(pixels, 1)
+    right = "style='text-align: right; padding-left: 1em'"
+    return (
+        f"<tr><td>{swatch}</td><td style='text-align: left'>{escape(name)}</td><td {right}>{count}</td>"
+        f"<td {right}>{percent:.4f}\u2009%</td><td style='text-align: left; padding-left: 1em'>{meaning}</td></tr>"
+    )
+
+
+def _violations(violations: list[str]) -> str:
+    if not violations:
+        return ""
+    items = "".join(f"<li>{escape(words)}</li>" for words in violations[:LISTED])
+    more = len(violations) - LISTED
+    rest = f"<p>{more} more are not listed.</p>" if more > 0 else ""
+    return f"<b>The first violations</b><ol>{items}</ol>{rest}"
+
+
+def _picture(verdicts: npt.NDArray[Any], names: list[str]) -> str:
+    """The verdicts as a PNG file with a palette, in base64."""
+    height, width = verdicts.shape
+    step = -(-max(height, width) // LONGEST)
+    if step > 1:
+        # Verdicts are in the order from the best to the worst.
+        rows = np.maximum.reduceat(verdicts, range(0, height, step), axis=0)
+        verdicts = np.maximum.reduceat(rows, range(0, width, step), axis=1)
+        height, width = verdicts.shape
+    palette = bytes.fromhex("".join(VERDICTS.get(name, OTHER)[0] for name in names))
+    lines = np.zeros((height, width + 1), np.uint8)
+    lines[:, 1:] = verdicts
+    chunks = [
+        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)),
+        (b"PLTE", palette),
+        (b"IDAT", zlib.compress(lines.tobytes())),
+        (b"IEND", b""),
+    ]
+    data = b"".join(
+        struct.pack(">I", len(of)) + kind + of + struct.pack(">I", zlib.crc32(kind + of)) for kind, of in chunks
+    )
+    return base64.b64encode(b"\x89PNG\r\n\x1a\n" + data).decode()
