@@ -6,7 +6,7 @@ import difflib
 import math
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from ._errors import InputError
 
@@ -131,10 +131,25 @@ def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
     return "".join(f"{line}\n" for line, _ in all_lines), [argument for _, argument in all_lines]
 
 
+class Tagged(dict[str, Any]):
+    """A table that knows where it belongs."""
+
+    #: The argument that takes the table, or a list of such tables.
+    argument: ClassVar[str] = ""
+
+
+def refuse_misplaced(argument: str, item: Any) -> None:
+    """Refuses a table, or a list of tables, that belongs to another argument."""
+    for of in item if isinstance(item, (list, tuple)) else (item,):
+        if isinstance(of, Tagged) and of.argument != argument:
+            raise InputError(f"{argument}: the table {type(of).__name__} is for {of.argument}")
+
+
 def refuse_unknown(settings: Mapping[str, Any], known: tuple[str, ...], other: tuple[str, ...], where: str) -> None:
-    """Refuses arguments that do not exist."""
-    for name in settings:
+    """Refuses arguments that do not exist, and tables of other arguments."""
+    for name, item in settings.items():
         if name in known:
+            refuse_misplaced(name, item)
             continue
         if name in other:
             raise InputError(f"{name} is not an argument here; give it to {where}")

@@ -1,0 +1,168 @@
+"""Tables of a scene file as objects. They are dicts, so that dicts may take their place everywhere."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from . import _settings
+from ._pinhole import SphereData
+
+
+class Table(_settings.Tagged):
+    """A table of a scene file. Its keys are the arguments; those that are None are left out. Printed, it is the text of a
+    scene file.
+    """
+
+    #: The name in scene files, such as ``studio.occlusion``.
+    name: ClassVar[str] = ""
+    #: The keys in scene files.
+    names: ClassVar[tuple[str, ...]] = ()
+    is_listed: ClassVar[bool] = False
+
+    def __init_subclass__(cls, of: str, keys: str, argument: str | None = None, listed: bool = False) -> None:
+        cls.name, cls.names, cls.is_listed = of, tuple(keys.split()), listed
+        cls.argument = argument or of
+        cls.__module__ = "pinhole"
+        # What help and completion show.
+        parameters = [inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=None) for key in cls.names]
+        cls.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+
+    def __init__(self, **keys: Any) -> None:
+        super().__init__({key: of for key, of in keys.items() if of is not None})
+        for key, of in self.items():
+            _settings.refuse_misplaced(f"{self.name}.{key}", of)
+        self._check()
+
+    def _check(self) -> None:
+        """Lets the library read the table."""
+        table: Any = [self] if self.is_listed else self
+        *outer, last = self.name.split(".")
+        for part in (last, *reversed(outer)):
+            table = {part: table}
+        _nothing().placed(_settings.scene_text({"data": "spheres", **table}), None)
+
+    def __repr__(self) -> str:
+        return _toml(f"[[{self.name}]]" if self.is_listed else f"[{self.name}]", self.name, self)
+
+
+@cache
+def _nothing() -> SphereData:
+    """No spheres, for which texts are read."""
+    return SphereData.of_arrays(np.zeros((0, 3), np.float32), 1.0, None, [], ("", []))
+
+
+def _toml(head: str, name: str, table: Mapping[str, Any]) -> str:
+    plain = {key: of for key, of in table.items() if not isinstance(of, Mapping)}
+    lines = [head, *(f"{_settings.bare(key)} = {_settings.value(of, f'{name}.{key}')}" for key, of in plain.items())]
+    for key, of in table.items():
+        if key not in plain:
+            inner = f"{name}.{_settings.bare(key)}"
+            lines += ["", _toml(f"[{inner}]", inner, of)]
+    return "\n".join(lines)
+
+
+class Studio(Table, of="studio", keys="ambient shadows max_surfaces occlusion depth_cue outline"):
+    """Direct light: its ambient light, shadows, ``Occlusion``, ``Outline`` and ``DepthCue``."""
+
+
+class Occlusion(Table, of="studio.occlusion", keys="radius samples"):
+    """How spheres hide ambient light from each other, for ``Studio``."""
+
+
+class Outline(Table, of="studio.outline", keys="width color depth angle"):
+    """Lines around what jumps in depth or direction, for ``Studio``."""
+
+
+class DepthCue(Table, of="studio.depth_cue", keys="near far color"):
+    """How colours fade with the distance, for ``Studio``."""
+
+
+class Path(Table, of="path", keys="max_depth roulette_from light_sampling"):
+    """How light paths are followed."""
+
+
+class Sampling(Table, of="sampling", keys="samples seed filter denoise"):
+    """The samples of each pixel."""
+
+
+class Light(
+    Table,
+    of="lights",
+    keys="kind at toward direction angular_radius angular_diameter position radius color strength intensity radiance",
+    listed=True,
+):
+    """A light, for a list: ``lights=[Light(kind="directional", toward=(1, 1, 1))]``."""
+
+
+class Sun(Table, of="sun", keys="toward direction angular_radius angular_diameter color strength"):
+    """A sun, whose disk is seen."""
+
+
+class Sky(Table, of="sky", keys="kind color zenith horizon nadir image rotation strength visible"):
+    """What surrounds everything and gives light to paths."""
+
+
+class Ground(Table, of="ground", keys="height point normal color shadow_catcher"):
+    """A plane on which spheres lie."""
+
+
+class Output(Table, of="output", keys="exposure tone transparent bits dpi"):
+    """How a picture becomes a PNG file."""
+
+
+class Legend(Table, of="legend", keys="title position"):
+    """What the colours of numbers and names mean."""
+
+
+class ScaleBar(Table, of="scale_bar", keys="length unit position"):
+    """A line of a known length."""
+
+
+class Label(Table, of="labels", keys="text position", listed=True):
+    """A text in the picture, for a list."""
+
+
+class Text(Table, of="text", keys="scale color panel"):
+    """How texts look."""
+
+
+class Material(
+    Table,
+    of="materials.given",
+    keys="kind specular roughness ior attenuation_distance strength opacity",
+    argument="material",
+):
+    """What spheres are made of; an argument of ``Spheres``."""
+
+
+class ColorBy(Table, of="color_by", keys="column map reverse range log missing"):
+    """Colours from a column; an argument of ``Spheres``."""
+
+
+class RadiusBy(Table, of="radius_by", keys="column factor"):
+    """Radii from a column; an argument of ``Spheres``."""
+
+
+class OpacityBy(Table, of="opacity_by", keys="column factor"):
+    """Opacities from a column; an argument of ``Spheres``."""
+
+
+class EmissionBy(Table, of="emission_by", keys="column factor"):
+    """Light that spheres give, from a column; an argument of ``Spheres``."""
+
+
+class Bonds(Table, of="bonds", keys="factor length"):
+    """Bonds between spheres; an argument of ``Spheres``."""
+
+
+class Box(Table, of="box", keys="width"):
+    """The edges of the periodic cell; an argument of ``Spheres``."""
+
+
+#: All tables.
+ALL: tuple[type[Table], ...] = tuple(Table.__subclasses__())
