@@ -80,6 +80,8 @@ class Refiner:
         self.error: Error | None = None
         # What is wanted: the newest camera, whether it moves, and since when.
         self._camera, self._moves, self._since, self._serial = camera, False, 0.0, 0
+        #: The number of the newest request that was answered.
+        self._done = 0
         #: The number of the request that the newest picture is for, and its samples, which are 0 for a quick one.
         self._reached = (-1, 0)
         self._picks: list[tuple[Camera, float, float, Callable[[int | None], object]]] = []
@@ -158,25 +160,24 @@ class Refiner:
             return self._changed.wait_for(lambda: self._thread is None, timeout)
 
     def _work(self) -> None:
-        done = -1
         while True:
             with self._changed:
                 picks, self._picks = self._picks, []
                 serial, camera, moves = self._serial, self._camera, self._moves
-                if not picks and serial == done:
+                if not picks and serial == self._done:
                     self._thread = None
                     self._changed.notify_all()
                     return
             try:
                 for pick in picks:
                     self._answer(*pick)
-                if serial != done and (not moves or self._move(serial, camera)):
+                if serial != self._done and (not moves or self._move(serial, camera)):
                     self._refine(serial, camera)
-                    done = serial
+                    self._done = serial
             except Superseded:
                 pass
             except Error as error:
-                done = serial
+                self._done = serial
                 with self._changed:
                     self.error = error
                 self.fail(error)

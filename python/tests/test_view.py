@@ -107,6 +107,7 @@ def test_pictures_that_nobody_waits_for_stop():
 
 def test_a_click_picks_a_sphere(view):
     told, observed = [], []
+    image = view.image
     view.on_pick(told.append)
     view.observe(lambda change: observed.append(change["new"]), "picked")
     ids = spheres_of().render(SIZE, camera=view.camera, style="fast", layers=["id"], backend="cpu").id
@@ -125,6 +126,7 @@ def test_a_click_picks_a_sphere(view):
     assert view._label == "sphere 3, energy 1.5"
     send(view, "unpick")
     assert view.picked is None
+    assert view.wait(60) is image, "the picture is still the same"
 
 
 def test_a_click_is_answered_while_the_picture_is_refined():
