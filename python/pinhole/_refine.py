@@ -4,9 +4,11 @@ gets better by and by.
 
 from __future__ import annotations
 
+import atexit
 import math
 import threading
 import time
+import weakref
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -37,6 +39,10 @@ LARGEST = (8192, 16_000_000)
 
 #: Settings that pictures by primary rays have as well.
 OF_QUICK = ("film", "output", "transparent", "exposure", "tone", "background")
+
+
+#: Seconds within which a picture that is not wanted stops.
+STOPS_WITHIN = 5.0
 
 
 class Superseded(Exception):
@@ -123,6 +129,14 @@ class Refiner:
             settings["sampling"] = {**(self.settings.get("sampling") or {}), "samples": samples}
         return self._render(settings, serial)
 
+    def stop(self) -> None:
+        """Drops what is wanted and waits until the thread has ended. The interpreter needs that when it ends."""
+        with self._changed:
+            self._serial += 1
+            self._done, self._picks = self._serial, []
+            self._changed.notify_all()
+        self.wait(STOPS_WITHIN)
+
     def ask(self, camera: Camera, *, moves: bool) -> None:
         """Wants a picture. What was wanted before is dropped."""
         with self._changed:
@@ -145,14 +159,10 @@ class Refiner:
 
     def _start(self) -> None:
         if self._thread is None:
+            _at_work.add(self)
             self._thread = threading.Thread(target=self._work, name="pinhole view", daemon=True)
             self._thread.start()
         self._changed.notify_all()
-
-    @property
-    def is_done(self) -> bool:
-        """Whether the thread has nothing to do."""
-        return self._thread is None
 
     def wait(self, timeout: float | None = None) -> bool:
         """Waits until there is nothing to do. Returns whether that is so."""
@@ -178,8 +188,7 @@ class Refiner:
                 pass
             except Error as error:
                 self._done = serial
-                with self._changed:
-                    self.error = error
+                self.error = error
                 self.fail(error)
             except BaseException:
                 with self._changed:
@@ -236,6 +245,16 @@ class Refiner:
                 raise Superseded
             self.stage = stage
         self.show(stage)
+
+
+#: What has had a thread.
+_at_work: weakref.WeakSet[Refiner] = weakref.WeakSet()
+
+
+@atexit.register
+def _stop_all() -> None:
+    for refiner in list(_at_work):
+        refiner.stop()
 
 
 def screen_size(size: tuple[int, int], ratio: float) -> tuple[int, int]:

@@ -286,6 +286,21 @@ def test_a_panorama_turns_about_itself():
     assert np.array_equal(orbit.eye, [0, 0, 0]) and not np.allclose(orbit.direction, [0, 0, -1])
 
 
+AT_THE_END = """
+import pinhole as ph, time
+spheres = ph.Spheres([[x, y, 0] for x in range(30) for y in range(30)], 0.5)
+view = spheres.view((640, 480), style="path", samples=5000, backend="cpu")
+time.sleep(0.5)
+print(view._refiner.stage is None or not view._refiner.stage.is_final)
+"""
+
+
+def test_the_interpreter_ends_while_a_picture_is_refined():
+    pytest.importorskip("anywidget", reason="the view needs anywidget")
+    done = subprocess.run([sys.executable, "-c", AT_THE_END], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "True\n", "")
+
+
 WITHOUT = """
 import sys
 sys.modules["anywidget"] = None
