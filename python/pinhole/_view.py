@@ -73,7 +73,7 @@ class View(anywidget.AnyWidget):
             spheres, self._first, self._shown_size, self._settings, self._show, self._fail
         )  # fmt: skip
         name = f"picture of {len(spheres)} {'sphere' if len(spheres) == 1 else 'spheres'}"
-        super().__init__(_size=list(self._shown_size), _name=name)
+        super().__init__(_size=self._page_size(), _name=name)
         self.on_msg(self._on_message)
         self.observe(self._on_picked, "picked")
         self.refresh()
@@ -82,6 +82,11 @@ class View(anywidget.AnyWidget):
         """The camera with its place, around which it can turn."""
         placed = self._spheres._placed({**self._settings, "size": self._shown_size, "camera": camera})
         return Orbit(placed, self._spheres.bounds)
+
+    def _page_size(self) -> list[int]:
+        """The size of the picture on the page; those of two eyes are side by side."""
+        width, height = self._shown_size
+        return [2 * width if "stereo" in self._orbit.rest else width, height]
 
     @property
     def camera(self) -> Camera:
@@ -93,6 +98,7 @@ class View(anywidget.AnyWidget):
     @camera.setter
     def camera(self, camera: Camera | str | Mapping[str, Any] | None) -> None:
         self._orbit = self._placed(camera)
+        self._size = self._page_size()
         self._ask(moves=False)
 
     @property

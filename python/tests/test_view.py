@@ -180,6 +180,15 @@ def test_cameras_are_assigned(view):
         view.camera = "diagonal"
 
 
+def test_two_eyes_are_side_by_side(view):
+    view.camera = ph.Camera.frame(stereo={"separation": 0.1, "convergence": 8.0})
+    image = view.wait(60)
+    assert image.size == (128, 48) and view._size == [128, 48]
+    assert view._picture == spheres_of().render(SIZE, camera=view.camera, **KEYS)._repr_png_()
+    view.camera = None
+    assert view.wait(60).size == SIZE and view._size == list(SIZE)
+
+
 def test_screens_with_small_pixels_get_more_of_them(view):
     send(view, "screen", ratio=2)
     assert view.size == (128, 96) and view.wait(60).size == (128, 96)
