@@ -14,6 +14,7 @@ from ._files import Trajectory, read
 from ._image import Image
 from ._movie import movie
 from ._pinhole import __version__
+from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
     Bonds,
@@ -78,4 +79,5 @@ __all__ = [
     "__version__",
     "movie",
     "read",
+    "sheet",
 ]

@@ -1,0 +1,72 @@
+"""Several pictures in one."""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import InputError
+from ._image import Image, write
+
+Array = npt.NDArray[Any]
+
+
+def sheet(
+    path: str | os.PathLike[str], images: Iterable[Image | Array], *, columns: int | None = None, gap: int = 0
+) -> None:
+    """Writes pictures of one size as one PNG, row by row; ``columns`` of them are beside each other, or all.
+
+    Pictures are ``Image`` or arrays of type uint8 (sRGB) and shape (height, width, 3) or (height, width, 4). Between them
+    are ``gap`` white pixels.
+    """
+    path = os.fspath(path)
+    if os.path.splitext(path)[1].lower() != ".png":
+        raise InputError(f"{path}: a sheet of pictures is written as .png; change the extension")
+    arrays = [_pixels(index, image) for index, image in enumerate(images)]
+    if not arrays:
+        raise InputError(f"{path}: there are no pictures")
+    height, width, channels = arrays[0].shape
+    for index, array in enumerate(arrays):
+        if array.shape != arrays[0].shape:
+            raise InputError(
+                f"{path}: all pictures must have the shape of the first, {arrays[0].shape}; picture {index} has {array.shape}"
+            )
+    columns = min(len(arrays), len(arrays) if columns is None else columns)
+    if columns < 1 or gap < 0:
+        raise InputError(f"columns is {columns} and gap is {gap}; there must be at least 1 column, and no negative gap")
+    rows = -(-len(arrays) // columns)
+    paper = np.full((rows * (height + gap) - gap, columns * (width + gap) - gap, channels), 255, np.uint8)
+    for index, array in enumerate(arrays):
+        top, left = index // columns * (height + gap), index % columns * (width + gap)
+        paper[top : top + height, left : left + width] = array
+    write(path, png(paper))
+
+
+def _pixels(index: int, image: Image | Array) -> Array:
+    array = image.rgb8 if isinstance(image, Image) else np.asarray(image)
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4):
+        raise InputError(
+            f"picture {index} has the shape {array.shape} and the type {array.dtype}; "
+            "it must be (height, width, 3) or (height, width, 4) in uint8"
+        )
+    return array
+
+
+def png(pixels: Array) -> bytes:
+    """A PNG of pixels in sRGB: uint8, (height, width, 3) or (height, width, 4)."""
+    height, width, channels = pixels.shape
+    # Each line follows its filter, which is the difference from the line above (2).
+    above = np.concatenate([np.zeros_like(pixels[:1]), pixels[:-1]])
+    lines = np.full((height, 1 + width * channels), 2, np.uint8)
+    lines[:, 1:] = (pixels - above).reshape(height, -1)
+    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"sRGB", b"\0"), (b"IDAT", zlib.compress(lines.tobytes(), 9)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
+    )
