@@ -1,41 +1,51 @@
-"""A spiral galaxy of 260,000 stars, with glowing gas and dust lanes: galaxy.png."""
+"""A spiral galaxy of 330,000 stars, yellow in the middle and blue in the arms, with pink clouds and dust: galaxy.png."""
 
 import numpy as np
 
 import pinhole as ph
 
 random = np.random.default_rng(7)
-warm, blue, pink, dust = (255, 214, 160), (150, 185, 255), (255, 96, 150), (16, 9, 6)
 
 
-def arms(count, width, lead=0.0):
-    """Points along two arms, which are logarithmic spirals."""
-    radius = np.clip(random.gamma(2.4, 1.9, count) + 0.7, 0.7, 11)
-    angle = 2.5 * np.log(radius) + random.integers(0, 2, count) * np.pi + lead + random.normal(0, width, count)
-    return np.stack([radius * np.cos(angle), random.normal(0, 0.09, count), radius * np.sin(angle)], axis=1)
+def disk(count, width, lead=0.0):
+    """Points about two arms, which are logarithmic spirals, and their distances from the middle."""
+    radius = random.gamma(2.6, 1.5, 2 * count) + 0.5
+    radius = radius[radius < random.uniform(6, 10.5, len(radius))][:count]
+    angle = 2.6 * np.log(radius) + random.integers(0, 2, len(radius)) * np.pi + lead
+    angle += random.normal(0, width, len(radius)) / np.sqrt(radius)
+    height = random.normal(0, 0.06, len(radius))
+    return np.stack([radius * np.cos(angle), height, radius * np.sin(angle)], axis=1), radius
 
 
-def blob(count, size):
-    """Points around the middle."""
-    return np.clip(random.normal(0, 1, (count, 3)), -3, 3) * size
+def bulge(count):
+    """Points that crowd about the middle, and their distances from it."""
+    towards = random.normal(0, 1, (count, 3))
+    radius = np.minimum(random.exponential(0.55, count), 4)
+    return towards / np.linalg.norm(towards, axis=1, keepdims=True) * radius[:, None] * (1, 0.6, 1), radius
 
 
-parts = [  # points, radii, colors, opacities
-    (arms(110_000, 0.22), 0.016, blue, 0.85),
-    (arms(60_000, 0.9), 0.014, warm, 0.6),
-    (blob(90_000, (0.75, 0.5, 0.75)), 0.016, warm, 0.8),
-    (arms(700, 0.13), 0.055, pink, 0.8),
-    (arms(6_000, 0.2), 0.30, blue, 0.012),
-    (blob(900, (0.9, 0.55, 0.9)), 0.45, warm, 0.02),
-    (arms(9_000, 0.06, lead=-0.35), 0.1, dust, 0.1),
-]
+def mixed(radius):
+    """The color of stars: yellow near the middle, and blue far away."""
+    part = np.clip(radius / 4.5 + random.normal(0, 0.15, len(radius)), 0, 1)[:, None]
+    light = random.uniform(0.5, 1, (len(radius), 1)) ** (0.3 + part)
+    return ((1 - part) * (255, 226, 178) + part * (140, 180, 255)) * light
+
+
+parts = []  # points, radii, colors, opacities
+for (points, radius), size, opacity in (
+    (disk(150_000, 0.33), 0.016, 0.9),
+    (disk(100_000, 1.3), 0.012, 0.6),
+    (bulge(80_000), 0.013, 0.9),
+):
+    parts.append((points, size, mixed(radius), opacity))
+parts.append((disk(900, 0.25)[0], 0.04, np.array([[255, 90, 150]] * 900), 0.7))
+parts.append((disk(7_000, 0.17, lead=-0.26)[0] * (1, 2, 1), 0.07, np.array([[20, 10, 8]] * 7_000), 0.12))
 counts = [len(points) for points, *_ in parts]
-colors = np.repeat([color for _, _, color, _ in parts], counts, axis=0) * random.uniform(0.55, 1, (sum(counts), 1))
 spheres = ph.Spheres(
     np.concatenate([points for points, *_ in parts]),
-    np.repeat([radius for _, radius, _, _ in parts], counts),
-    colors.astype("u1"),
+    np.repeat([size for _, size, *_ in parts], counts),
+    np.concatenate([colors[:count] for (_, _, colors, _), count in zip(parts, counts)]).astype("u1"),
     opacity=np.repeat([opacity for *_, opacity in parts], counts),
 )
-camera = ph.Camera.look_at((2, 14, 17), (0.3, -0.3, 0), fov=36)
-spheres.render((960, 600), style="flat", background="#020308", samples=12, camera=camera).save("galaxy.png")
+camera = ph.Camera.look_at((2, 14, 16), (0.2, -0.6, 0), fov=33)
+spheres.render((960, 600), style="flat", background="#020308", samples=16, exposure=0.5, camera=camera).save("galaxy.png")

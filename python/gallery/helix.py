@@ -18,7 +18,7 @@ def strand(turns, offset, radius=9.0):
 along = np.linspace(-0.8, len(sequence) - 0.2, 60 * len(sequence))
 points = [strand(along, 0.0), strand(along, groove)]
 kinds = ["backbone"] * (2 * len(along))
-part = np.linspace(0.0, 1.0, 61)
+part = np.linspace(0.0, 1.0, 201)
 for number, base in enumerate(sequence):
     left, right = strand(number, 0.0), strand(number, groove)
     points.append(left + part[:, None] * (right - left))
@@ -28,7 +28,7 @@ spheres = ph.Spheres(
     np.where(np.array(kinds) == "backbone", 1.45, 1.05),
     columns={"kind": kinds},
     color_by={"column": "kind", "map": "tol-bright"},
-    material={"kind": "lambert", "specular": 0.05, "roughness": 0.3},
+    material={"kind": "lambert", "specular": 0.04, "roughness": 0.35},
 )
 camera = ph.Camera.frame((24, 14), margin=0.04)
-spheres.render((1000, 520), style="studio", samples=16, camera=camera, legend={"title": "DNA"}).save("helix.png")
+spheres.render((1000, 460), style="studio", samples=16, camera=camera, legend={"title": "DNA"}).save("helix.png")

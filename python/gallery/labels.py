@@ -1,4 +1,4 @@
-"""A perovskite with bonds, a legend, a scale bar and a title, ready for a paper: labels.png."""
+"""A perovskite with bonds, a legend, a scale bar and a label, ready for a paper: labels.png."""
 
 import itertools
 
@@ -9,9 +9,9 @@ import pinhole as ph
 edge, cells = 3.905, 2  # SrTiO₃, in Å
 atoms = []
 for cell in itertools.product(range(cells + 1), repeat=3):
-    atoms.append(("Sr", 0.72, cell))
-    atoms.append(("Ti", 0.5, np.add(cell, 0.5)))
-    atoms += [("O", 0.42, np.add(cell, 0.5 * (1 - np.eye(3)[axis]))) for axis in range(3)]
+    atoms.append(("Sr", 0.62, cell))
+    atoms.append(("Ti", 0.46, np.add(cell, 0.5)))
+    atoms += [("O", 0.36, np.add(cell, 0.5 * (1 - np.eye(3)[axis]))) for axis in range(3)]
 species, radii, places = zip(*[atom for atom in atoms if max(atom[2]) <= cells])
 spheres = ph.Spheres(
     np.array(places) * edge,
@@ -21,13 +21,13 @@ spheres = ph.Spheres(
     bonds={"length": 2.2},
 )
 spheres.render(
-    (900, 780),
-    style="studio",
+    (960, 740),
+    style="illustration",
     samples=16,
-    camera=ph.Camera.frame((22, 14), kind="orthographic", margin=0.06),
+    camera=ph.Camera.frame((22, 14), kind="orthographic", margin=0.07),
     legend={"position": "right", "title": "element"},
     scale_bar={"length": 4, "unit": "Å", "position": "bottom-right"},
-    labels=[{"text": "SrTiO₃", "position": "top-right"}, {"text": "a = 3.905 Å", "position": "top-right"}],
+    labels=[{"text": "SrTiO₃, a = 3.905 Å", "position": "top-right"}],
     text={"scale": 1.2},
     dpi=300,
 ).save("labels.png")

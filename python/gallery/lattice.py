@@ -22,7 +22,7 @@ spheres = ph.Spheres(
     points * edge / 2,
     radius=edge / 8**0.5,  # touching atoms
     columns={"place (neighbors)": [names[number] for number in neighbors]},
-    color_by={"column": "place (neighbors)", "map": "plasma"},
+    color_by={"column": "place (neighbors)", "map": "magma"},
     select="not (x > 0.1 and y > 0.1 and z > 0.1)",
 )
 camera = ph.Camera.frame((28, 24), margin=0.04)

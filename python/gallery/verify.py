@@ -10,14 +10,14 @@ rope[:, 1] = 0.4 * np.sin(9 * t)
 spheres = ph.Spheres(rope, radius=0.11, color=t, cmap="romaO")
 
 camera = ph.Camera.frame((30, 40))
-certificate = spheres.verify((320, 260), camera=camera)
+certificate = spheres.verify((600, 480), camera=camera)
 print(certificate)
 if not certificate:
     raise SystemExit(f"this device is wrong: {certificate.violations}")
 
 # The picture that was checked in gray, with ties and silhouettes in color.
-image = spheres.render((320, 260), style="fast", camera=camera)
-marked = np.repeat(image.rgb8.mean(axis=2, keepdims=True) // 2 + 120, 3, axis=2).astype("u1")
+image = spheres.render((600, 480), style="fast", camera=camera)
+marked = np.repeat(image.rgb8.mean(axis=2, keepdims=True) // 2 + 127, 3, axis=2).astype("u1")
 for verdict, color in (("silhouette", (0, 140, 255)), ("tie", (230, 60, 0))):
     marked[certificate.verdicts == list(certificate.counts).index(verdict)] = color
-ph.sheet("verify.png", [np.repeat(np.repeat(picture, 2, axis=0), 2, axis=1) for picture in (image.rgb8, marked)])
+ph.sheet("verify.png", [image, marked])

@@ -101,9 +101,14 @@ def colors(given: Any, count: int) -> Array:
         return array
     if array.dtype.kind == "f" and array.shape[1] == 3:
         return floats(array, np.float32)
+    remedy = ""
+    if array.dtype.kind in "iu" and array.shape[1] in (3, 4):
+        remedy = '; for numbers from 0 to 255 write color.astype("u1")'
+    elif array.dtype.kind == "f" and array.shape[1] == 4:
+        remedy = '; for colors of matplotlib write (255 * color).astype("u1")'
     raise InputError(
         f"color has the shape {array.shape} and the type {array.dtype}; it must be (n, 3) or (n, 4) in uint8 (sRGB), "
-        "or (n, 3) in floats (linear light)"
+        f"or (n, 3) in floats (linear light){remedy}"
     )
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from ._errors import InputError
 
@@ -22,23 +24,25 @@ class Camera:
         self,
         kind: str = "pinhole",
         *,
-        view: str | tuple[float, float] | None = None,
+        view: str | Sequence[float] | None = None,
         turn: float = 0.0,
         up: Sequence[float] | None = None,
         fov: float | None = None,
         **keys: Any,
     ) -> None:
-        if isinstance(view, tuple):
-            view = ",".join(repr(float(angle)) for angle in view)
+        if view is not None and not isinstance(view, str):
+            view = _angles(view)
         if view is not None and any(key in keys for key in ("eye", "look_at", "direction")):
             raise InputError("view and eye, look_at or direction exclude each other; remove one of them")
+        if fov is not None and "vertical_fov" in keys:
+            raise InputError("fov and vertical_fov say the same; remove one of them")
         if fov is not None:
             keys["vertical_fov"] = fov
         self.kind = kind
         self.keys = {key: item for key, item in keys.items() if item is not None}
         self.view = view
         self.turn = float(turn)
-        self.up = None if up is None else tuple(float(number) for number in up)
+        self.up = None if up is None else tuple(_point("up", up))
 
     @classmethod
     def look_at(
@@ -57,7 +61,7 @@ class Camera:
     @classmethod
     def frame(
         cls,
-        view: str | tuple[float, float] | None = None,
+        view: str | Sequence[float] | None = None,
         *,
         turn: float = 0.0,
         up: Sequence[float] | None = None,
@@ -94,6 +98,32 @@ class Camera:
         shown = {"view": self.view, "turn": self.turn or None, "up": self.up, **self.keys}
         words = [repr(self.kind), *(f"{key}={item!r}" for key, item in shown.items() if item is not None)]
         return f"Camera({', '.join(words)})"
+
+
+def as_camera(given: Any) -> Camera | Mapping[str, Any]:
+    """A camera of what the argument ``camera`` may be: a camera, a view, the table of a scene file, or nothing."""
+    if given is None:
+        return Camera()
+    if isinstance(given, (Camera, Mapping)):
+        return given
+    if isinstance(given, (str, tuple, list, np.ndarray)):
+        view: Any = given
+        return Camera(view=view)
+    raise InputError(
+        f'camera is {given!r}; write a Camera, a view such as "iso" or (azimuth, elevation), or the table of a scene file'
+    )
+
+
+def _angles(view: Any) -> str:
+    """A view by azimuth and elevation, in degrees."""
+    try:
+        azimuth, elevation = (float(angle) for angle in view)
+    except (TypeError, ValueError):
+        raise InputError(
+            f'view is {view!r}; write "x", "-x", "y", "-y", "z", "-z", "iso" or (azimuth, elevation) in degrees; '
+            "a camera at a point is Camera.look_at(eye, at)"
+        ) from None
+    return f"{azimuth!r},{elevation!r}"
 
 
 def _point(name: str, point: Sequence[float]) -> list[float]:

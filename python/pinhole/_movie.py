@@ -9,7 +9,8 @@ import subprocess
 from collections.abc import Iterable
 
 from ._errors import FileError, InputError
-from ._image import Image
+from ._image import Image, write
+from ._sheet import Array, pixels, png
 
 #: What ffmpeg is told for each kind of file.
 CODECS = {
@@ -22,14 +23,23 @@ CODECS = {
 }
 
 
-def movie(path: str | os.PathLike[str], images: Iterable[Image], *, fps: float = 30.0) -> None:
+def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps: float = 30.0) -> None:
     """Writes pictures as a movie (.mp4, .mov, .mkv, .webm, .apng or .gif, which need the program ffmpeg), or as numbered
-    PNG files, such as ``f%04d.png``. Pictures may be made one by one: only one is in memory.
+    PNG files, such as ``f%04d.png``. Pictures are ``Image`` or arrays as of ``sheet``, and may be made one by one: only one
+    is in memory.
     """
     path = os.fspath(path)
+    if isinstance(images, Image):
+        raise InputError("images is one picture; write a list of pictures")
     if re.search(r"%0?\d*d", os.path.basename(path)):
+        number = -1
         for number, image in enumerate(images):
-            image.save(path % number)
+            if isinstance(image, Image):
+                image.save(path % number)
+            else:
+                write(path % number, png(pixels(number, image)))
+        if number < 0:
+            raise InputError(f"{path}: there are no pictures")
         return
     extension = os.path.splitext(path)[1].lower()
     codec = CODECS.get(extension)
@@ -44,18 +54,20 @@ def movie(path: str | os.PathLike[str], images: Iterable[Image], *, fps: float =
     size = (0, 0)
     temporary = f"{path}.part{extension}"
     try:
-        for image in images:
+        for number, image in enumerate(images):
+            frame = pixels(number, image)
             if process is None:
-                size = image.size
+                size = (frame.shape[1], frame.shape[0])
                 raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-"]
                 # These formats need even sides.
                 even = ["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2"] if "yuv420p" in codec else []
                 command = [ffmpeg, "-y", "-loglevel", "error", *raw, *even, *codec, temporary]
                 process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
-            if image.size != size:
-                raise InputError(f"{path}: the pictures have different sizes, {size} and {image.size}")
+            if (frame.shape[1], frame.shape[0]) != size:
+                other = (frame.shape[1], frame.shape[0])
+                raise InputError(f"{path}: the pictures have different sizes, {size} and {other}")
             assert process.stdin is not None
-            process.stdin.write(image.rgb8[:, :, :3].tobytes())
+            process.stdin.write(frame[:, :, :3].tobytes())
         if process is None:
             raise InputError(f"{path}: there are no pictures")
         _, said = process.communicate()

@@ -162,6 +162,9 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about data."""
     refuse_unknown(settings, DATA_KEYS, (*PICTURE_KEYS, *SHORT, "size"), "render(...)")
     settings = {key: item for key, item in settings.items() if item is not None}
+    select = settings.get("select")
+    if select is not None and not isinstance(select, str):
+        raise InputError('select is not a text; write one such as "x > 0", or leave out rows before: positions[mask]')
     material = settings.get("material")
     if isinstance(material, Mapping):
         # A table of its own is what a scene file would name.
@@ -181,6 +184,14 @@ def picture_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about a picture, with short forms in their tables."""
     refuse_unknown(settings, (*PICTURE_KEYS, *SHORT, "size", "light"), DATA_KEYS, "Spheres(...), read(...) or with_(...)")
     tables: dict[str, Any] = {key: item for key, item in settings.items() if key in PICTURE_KEYS and item is not None}
+    for name in ("legend", "scale_bar"):
+        if isinstance(tables.get(name), bool) and tables.pop(name):
+            tables[name] = {}
+    for name in ("labels", "lights"):
+        if isinstance(tables.get(name), (str, Mapping)):
+            tables[name] = [tables[name]]
+    if isinstance(tables.get("labels"), (list, tuple)):
+        tables["labels"] = [{"text": label} if isinstance(label, str) else label for label in tables["labels"]]
     light = settings.get("light")
     if light is not None:
         if "integrator" in tables:

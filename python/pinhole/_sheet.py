@@ -28,7 +28,9 @@ def sheet(
     path = os.fspath(path)
     if os.path.splitext(path)[1].lower() != ".png":
         raise InputError(f"{path}: a sheet of pictures is written as .png; change the extension")
-    arrays = [_pixels(index, image) for index, image in enumerate(images)]
+    if isinstance(images, Image):
+        raise InputError("images is one picture; write a list of pictures")
+    arrays = [pixels(index, image) for index, image in enumerate(images)]
     if not arrays:
         raise InputError(f"{path}: there are no pictures")
     height, width, channels = arrays[0].shape
@@ -48,23 +50,24 @@ def sheet(
     write(path, png(paper))
 
 
-def _pixels(index: int, image: Image | Array) -> Array:
+def pixels(index: int, image: Image | Array) -> Array:
+    """The pixels of a picture: uint8 sRGB, (height, width, 3) or (height, width, 4)."""
     array = image.rgb8 if isinstance(image, Image) else np.asarray(image)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4):
         raise InputError(
             f"picture {index} has the shape {array.shape} and the type {array.dtype}; "
-            "it must be (height, width, 3) or (height, width, 4) in uint8"
+            "it must be an Image, or (height, width, 3) or (height, width, 4) in uint8"
         )
     return array
 
 
-def png(pixels: Array) -> bytes:
+def png(array: Array) -> bytes:
     """A PNG of pixels in sRGB: uint8, (height, width, 3) or (height, width, 4)."""
-    height, width, channels = pixels.shape
+    height, width, channels = array.shape
     # Each line follows its filter, which is the difference from the line above (2).
-    above = np.concatenate([np.zeros_like(pixels[:1]), pixels[:-1]])
+    above = np.concatenate([np.zeros_like(array[:1]), array[:-1]])
     lines = np.full((height, 1 + width * channels), 2, np.uint8)
-    lines[:, 1:] = (pixels - above).reshape(height, -1)
+    lines[:, 1:] = (array - above).reshape(height, -1)
     header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
     chunks = ((b"IHDR", header), (b"sRGB", b"\0"), (b"IDAT", zlib.compress(lines.tobytes(), 9)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _progress, _settings
-from ._camera import Camera
+from ._camera import Camera, as_camera
 from ._certificate import Certificate
 from ._errors import InputError, Note, PackageError
 from ._image import Image
@@ -77,7 +77,12 @@ class Spheres:
         centers = _arrays.positions("positions", positions)
         count = len(centers)
         radii = _arrays.radii(radius, centers)
-        named = {str(name): _arrays.column(f"columns[{name!r}]", item, count) for name, item in (columns or {}).items()}
+        if columns is not None and not hasattr(columns, "items"):
+            raise InputError(f"columns is {type(columns).__name__}; it must be a dict of names and arrays of shape ({count},)")
+        named = {
+            str(name): _arrays.column(f"columns[{name!r}]", item, count)
+            for name, item in ({} if columns is None else columns).items()
+        }
         colors = None
         if color is not None and _arrays.is_colors(color):
             colors = _arrays.colors(color, count)
@@ -91,13 +96,7 @@ class Spheres:
         elif color is not None:
             settings["color"] = _triple(color)
         if cmap is not None or color_range is not None:
-            named_by = settings.get("color_by")
-            if named_by is None:
-                what = "cmap" if cmap is not None else "color_range"
-                raise InputError(f"{what} needs numbers: give color an array of shape (n,), or name a column in color_by")
-            table = {"column": named_by} if isinstance(named_by, str) else dict(named_by)
-            given = {"map": cmap, "range": color_range}
-            settings["color_by"] = {**table, **{key: item for key, item in given.items() if item is not None}}
+            settings["color_by"] = _with_map(settings.get("color_by"), cmap, color_range)
         if opacity is not None and np.ndim(opacity) > 0:
             named["opacity"] = _arrays.column("opacity", opacity, count)
             settings["opacity_by"] = "opacity"
@@ -115,8 +114,11 @@ class Spheres:
         made._data, made._settings, made.camera = data, settings, camera
         return made
 
-    def with_(self, **settings: Any) -> Spheres:
+    def with_(self, *, cmap: str | None = None, color_range: tuple[Any, Any] | None = None, **settings: Any) -> Spheres:
         """The same data with other settings, for spheres with columns. Arguments are the settings of ``Spheres``."""
+        if cmap is not None or color_range is not None:
+            by = settings.get("color_by", self._settings.get("color_by"))
+            settings["color_by"] = _with_map(by, cmap, color_range)
         checked = {**self._settings, **_settings.data_settings(settings)}
         made = self._of(self._data.restyled(_settings.data_text(checked)), checked, self.camera)
         warn(made._data.notes)
@@ -182,9 +184,8 @@ class Spheres:
     def _text(self, settings: Mapping[str, Any]) -> _settings.Text:
         tables = _settings.picture_settings(settings)
         tables = {"style": _settings.style_of(tables), **tables}
-        camera = tables.pop("camera", None) or self.camera or Camera()
-        if isinstance(camera, str):
-            camera = Camera(view=camera)
+        camera = tables.pop("camera", None)
+        camera = as_camera(self.camera if camera is None else camera)
         tables["camera"] = camera._table(self._data) if isinstance(camera, Camera) else camera
         data = {"data": "spheres", **self._settings} if self._settings else {}
         return _settings.scene_text({**data, **tables})
@@ -195,7 +196,7 @@ class Spheres:
         *,
         style: str | None = None,
         samples: int | None = None,
-        camera: Camera | str | Mapping[str, Any] | None = None,
+        camera: Camera | str | tuple[float, float] | Mapping[str, Any] | None = None,
         layers: Iterable[str] = (),
         backend: str = "auto",
         progress: bool | Callable[[float], object] | None = None,
@@ -212,7 +213,7 @@ class Spheres:
         samples
             Samples for each pixel.
         camera
-            A ``Camera``; a view such as ``"iso"``; or the table ``camera`` of a scene file as a dict.
+            A ``Camera``; a view such as ``"iso"`` or (azimuth, elevation); or the table ``camera`` of a scene file as a dict.
         layers
             Names of layers besides colour: alpha, depth, normal, position, albedo, id, samples, variance.
         backend
@@ -286,9 +287,10 @@ class Spheres:
 
         ``path`` is that of ``pinhole.movie``; further arguments are those of ``render``.
         """
-        camera = settings.pop("camera", None) or self.camera or Camera()
-        if isinstance(camera, str):
-            camera = Camera(view=camera)
+        if not isinstance(frames, (int, np.integer)) or frames < 1:
+            raise InputError(f"frames is {frames!r}; it must be a whole number of at least 1")
+        camera = settings.pop("camera", None)
+        camera = as_camera(self.camera if camera is None else camera)
         if not isinstance(camera, Camera) or camera.kind != "pinhole":
             raise InputError("a turntable needs a pinhole camera, such as Camera.frame(view, zoom=...)")
         (kind, placed), = self._placed({**settings, "camera": camera}).items()
@@ -330,6 +332,16 @@ class Spheres:
         self._data.update(first, centers, radii, colors)
 
 
+def _with_map(color_by: Any, cmap: str | None, color_range: tuple[Any, Any] | None) -> dict[str, Any]:
+    """The table ``color_by`` with another colour map or range."""
+    if color_by is None:
+        what = "cmap" if cmap is not None else "color_range"
+        raise InputError(f"{what} needs numbers: give color an array of shape (n,), or name a column in color_by")
+    table = {"column": color_by} if isinstance(color_by, str) else dict(color_by)
+    given = {"map": cmap, "range": color_range}
+    return {**table, **{key: item for key, item in given.items() if item is not None}}
+
+
 def _is_triple(color: Any, count: int) -> bool:
     """Whether three numbers are one colour, and not those of three spheres."""
     return np.shape(color) == (3,) and (count != 3 or isinstance(color, (tuple, list)))
@@ -337,7 +349,13 @@ def _is_triple(color: Any, count: int) -> bool:
 
 def _triple(color: Any) -> Any:
     """A colour as a scene file has it."""
-    return color if isinstance(color, str) else [float(number) for number in _arrays.numbers("color", color)]
+    if isinstance(color, str):
+        return color
+    numbers = _arrays.numbers("color", color)
+    if numbers.dtype.kind in "iu" and numbers.max() > 1:
+        bytes_of = "#" + "".join(f"{int(number) & 255:02x}" for number in numbers)
+        raise InputError(f'color is {numbers.tolist()}; a triple is linear light from 0 to 1; for bytes in sRGB write "{bytes_of}"')
+    return [float(number) for number in numbers]
 
 
 def warn(notes: Iterable[str]) -> None:
