@@ -50,4 +50,8 @@ for name in ["pinhole", *(f"pinhole.{module.name}" for module in pkgutil.iter_mo
     failed += doctest.testmod(module, extraglobs={"pinhole": pinhole}).failed
 sys.exit(failed > 0)
 '
+# The pictures of the gallery, which take a minute or two: PINHOLE_GALLERY=1 python/test.sh
+if [ -n "${PINHOLE_GALLERY:-}" ]; then
+    "$work/venv/bin/python" -W ignore "$OLDPWD/python/gallery/run.py"
+fi
 "$work/venv/bin/mypy" --config-file "$OLDPWD/python/pyproject.toml" --cache-dir "$work/mypy" -p pinhole

@@ -1,4 +1,4 @@
-"""A spiral galaxy of 330,000 stars, yellow in the middle and blue in the arms, with pink clouds and dust: galaxy.png."""
+"""A spiral galaxy of 300,000 stars, yellow in the middle and blue in the arms, with clouds and dust: galaxy.png."""
 
 import numpy as np
 
@@ -39,7 +39,8 @@ for (points, radius), size, opacity in (
 ):
     parts.append((points, size, mixed(radius), opacity))
 parts.append((disk(900, 0.25)[0], 0.04, np.array([[255, 90, 150]] * 900), 0.7))
-parts.append((disk(7_000, 0.17, lead=-0.26)[0] * (1, 2, 1), 0.07, np.array([[20, 10, 8]] * 7_000), 0.12))
+dust = disk(7_000, 0.17, lead=-0.26)[0] * (1, 2, 1)
+parts.append((dust, 0.07, np.array([[20, 10, 8]] * 7_000), 0.12))
 counts = [len(points) for points, *_ in parts]
 spheres = ph.Spheres(
     np.concatenate([points for points, *_ in parts]),

@@ -21,4 +21,5 @@ view = {"camera": ph.Camera.frame((0, 20)), "size": (300, 300), "samples": 8}
 spheres.turntable("turntable.gif" if shutil.which("ffmpeg") else "turntable%02d.png", frames=24, fps=12, **view)
 
 # A turn by 72 degrees shows the same.
-ph.sheet("turntable.png", [spheres.render(**{**view, "camera": ph.Camera.frame((turn, 20))}) for turn in (0, 18, 36, 54)])
+images = [spheres.render(**{**view, "camera": ph.Camera.frame((turn, 20))}) for turn in (0, 18, 36, 54)]
+ph.sheet("turntable.png", images)
