@@ -4,7 +4,7 @@ import numpy as np
 
 import pinhole as ph
 
-x, y = np.meshgrid(np.linspace(-1, 1, 180), np.linspace(-1, 1, 180))
+x, y = np.meshgrid(np.linspace(-1, 1, 140), np.linspace(-1, 1, 140))
 waves = np.cos(13 * np.hypot(x - 0.45, y - 0.35)) + np.cos(13 * np.hypot(x + 0.55, y + 0.25))
 points = np.stack([x, 0.055 * waves, y], axis=-1).reshape(-1, 3)
 images = []

@@ -15,5 +15,5 @@ camera = ph.Camera.look_at(
     (0, 7.5, 17), (0, 1.2, 0.5), fov=27, kind="thin-lens", aperture_radius=0.4, focus_on=(0, 1.5, 3.2)
 )
 spheres.render(
-    (840, 520), style="path", samples=32, camera=camera, ground={"height": 0, "color": "#3a2a4a"}, background="#241a33"
+    (840, 520), style="path", samples=24, camera=camera, ground={"height": 0, "color": "#3a2a4a"}, background="#241a33"
 ).save("depth_of_field.png")

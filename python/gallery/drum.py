@@ -36,4 +36,4 @@ spheres = ph.Spheres(
 )
 camera = ph.Camera.frame((16, 16), margin=0.05)
 legend = {"title": "speed (m/s)"}
-spheres.render((900, 720), style="path", samples=24, camera=camera, legend=legend).save("drum.png")
+spheres.render((900, 720), style="path", samples=16, camera=camera, legend=legend).save("drum.png")

@@ -18,7 +18,7 @@ def strand(turns, offset, radius=9.0):
 along = np.linspace(-0.8, len(sequence) - 0.2, 60 * len(sequence))
 points = [strand(along, 0.0), strand(along, groove)]
 kinds = ["backbone"] * (2 * len(along))
-part = np.linspace(0.0, 1.0, 201)
+part = np.linspace(0.0, 1.0, 121)
 for number, base in enumerate(sequence):
     left, right = strand(number, 0.0), strand(number, groove)
     points.append(left + part[:, None] * (right - left))

@@ -18,4 +18,4 @@ spheres = ph.Spheres(
 )
 # Each eye looks at its own half. The knot is half before the paper and half behind it.
 camera = ph.Camera.look_at((0, 0, 14), (0, 0, 0), fov=33, stereo={"separation": 0.9, "convergence": 14})
-spheres.render((500, 500), style="path", samples=24, exposure=0.4, camera=camera, background="#1b2430").save("stereo.png")
+spheres.render((500, 500), style="path", samples=16, exposure=0.4, camera=camera, background="#1b2430").save("stereo.png")

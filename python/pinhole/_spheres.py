@@ -354,7 +354,9 @@ def _triple(color: Any) -> Any:
     numbers = _arrays.numbers("color", color)
     if numbers.dtype.kind in "iu" and numbers.max() > 1:
         bytes_of = "#" + "".join(f"{int(number) & 255:02x}" for number in numbers)
-        raise InputError(f'color is {numbers.tolist()}; a triple is linear light from 0 to 1; for bytes in sRGB write "{bytes_of}"')
+        raise InputError(
+            f'color is {numbers.tolist()}; a triple is linear light from 0 to 1; for bytes in sRGB write "{bytes_of}"'
+        )
     return [float(number) for number in numbers]
 
 
