@@ -114,12 +114,6 @@ fn faults(headless: &'static Headless) {
             "Departure(NO_ID",
         ),
         (
-            "path_sun_and_lamps",
-            "path/seen_light.wgsl",
-            "= light.pending.w",
-            "= 0.0 * light.pending.w",
-        ),
-        (
             "studio_ambient_occlusion",
             "studio/ambient_light.wgsl",
             "hidden += u32",
