@@ -47,6 +47,16 @@ struct KeptAdapter {
     prices: KeptPrices,
 }
 
+impl KeptAdapter {
+    fn adapter(&self) -> [&String; 2] {
+        [&self.name, &self.backend]
+    }
+
+    fn driver(&self) -> [&String; 2] {
+        [&self.driver, &self.driver_info]
+    }
+}
+
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct KeptPrices {
     references: KeptStructure,
@@ -119,14 +129,12 @@ pub(super) fn path() -> Option<PathBuf> {
 /// error says what is wrong with the file.
 fn find(path: &Path, info: &AdapterInfo) -> Result<Option<(Prices, String)>, String> {
     let Some(kept) = read(path)? else { return Ok(None) };
-    let of_adapter = |kept: &&KeptAdapter| {
-        kept.name == info.name && kept.backend == format!("{:?}", info.backend)
-    };
-    let of_driver =
-        |kept: &&KeptAdapter| kept.driver == info.driver && kept.driver_info == info.driver_info;
-    let mut all = kept.adapters.iter().filter(of_adapter).peekable();
+    let backend = format!("{:?}", info.backend);
+    let is_adapter = |kept: &&KeptAdapter| kept.adapter() == [&info.name, &backend];
+    let is_driver = |kept: &&KeptAdapter| kept.driver() == [&info.driver, &info.driver_info];
+    let mut all = kept.adapters.iter().filter(is_adapter).peekable();
     let Some(first) = all.peek().copied() else { return Ok(None) };
-    let Some(found) = all.find(of_driver) else {
+    let Some(found) = all.find(is_driver) else {
         return Err(format!(
             "measured for {} with the driver {} {}, but the driver is {} {}",
             first.name, first.driver, first.driver_info, info.driver, info.driver_info
@@ -179,9 +187,7 @@ pub(super) fn keep(
     };
     // A file that is of no use is replaced.
     let mut adapters = read(path).ok().flatten().map_or_else(Vec::new, |kept| kept.adapters);
-    let names =
-        |of: &KeptAdapter| [&of.name, &of.backend, &of.driver, &of.driver_info].map(String::clone);
-    adapters.retain(|other| names(other) != names(&kept));
+    adapters.retain(|other| other.adapter() != kept.adapter() || other.driver() != kept.driver());
     adapters.push(kept);
     let kept = Kept { version: VERSION, adapters };
     let text = serde_json::to_string_pretty(&kept).map_err(|error| error.to_string())? + "\n";

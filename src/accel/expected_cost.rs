@@ -8,9 +8,7 @@ use super::count::Counts;
 use super::expected::Region;
 use super::grid::ListLayout;
 use super::grid_build::STEP_COST;
-
-/// The share of empty cells from which grids skip them, as in `grid_empty.rs`.
-const SKIPS_FROM: f64 = 0.25;
+use super::{grid_dense, grid_empty};
 
 /// The number of empty cells that a ray crosses in one step, about.
 const SKIPPED: f64 = 3.0;
@@ -57,35 +55,34 @@ fn listed(region: &Region, size: f64) -> f64 {
 
 /// The level of the grids inside cells, 0 if lists are better, and what that saves for each cell; as in `grid_dense.rs`.
 fn best_level(region: &Region, size: f64) -> (i32, f64) {
-    const CROWDED: f64 = 8.0;
-    const GAIN: f64 = 0.9;
     let step = f64::from(STEP_COST);
     let whole = step + listed(region, size);
-    if whole - step < CROWDED {
+    if whole - step < f64::from(grid_dense::CROWDED) {
         return (0, 0.0);
     }
     let cost = |level: i32| {
         let side = 2_f64.powi(level);
         side * (step + listed(region, size / side))
     };
-    let best = (1..=5).map(|level| (level, cost(level))).min_by(|a, b| a.1.total_cmp(&b.1));
-    best.filter(|(_, cost)| *cost < GAIN * whole)
+    let best = (1..=i32::from(grid_dense::MAX_LEVEL))
+        .map(|level| (level, cost(level)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    best.filter(|(_, cost)| *cost < f64::from(grid_dense::GAIN) * whole)
         .map_or((0, 0.0), |(level, cost)| (level, whole - cost))
 }
 
 /// Whether grids inside crowded cells save enough, as in `grid_dense.rs`.
 pub(super) fn is_worth_nesting(regions: &[Region], shape: &GridShape) -> bool {
-    const WORTH_IT: f64 = 0.1;
     let saved: f64 = regions.iter().map(|region| best_level(region, shape.size).1).sum();
     let step = f64::from(STEP_COST);
     let all: f64 = regions.iter().map(|region| step + listed(region, shape.size)).sum();
-    saved >= WORTH_IT * all
+    saved >= f64::from(grid_dense::WORTH_IT) * all
 }
 
 /// Whether so many cells are empty that a walk skips them.
 pub(super) fn is_skipping(regions: &[Region], shape: &GridShape) -> bool {
     let empty: f64 = regions.iter().map(|region| (-listed(region, shape.size)).exp()).sum();
-    empty >= SKIPS_FROM * regions.len() as f64
+    empty >= f64::from(grid_empty::WORTH_IT) * regions.len() as f64
 }
 
 /// The cost in a grid, whose crowded cells may have grids inside, and in which empty cells may be skipped.

@@ -86,8 +86,8 @@ pub struct AccelPlan {
 }
 
 impl AccelPlan {
-    /// Makes a plan for the spheres of a scene, in the scene's frame, and a device whose bindings hold up to `binding_bytes`. Assumes that
-    /// many pictures will be rendered.
+    /// Makes a plan for the spheres of a scene, in the scene's frame, and a device whose bindings hold up to
+    /// `binding_bytes`. Assumes that many pictures will be rendered.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
         Self::for_rays(spheres, choice, binding_bytes, u64::MAX)

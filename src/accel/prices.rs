@@ -171,7 +171,8 @@ pub(super) fn cheapest(candidates: &[Candidate], rays: u64) -> Option<(Structure
         .collect();
     let others = match &others[..] {
         [] => String::new(),
-        others => format!(", and {}", others.join(", ")),
+        [other] => format!(" and {other}"),
+        [first @ .., last] => format!(", {} and {last}", first.join(", ")),
     };
     let what = if is_many {
         "for many pictures, a ray takes about".to_owned()
@@ -213,8 +214,8 @@ mod tests {
             chosen(1_000_000),
             (
                 Structure::Grid(ListLayout::Referenced),
-                "building, copying and tracing 1000000 rays take about 160 ms in a grid of references, and 190 ms in \
-                 a grid with balls, 305 ms in a tree"
+                "building, copying and tracing 1000000 rays take about 160 ms in a grid of references, 190 ms in a \
+                 grid with balls and 305 ms in a tree"
                     .to_owned()
             )
         );
@@ -222,7 +223,7 @@ mod tests {
         assert_eq!(chosen(10_000_000).0, Structure::WideTree);
         assert_eq!(
             chosen(u64::MAX).1,
-            "for many pictures, a ray takes about 5.2 ns in a tree, and 60 ns in a grid of references, 40 ns in a grid \
+            "for many pictures, a ray takes about 5.2 ns in a tree, 60 ns in a grid of references and 40 ns in a grid \
              with balls"
         );
         assert_eq!(cheapest(&[], 1), None);

@@ -68,12 +68,16 @@ impl<'a> SearchPlan<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene) -> Self {
         let spheres = scene.spheres();
-        let is_grid = |structure| matches!(structure, Structure::Grid(_));
         // Of equal spheres, a long list of a grid has only the first, but another may be the one that hides a light.
         let grid = (spheres.len() > FEW && scene.is_opaque())
             .then(|| AccelPlan::new(spheres, AccelChoice::Auto, u64::MAX))
-            .filter(|plan| is_grid(plan.structure))
-            .map(|_| AccelPlan::of(spheres, Structure::Grid(ListLayout::Balls), u64::MAX))
+            .and_then(|plan| match plan.structure {
+                Structure::Grid(ListLayout::Balls) => Some(plan),
+                Structure::Grid(_) => {
+                    Some(AccelPlan::of(spheres, Structure::Grid(ListLayout::Balls), u64::MAX))
+                }
+                _ => None,
+            })
             // A walk is in one grid.
             .filter(|plan| plan.brick_count == 1);
         Self { scene, grid }

@@ -113,6 +113,15 @@ pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
     write(size, ColorType::Rgb, BitDepth::Eight, None, rgb)
 }
 
+/// Encodes sRGB bytes with alpha as a PNG file. `size` is the width and height; `rgba` has four bytes per pixel, row by
+/// row from the top. Colours are not premultiplied.
+///
+/// # Errors
+/// If `rgba` does not have four bytes per pixel.
+pub fn encode_rgba8(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, PngError> {
+    write(size, ColorType::Rgba, BitDepth::Eight, None, rgba)
+}
+
 fn write(
     [width, height]: [u32; 2],
     color: ColorType,

@@ -40,10 +40,13 @@ fn with_more(scene: &Scene, random: &mut Rng) -> Scene {
             sphere
         })
         .collect();
-    for _ in 0..20 {
+    // A grid is for many opaque spheres.
+    let is_opaque = random.bool();
+    let more = if is_opaque { 300 } else { 20 };
+    for _ in 0..more {
         let radius = 10_f64.powf(-2.5 * random.f64()) * 0.3;
         let other = spheres[random.usize(0..spheres.len())];
-        let opacity = if random.bool() { 1.0 } else { random.f32() };
+        let opacity = if is_opaque || random.bool() { 1.0 } else { random.f32() };
         let center = (2.0 * point(random)).to_array();
         let mut sphere = Sphere::new(center, radius, color(random));
         // Some are within others, some in the same place.

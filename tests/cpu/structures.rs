@@ -15,8 +15,8 @@ const ROOMY: u64 = 1 << 30;
 /// 256 spheres a brick, for what needs 16 bytes a sphere.
 const TINY: u64 = 4096;
 
-/// What a grid of copies may take beside its spheres, and 68 bytes for each of 300 spheres.
-const TINY_FOR_COPIES: u64 = (1 << 20) + 300 * 68;
+/// What a grid with balls may take beside its lists, and 68 bytes for each of 300 spheres.
+const TINY_FOR_BALLS: u64 = (1 << 20) + 300 * 68;
 
 /// 68 elements of lists for each of 300 spheres: what a small scene may have.
 const TINY_FOR_REFERENCES: u64 = 300 * 68 * 4;
@@ -25,7 +25,7 @@ const TINY_FOR_REFERENCES: u64 = 300 * 68 * 4;
 fn all(spheres: &Spheres) -> Vec<(String, AccelPlan, Accel)> {
     let kinds = [
         (Structure::List, TINY),
-        (Structure::Grid(ListLayout::Balls), TINY_FOR_COPIES),
+        (Structure::Grid(ListLayout::Balls), TINY_FOR_BALLS),
         (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
         (Structure::WideTree, TINY),
         (Structure::BinaryTree, TINY),

@@ -29,7 +29,7 @@ use crate::trial;
 /// Maximum sizes of a binding in bytes, for one brick and for several.
 const ROOMY: u64 = 1 << 27;
 const TINY: u64 = 16 * 600;
-const TINY_FOR_COPIES: u64 = (1 << 20) + 68 * 600;
+const TINY_FOR_BALLS: u64 = (1 << 20) + 68 * 600;
 const TINY_FOR_REFERENCES: u64 = 4 * 68 * 600;
 
 /// Opens a device with the limits of WebGPU.
@@ -93,7 +93,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 /// All structures, in one brick and in several.
 fn all(spheres: &[[f32; 4]]) -> Vec<Accel> {
     let kinds = [
-        (Structure::Grid(ListLayout::Balls), TINY_FOR_COPIES),
+        (Structure::Grid(ListLayout::Balls), TINY_FOR_BALLS),
         (Structure::Grid(ListLayout::Referenced), TINY_FOR_REFERENCES),
         (Structure::WideTree, TINY),
         (Structure::BinaryTree, TINY),

@@ -28,9 +28,8 @@ impl SampledPicture<'_> {
         let film = self.view.film;
         let mut image = Image::new(film.width(), film.height(), settings.layers_for(layers))?;
         let mut sums = FilmSums::new(film.width(), film.height())?;
-        // A sample may take many times as long as what the layers of data need.
-        self.data_layers(&mut image, &mut Pace::new(), watch)?;
-        self.gather(&mut sums, &mut Pace::new(), watch)?;
+        self.data_layers(&mut image, watch)?;
+        self.gather(&mut sums, watch)?;
         sums.write(&mut image);
         let (samples, totals) = (sums.samples(), sums.totals());
         drop(sums);
@@ -39,12 +38,7 @@ impl SampledPicture<'_> {
     }
 
     /// Fills the layers of the ray through the centre of each pixel.
-    fn data_layers(
-        &self,
-        image: &mut Image,
-        pace: &mut Pace,
-        watch: &mut Watch<'_>,
-    ) -> Result<(), RenderError> {
+    fn data_layers(&self, image: &mut Image, watch: &mut Watch<'_>) -> Result<(), RenderError> {
         let has_data = image.rows_mut(0..1).first().is_some_and(|row| row.has_data());
         if !has_data {
             return Ok(());
@@ -53,7 +47,7 @@ impl SampledPicture<'_> {
         let total = self.context.settings.sampling.samples;
         let none = Progress { samples: 0, total, part: 0.0, noise: None };
         let height = image.height() as usize;
-        pace.run(height.div_ceil(STRIP), |strips| {
+        Pace::new().run(height.div_ceil(STRIP), |strips| {
             for_rows(image, rows_of(&strips, height), |pixel, i, row| {
                 row.set(i, &self.data(pixel));
             });
@@ -66,12 +60,9 @@ impl SampledPicture<'_> {
 
     /// Takes samples until all are complete or the caller finishes the render. Then some strips may have more samples
     /// than others.
-    fn gather(
-        &self,
-        sums: &mut FilmSums,
-        pace: &mut Pace,
-        watch: &mut Watch<'_>,
-    ) -> Result<(), RenderError> {
+    fn gather(&self, sums: &mut FilmSums, watch: &mut Watch<'_>) -> Result<(), RenderError> {
+        // Its own, because a sample may take many times as long as what the layers of data need.
+        let mut pace = Pace::new();
         let total = self.context.settings.sampling.samples;
         let mut progress = Progress { samples: 0, total, part: 0.0, noise: None };
         let mut wants_noise = false;

@@ -177,7 +177,14 @@ fn hidden_light(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
 
 /// The parts that find whether a light is hidden from a surface.
 pub(super) fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<Part> {
-    let mut parts = excluded_parts(exclude_by);
+    let mut parts = sampled_search(structure, excluded_parts(exclude_by));
+    parts.push(part!("studio/hidden_light.wgsl"));
+    parts
+}
+
+/// The parts that take directions by chance, and find what is along them. `excluded` are those that exclude shapes.
+pub(super) fn sampled_search(structure: Structure, excluded: Vec<Part>) -> Vec<Part> {
+    let mut parts = excluded;
     parts.extend([
         part!("accel/spend.wgsl"),
         part!("accel/brick.wgsl"),
@@ -186,7 +193,6 @@ pub(super) fn light_search(structure: Structure, exclude_by: ExcludeBy) -> Vec<P
         part!("math/sampling.wgsl"),
         part!("math/disk.wgsl"),
         part!("math/warp.wgsl"),
-        part!("studio/hidden_light.wgsl"),
     ]);
     parts.extend(structure_parts(structure));
     parts

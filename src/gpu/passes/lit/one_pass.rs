@@ -2,12 +2,12 @@
 
 use super::kernels::{
     Materials, Schedule, SkyKind, Sources, base, excluded_parts, excluded_with_light, light_search,
-    scattering,
+    sampled_search, scattering,
 };
 use crate::accel::{ListLayout, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::scene::shape_ids::ExcludeBy;
-use crate::gpu::shader::{Kernel, camera_parts, part, structure_parts};
+use crate::gpu::shader::{Kernel, camera_parts, part};
 
 /// The pictures of which one pass takes whole samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -122,19 +122,13 @@ fn paths_kernel(
     sources: Sources,
 ) -> Kernel {
     let mut parts = base(Schedule::Pixels);
-    parts.extend(match sources {
+    let excluded = match sources {
         Sources::None => excluded_parts(exclude_by),
         Sources::Any => excluded_with_light(exclude_by),
-    });
+    };
+    parts.extend(sampled_search(structure, excluded));
     parts.extend([
         part!("scene/emitter.wgsl"),
-        part!("accel/spend.wgsl"),
-        part!("accel/brick.wgsl"),
-        part!("math/trigonometry.wgsl"),
-        part!("scene/lighting.wgsl"),
-        part!("math/sampling.wgsl"),
-        part!("math/disk.wgsl"),
-        part!("math/warp.wgsl"),
         part!("camera/filter.wgsl"),
         part!("camera/film_sample.wgsl"),
         part!("scene/appearance_words.wgsl", "beside-structure"),
@@ -144,7 +138,6 @@ fn paths_kernel(
         part!("path/begin_path.wgsl"),
         part!("path/whole_paths.wgsl"),
     ]);
-    parts.extend(structure_parts(structure));
     // What cameras share is among the other parts.
     let [_, _, camera] = camera_parts(camera);
     parts.push(camera);
