@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the wheel and the program, installs the wheel into a fresh virtual environment, and runs the tests of the package,
 # the examples in its documentation and mypy. Needs a Rust toolchain and Python 3.10 or newer with venv, which PYTHON may
-# name; the rest comes from PyPI.
+# name; the rest comes from PyPI. PINHOLE_PROGRAM names a program that was built from the same sources.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -28,15 +28,17 @@ if ! "$work/tools/bin/maturin" --version >/dev/null 2>&1; then
 fi
 rm -rf "$work/wheels"
 "$work/tools/bin/maturin" build --quiet --locked --profile "${PINHOLE_PROFILE:-dev}" --manifest-path python/Cargo.toml \
-    --interpreter "$work/tools/bin/python" --out "$work/wheels"
-cargo build --quiet --locked --profile "${PINHOLE_PROFILE:-dev}" -p pinhole-cli
+    --features "${PINHOLE_FEATURES:-}" --interpreter "$work/tools/bin/python" --out "$work/wheels"
+if [ -z "${PINHOLE_PROGRAM:-}" ]; then
+    cargo build --quiet --locked --profile "${PINHOLE_PROFILE:-dev}" -p pinhole-cli
+    profile=${PINHOLE_PROFILE:-debug}
+    [ "$profile" = dev ] && profile=debug
+    export PINHOLE_PROGRAM=$target/$profile/pinhole
+fi
 
 "$python" -m venv --clear "$work/venv"
 "$work/venv/bin/pip" install --quiet "$work"/wheels/pinhole_rt-*.whl pytest mypy anywidget nbclient ipykernel pillow
 
-profile=${PINHOLE_PROFILE:-debug}
-[ "$profile" = dev ] && profile=debug
-export PINHOLE_PROGRAM=$target/$profile/pinhole
 # Away from python/, whose folder pinhole/ has no compiled half.
 cd "$work"
 "$work/venv/bin/pytest" -c "$OLDPWD/python/pyproject.toml" --rootdir "$OLDPWD/python" -p no:cacheprovider -q \
