@@ -13,7 +13,7 @@ from ._errors import DeviceError, Error, FileError, InputError, InternalError, N
 from ._files import Trajectory, read
 from ._image import Image
 from ._movie import movie
-from ._pinhole import __version__
+from ._pinhole import __version__, adapters, use_adapter
 from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
@@ -77,7 +77,9 @@ __all__ = [
     "Text",
     "Trajectory",
     "__version__",
+    "adapters",
     "movie",
     "read",
     "sheet",
+    "use_adapter",
 ]

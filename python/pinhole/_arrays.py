@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import InputError
+from ._errors import InputError, Note
+from ._pinhole import srgb_of_names
 
 Array = npt.NDArray[Any]
 
@@ -16,11 +19,8 @@ def numbers(name: str, given: Any) -> Array:
     """An array of real numbers, without a copy where that is possible."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(f"{name} is a masked array; leave out what is masked, or fill it with .filled(...)")
-    if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
-        try:
-            given = np.from_dlpack(given)
-        except (BufferError, RuntimeError, TypeError) as error:
-            raise InputError(f"{name} is not in host memory ({error}); copy it, as with .cpu() or .get()") from None
+    if not isinstance(given, np.ndarray):
+        given = _on_host(name, given)
     try:
         array = np.asarray(given)
     except (TypeError, ValueError) as error:
@@ -30,6 +30,22 @@ def numbers(name: str, given: Any) -> Array:
         what = what or f"values of the type {array.dtype}"
         raise InputError(f"{name} has {what} (dtype {array.dtype}); it must have real numbers")
     return array
+
+
+def _on_host(name: str, given: Any) -> Any:
+    """An array of another library in host memory, where it may be already; a copy of one on a device, with a note."""
+    if hasattr(given, "__cuda_array_interface__") or getattr(given, "is_cuda", False):
+        # Of CuPy, PyTorch and Numba.
+        for method in ("get", "cpu", "copy_to_host"):
+            if hasattr(given, method):
+                warnings.warn(f"{name} is copied from a CUDA device to host memory", Note, stacklevel=5)
+                return _on_host(name, getattr(given, method)())
+    if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
+        try:
+            return np.from_dlpack(given)
+        except (BufferError, RuntimeError, TypeError) as error:
+            raise InputError(f"{name} is not in host memory ({error}); copy it, as with .cpu() or .get()") from None
+    return given
 
 
 def floats(array: Array, dtype: Any = None) -> Array:
@@ -110,6 +126,39 @@ def colors(given: Any, count: int) -> Array:
         f"color has the shape {array.shape} and the type {array.dtype}; it must be (n, 3) or (n, 4) in uint8 (sRGB), "
         f"or (n, 3) in floats (linear light){remedy}"
     )
+
+
+def named_colors(given: Any, count: int) -> Array | None:
+    """Colours by names of CSS, one for each sphere: uint8 of shape (n, 3); None if not all texts name colours."""
+    array = np.asarray(given)
+    if array.dtype.kind != "U" or array.shape != (count,):
+        return None
+    names, indices = np.unique(array, return_inverse=True)
+    colors = srgb_of_names(names.tolist())
+    return None if colors is None else np.frombuffer(colors, np.uint8).reshape(-1, 3)[indices]
+
+
+def materials(given: Any, count: int) -> tuple[list[Any], Array]:
+    """The different materials of a list of one for each sphere, which may be names or tables, and the index of each."""
+    if len(given) != count:
+        raise InputError(f"material has {len(given)} values for {count} spheres")
+    different: dict[str, int] = {}
+    firsts: list[Any] = []
+    indices = np.empty(count, np.uint32)
+    for sphere, one in enumerate(given):
+        if not isinstance(one, (str, Mapping)):
+            raise InputError(f"material: that of sphere {sphere} is {one!r}; write a Material, or a name of materials")
+        key = str(one) if isinstance(one, str) else repr(dict(one))
+        index = different.setdefault(key, len(firsts))
+        if index == len(firsts):
+            firsts.append(one)
+        indices[sphere] = index
+    return firsts, indices
+
+
+def is_list(given: Any) -> bool:
+    """Whether an argument has values for spheres one by one."""
+    return isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str)
 
 
 def column(name: str, given: Any, count: int) -> tuple[list[str], Array] | Array:

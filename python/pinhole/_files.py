@@ -11,7 +11,7 @@ from ._camera import Camera
 from ._errors import InputError
 from ._image import Image
 from ._movie import movie
-from ._pinhole import FileData
+from ._pinhole import FileData, FrameKeys
 from ._spheres import Spheres, warn
 
 
@@ -47,8 +47,12 @@ class Trajectory(Sequence[Spheres]):
             frame = self._frames[index]
         except IndexError:
             raise IndexError(f"there is no frame {index}; there are {len(self)}") from None
-        data = self._file.frame(frame, _settings.data_text(self._settings))
-        warn(data.notes)
+        return self._read(frame, None)
+
+    def _read(self, frame: int, keys: FrameKeys | None) -> Spheres:
+        data = self._file.frame(frame, _settings.data_text(self._settings), keys)
+        if keys is None:
+            warn(data.notes)
         return Spheres._of(data, self._settings, self.camera)
 
     def with_(self, **settings: Any) -> Trajectory:
@@ -63,19 +67,25 @@ class Trajectory(Sequence[Spheres]):
         return self[0].render(size, **settings)
 
     def movie(self, path: str | os.PathLike[str], *, fps: float = 30.0, **settings: Any) -> None:
-        """Renders all frames into a movie, as ``pinhole.movie`` does, with one camera that frames all of them.
+        """Renders all frames into a movie, as ``pinhole.movie`` does, with one camera that frames all of them, and in which
+        equal values have equal colours.
 
-        All files are read twice, because the camera must know where spheres will be. For colours with one meaning in all
-        frames, give the range: ``color_by={"column": "x", "range": [0, 1]}``.
+        All frames are read twice, because where spheres will be, and which values they will have, must be known before.
         """
         camera = settings.pop("camera", None) or self.camera
-        boxes = [bounds for frame in self if (bounds := frame.bounds) is not None]
+        keys = FrameKeys()
+        boxes = []
+        for frame in self:
+            keys.add(frame._data)
+            if (bounds := frame.bounds) is not None:
+                boxes.append(bounds)
         corners = None
         if boxes:
             low, high = zip(*boxes)
             corners = ([min(x) for x in zip(*low)], [max(x) for x in zip(*high)])
         placed = self[0]._placed({**settings, "camera": camera}, corners)
-        movie(path, (frame.render(camera=placed, **settings) for frame in self), fps=fps)
+        frames = (self._read(frame, keys) for frame in self._frames)
+        movie(path, (frame.render(camera=placed, **settings) for frame in frames), fps=fps)
 
     def __repr__(self) -> str:
         return f"<pinhole.Trajectory: {len(self)} {'frame' if len(self) == 1 else 'frames'}>"

@@ -10,7 +10,8 @@ from collections.abc import Iterable
 
 from ._errors import FileError, InputError
 from ._image import Image, write
-from ._sheet import Array, pixels, png
+from ._pinhole import png_of
+from ._sheet import Array, pixels
 
 #: What ffmpeg is told for each kind of file.
 CODECS = {
@@ -37,7 +38,7 @@ def movie(path: str | os.PathLike[str], images: Iterable[Image | Array], *, fps:
             if isinstance(image, Image):
                 image.save(path % number)
             else:
-                write(path % number, png(pixels(number, image)))
+                write(path % number, png_of(pixels(number, image)))
         if number < 0:
             raise InputError(f"{path}: there are no pictures")
         return

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
-import struct
-import zlib
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+
+from ._pinhole import png_of
 
 if TYPE_CHECKING:
     from ._certificate import Certificate
@@ -101,24 +101,12 @@ def _violations(violations: list[str]) -> str:
 
 
 def _picture(verdicts: npt.NDArray[Any], names: list[str]) -> str:
-    """The verdicts as a PNG file with a palette, in base64."""
+    """The verdicts as a PNG file, in base64."""
     height, width = verdicts.shape
     step = -(-max(height, width) // LONGEST)
     if step > 1:
         # Verdicts are in the order from the best to the worst.
         rows = np.maximum.reduceat(verdicts, range(0, height, step), axis=0)
         verdicts = np.maximum.reduceat(rows, range(0, width, step), axis=1)
-        height, width = verdicts.shape
-    palette = bytes.fromhex("".join(VERDICTS.get(name, OTHER)[0] for name in names))
-    lines = np.zeros((height, width + 1), np.uint8)
-    lines[:, 1:] = verdicts
-    chunks = [
-        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)),
-        (b"PLTE", palette),
-        (b"IDAT", zlib.compress(lines.tobytes())),
-        (b"IEND", b""),
-    ]
-    data = b"".join(
-        struct.pack(">I", len(of)) + kind + of + struct.pack(">I", zlib.crc32(kind + of)) for kind, of in chunks
-    )
-    return base64.b64encode(b"\x89PNG\r\n\x1a\n" + data).decode()
+    palette = np.array([list(bytes.fromhex(VERDICTS.get(name, OTHER)[0])) for name in names], np.uint8)
+    return base64.b64encode(png_of(palette[verdicts])).decode()

@@ -166,11 +166,31 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     if select is not None and not isinstance(select, str):
         raise InputError('select is not a text; write one such as "x > 0", or leave out rows before: positions[mask]')
     material = settings.get("material")
+    if isinstance(material, (list, tuple)):
+        raise InputError("material: values for each sphere are an argument of Spheres(...); give one Material")
     if isinstance(material, Mapping):
         # A table of its own is what a scene file would name.
         settings["materials"] = {**settings.get("materials", {}), "given": dict(material)}
         settings["material"] = "given"
     return settings
+
+
+def material_tables(given: list[Any], known: Any) -> tuple[dict[str, Any], list[str]]:
+    """The table ``materials`` with those of spheres one by one, which are names or tables, and the name of each."""
+    tables: dict[str, Any] = {} if known is None else dict(known)
+    names = []
+    for index, one in enumerate(given):
+        if isinstance(one, str):
+            if one not in tables:
+                there = ", ".join(tables) or "none"
+                raise InputError(f"material: there is no material {one!r}; materials has {there}")
+            names.append(str(one))
+            continue
+        refuse_misplaced("material", one)
+        name = f"given {index}"
+        tables[name] = dict(one)
+        names.append(name)
+    return tables, names
 
 
 def data_text(settings: Mapping[str, Any]) -> Text:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import struct
-import zlib
 from collections.abc import Iterable
 from typing import Any
 
@@ -13,6 +11,7 @@ import numpy.typing as npt
 
 from ._errors import InputError
 from ._image import Image, write
+from ._pinhole import png_of
 
 Array = npt.NDArray[Any]
 
@@ -47,7 +46,7 @@ def sheet(
     for index, array in enumerate(arrays):
         top, left = index // columns * (height + gap), index % columns * (width + gap)
         paper[top : top + height, left : left + width] = array
-    write(path, png(paper))
+    write(path, png_of(paper))
 
 
 def pixels(index: int, image: Image | Array) -> Array:
@@ -59,17 +58,3 @@ def pixels(index: int, image: Image | Array) -> Array:
             "it must be an Image, or (height, width, 3) or (height, width, 4) in uint8"
         )
     return array
-
-
-def png(array: Array) -> bytes:
-    """A PNG of pixels in sRGB: uint8, (height, width, 3) or (height, width, 4)."""
-    height, width, channels = array.shape
-    # Each line follows its filter, which is the difference from the line above (2).
-    above = np.concatenate([np.zeros_like(array[:1]), array[:-1]])
-    lines = np.full((height, 1 + width * channels), 2, np.uint8)
-    lines[:, 1:] = (array - above).reshape(height, -1)
-    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
-    chunks = ((b"IHDR", header), (b"sRGB", b"\0"), (b"IDAT", zlib.compress(lines.tobytes(), 9)), (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
-    )

@@ -38,18 +38,20 @@ class Spheres:
         One radius or an array of shape (n,), in the unit of the positions. Without it, spheres are so large that neighbours
         about touch.
     color
-        A CSS colour such as ``"steelblue"``; a linear triple (r, g, b); an array of shape (n, 3) or (n, 4) in uint8 (sRGB),
-        or (n, 3) in floats (linear light); or n numbers or texts, which ``cmap`` turns into colours.
+        A CSS colour such as ``"steelblue"``, or n of them; a linear triple (r, g, b); an array of shape (n, 3) or (n, 4) in
+        uint8 (sRGB), or (n, 3) in floats (linear light); or n numbers or other texts, which ``cmap`` turns into colours.
     cmap
         The name of a colour map, such as ``"viridis"``.
     color_range
         The numbers at both ends of the colour map, or percentiles such as ``("2%", "98%")``; by default all are in range.
     opacity
         From 0 to 1: one number, or an array of shape (n,).
+    material
+        A ``Material``; or n of them, or of names of ``materials={"name": Material(...)}``.
     columns
         Named arrays of shape (n,), for ``color_by``, ``radius_by``, ``select`` and so on.
     settings
-        The keys of a scene file about data: ``material``, ``color_by``, ``radius_by``, ``opacity_by``, ``emission_by``,
+        The keys of a scene file about data: ``color_by``, ``radius_by``, ``opacity_by``, ``emission_by``,
         ``select``, ``leave_out``, ``elements``, ``bonds``, ``box``, ``radius_scale``.
 
     >>> import pinhole
@@ -71,6 +73,7 @@ class Spheres:
         cmap: str | None = None,
         color_range: tuple[Any, Any] | None = None,
         opacity: Any = None,
+        material: Any = None,
         columns: Mapping[str, Any] | None = None,
         **settings: Any,
     ) -> None:
@@ -86,6 +89,8 @@ class Spheres:
         colors = None
         if color is not None and _arrays.is_colors(color):
             colors = _arrays.colors(color, count)
+        elif color is not None and (by_name := _arrays.named_colors(color, count)) is not None:
+            colors = by_name
         elif color is not None and not isinstance(color, str) and not _is_triple(color, count):
             named["color"] = _arrays.column("color", color, count)
             by = {"column": "color", "map": cmap, "range": color_range}
@@ -102,6 +107,18 @@ class Spheres:
             settings["opacity_by"] = "opacity"
         elif opacity is not None:
             settings["opacity"] = opacity
+        if material is not None and _arrays.is_list(material):
+            for other in ("elements", "elements_by"):
+                if settings.get(other) is not None:
+                    raise InputError(f"material for each sphere and {other} exclude each other; remove one of them")
+            firsts, indices = _arrays.materials(material, count)
+            tables, names = _settings.material_tables(firsts, settings.get("materials"))
+            named["material"] = (names, indices)
+            settings["materials"] = tables
+            settings["elements_by"] = ["material"]
+            settings["elements"] = {name: {"material": name} for name in names}
+        elif material is not None:
+            settings["material"] = material
         self._settings = _settings.data_settings(settings)
         self.camera = None
         text = _settings.data_text(self._settings)
@@ -156,6 +173,18 @@ class Spheres:
         """The three edges of the periodic cell: float64, (3, 3), one in each row; None if there is none."""
         cell = self._data.cell()
         return None if cell is None else np.array(cell)
+
+    @property
+    def color_key(self) -> dict[str, Any] | None:
+        """What colours mean, if a column gives them: ``title``; and either ``range`` (two numbers), ``log`` (a bool) and
+        ``colors`` (uint8 sRGB, (k, 3), the low end first), or ``categories`` (names with colours in uint8 sRGB).
+        """
+        key: dict[str, Any] | None = self._data.color_key()
+        if key is not None and "colors" in key:
+            key["colors"] = np.frombuffer(key["colors"], np.uint8).reshape(-1, 3)
+        elif key is not None:
+            key["categories"] = dict(key["categories"])
+        return key
 
     @property
     def notes(self) -> list[str]:
@@ -344,7 +373,9 @@ def _with_map(color_by: Any, cmap: str | None, color_range: tuple[Any, Any] | No
 
 def _is_triple(color: Any, count: int) -> bool:
     """Whether three numbers are one colour, and not those of three spheres."""
-    return np.shape(color) == (3,) and (count != 3 or isinstance(color, (tuple, list)))
+    array = np.asarray(color)
+    is_three = array.shape == (3,) and array.dtype.kind in "biuf"
+    return is_three and (count != 3 or isinstance(color, (tuple, list)))
 
 
 def _triple(color: Any) -> Any:

@@ -80,8 +80,34 @@ def from_pyvista(points: Any, **settings: Any) -> Spheres:
     return Spheres(points.points, settings.pop("radius", None), columns=columns, **settings)
 
 
+def colorbar(spheres: Spheres, axes: Any = None, **keys: Any) -> Any:
+    """Adds what the colours of spheres mean to the figure of matplotlib's ``axes``, beside them: a colour bar, or a legend
+    of categories. Returns it; ``keys`` are those of ``figure.colorbar`` or ``axes.legend``.
+    """
+    import matplotlib.pyplot as plt
+    from matplotlib import cm, colors, patches
+
+    key = spheres.color_key
+    if key is None:
+        raise InputError("colors mean nothing here; give color an array of shape (n,), or name a column in color_by")
+    if axes is None:
+        axes = plt.gca()
+    if "categories" in key:
+        shown = [
+            patches.Patch(color=(red / 255, green / 255, blue / 255), label=name)
+            for name, (red, green, blue) in key["categories"].items()
+        ]
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
+        return axes.legend(handles=shown, **{"title": key["title"], **beside, **keys})
+    norm = (colors.LogNorm if key["log"] else colors.Normalize)(*key["range"])
+    table = colors.ListedColormap(key["colors"] / 255)
+    return axes.figure.colorbar(cm.ScalarMappable(norm, table), **{"ax": axes, "label": key["title"], **keys})
+
+
 def imshow(image: Image, axes: Any = None, **keys: Any) -> Any:
-    """Shows a picture in the axes of matplotlib, without ticks, and returns what ``axes.imshow`` returns."""
+    """Shows a picture in the axes of matplotlib, without ticks, and returns what ``axes.imshow`` returns. The extent is in
+    pixels, with row 0 at the top; ``keys``, such as ``extent``, are those of ``axes.imshow``.
+    """
     if axes is None:
         import matplotlib.pyplot as plt
 

@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pinhole::Scene;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{Decision, GpuError, Progress, RenderPlan, UploadProgress, with_retries};
+use pinhole::gpu::{GpuError, Progress, RenderPlan, UploadProgress, with_retries};
 use pinhole::verify::{Certificate, Checker, Verdict};
 use pyo3::prelude::*;
 
@@ -66,13 +66,12 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Judge
     };
     let (headless, view) = (&opened.headless, look.view());
     let settings = look.settings.by_primary_rays();
-    let decide = || if stop.is_wanted() { Decision::Stop } else { Decision::GoOn };
     let plan = |choice| headless.plan_record(scene, &view, choice, 0);
     let record = |plan: &RenderPlan| {
         plan.check(&headless.device().limits(), memory::available())?;
-        let watch = &mut |_: &UploadProgress| decide();
+        let watch = &mut |_: &UploadProgress| stop.decision();
         let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
-        headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| decide())
+        headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision())
     };
     let tried =
         with_retries(AccelChoice::Auto, plan, |_| {}, |plan| Ok::<_, GpuError>(record(plan)));

@@ -2,9 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use pinhole::gpu::adapter;
 use pinhole::gpu::{GpuError, Headless, HeadlessOptions, SelfTestExtent};
 
+use pyo3::prelude::*;
+
 use crate::fault::{Fault, Outcome};
+use crate::worker;
 
 /// What renders.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,6 +48,9 @@ struct Shared {
     opened: Option<Arc<Opened>>,
 }
 
+/// A part of the name of the adapter that is wanted; `None` for the best.
+static WANTED: Mutex<Option<String>> = Mutex::new(None);
+
 static SHARED: Mutex<Option<Shared>> = Mutex::new(None);
 
 /// The shared device; `None` if the CPU renders.
@@ -75,7 +82,9 @@ pub(crate) fn device(backend: Backend) -> Outcome<Option<Arc<Opened>>> {
 }
 
 fn open() -> Outcome<Option<Opened>> {
-    let headless = match Headless::open(&HeadlessOptions::default()) {
+    let adapter = WANTED.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let headless = match Headless::open(&HeadlessOptions { adapter, ..HeadlessOptions::default() })
+    {
         Ok(headless) => headless,
         Err(GpuError::NoAdapter) => return Ok(None),
         Err(error) => return Err(error.into()),
@@ -88,6 +97,29 @@ fn open() -> Outcome<Option<Opened>> {
     let warning =
         failed.map(|failed| format!("{name} {failed}; its pictures may be wrong: verify them"));
     Ok(Some(Opened { headless, warning }))
+}
+
+/// The names of all adapters of this machine, the best first.
+#[pyfunction]
+pub(crate) fn adapters(py: Python<'_>) -> Vec<String> {
+    py.detach(|| adapter::adapters().iter().map(|found| found.get_info().name).collect())
+}
+
+/// Renders from now on with the adapter whose name contains a text, or with the best one if it is None.
+#[pyfunction]
+#[pyo3(signature = (name=None))]
+pub(crate) fn use_adapter(py: Python<'_>, name: Option<String>) -> PyResult<()> {
+    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+    // A device of a parent process cannot be replaced, and `device` says so.
+    shared.take_if(|shared| shared.process == std::process::id());
+    drop(shared);
+    let before =
+        std::mem::replace(&mut *WANTED.lock().unwrap_or_else(PoisonError::into_inner), name);
+    let opened = worker::run(py, None, |_| device(Backend::Gpu).map(drop));
+    if opened.is_err() {
+        *WANTED.lock().unwrap_or_else(PoisonError::into_inner) = before;
+    }
+    Ok(opened?)
 }
 
 /// Forgets a device that was lost, so that the next caller opens a new one.

@@ -7,6 +7,7 @@ use pinhole::load::{self, Format, LoadError, Loaded, Options, Trajectory};
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
+use crate::keys::FrameKeys;
 use crate::scene::Given;
 use crate::scene_text::SceneText;
 use crate::spheres::SphereData;
@@ -64,14 +65,22 @@ impl FileData {
         self.problem.as_deref()
     }
 
-    /// Reads a frame, counted from 0.
-    fn frame(&self, py: Python<'_>, index: usize, text: SceneText) -> PyResult<SphereData> {
+    /// Reads a frame, counted from 0. Equal values have equal colours in all frames with the same `keys`.
+    #[pyo3(signature = (index, text, keys))]
+    fn frame(
+        &self,
+        py: Python<'_>,
+        index: usize,
+        text: SceneText,
+        keys: Option<&FrameKeys>,
+    ) -> PyResult<SphereData> {
         Ok(worker::run(py, None, |_| {
             let mut loaded = self.read(index)?;
             for note in &mut loaded.notes {
                 *note = format!("{}: {note}", self.path);
             }
-            let given = Given { colors: None, radii: self.options.radius.is_some() };
+            let keys = keys.map(FrameKeys::joined);
+            let given = Given { colors: None, radii: self.options.radius.is_some(), keys };
             SphereData::of_loaded(loaded, &text, given, self.format.z_is_up)
                 .map_err(|fault| self.in_file(fault))
         })?)

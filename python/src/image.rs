@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use numpy::{Element, IntoPyArray, PyArrayMethods};
+use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pinhole::annotate::Annotations;
 use pinhole::image::encoding::Bits;
 use pinhole::image::{Image, Layer};
@@ -107,6 +107,30 @@ impl Picture {
         let bytes = npy::encode(&self.image, layer).map_err(Fault::input)?;
         Ok(PyBytes::new(py, &bytes))
     }
+}
+
+/// A PNG file of sRGB pixels: uint8 of shape (height, width, 3), or 4 channels with alpha.
+#[pyfunction]
+pub(crate) fn png_of<'py>(
+    py: Python<'py>,
+    pixels: PyReadonlyArray3<'py, u8>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let [height, width, channels] = *pixels.shape() else {
+        return Err(Fault::Internal("pixels have three axes".to_owned()).into());
+    };
+    let side = |side: usize| u32::try_from(side).map_err(Fault::input);
+    let size = [side(width)?, side(height)?];
+    // In the order of rows, whatever the strides are.
+    let samples: Vec<u8> = pixels.as_array().iter().copied().collect();
+    let bytes = worker::run(py, None, |_| {
+        let encoded = if channels == 4 {
+            png::encode_rgba8(size, &samples)
+        } else {
+            png::encode_rgb8(size, &samples)
+        };
+        encoded.map_err(Fault::input)
+    })?;
+    Ok(PyBytes::new(py, &bytes))
 }
 
 impl Picture {

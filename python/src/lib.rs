@@ -8,10 +8,12 @@
 
 mod arrays;
 mod certificate;
+mod colors;
 mod device;
 mod fault;
 mod files;
 mod image;
+mod keys;
 mod look;
 mod memory;
 mod render;
@@ -37,7 +39,12 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<certificate::Judged>()?;
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
+    module.add_class::<keys::FrameKeys>()?;
     module.add_class::<spheres::SphereData>()?;
+    module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
+    module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;
+    module.add_function(wrap_pyfunction!(colors::srgb_of_names, module)?)?;
+    module.add_function(wrap_pyfunction!(image::png_of, module)?)?;
     module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;
     Ok(())
 }

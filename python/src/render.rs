@@ -1,11 +1,13 @@
 //! Renders a look of a scene: on the shared device, where the scene stays between pictures, or on the CPU.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
+use std::time::Duration;
 
 use pinhole::accel::AccelChoice;
 use pinhole::cpu::{self, RenderError, SearchPlan};
 use pinhole::gpu::{GpuError, RenderPlan, SceneBuffers, UploadProgress, with_retries};
-use pinhole::render::{Decision, Integrator, Progress};
+use pinhole::render::{Integrator, Progress};
 use pinhole::scene::SceneUpdate;
 use pinhole::{Image, LayerSet, RenderSettings, Scene};
 
@@ -14,6 +16,9 @@ use crate::fault::{Fault, Outcome};
 use crate::look::Look;
 use crate::memory;
 use crate::worker::Stop;
+
+/// How long a thread sleeps before it looks again whether another has rendered its picture.
+const WAIT: Duration = Duration::from_millis(2);
 
 /// A scene on a device.
 struct Uploaded {
@@ -81,6 +86,18 @@ impl OnDevice {
         }
     }
 
+    /// What is on the device, as soon as no other thread renders it.
+    fn wait(&self, stop: &Stop) -> Outcome<MutexGuard<'_, Option<Uploaded>>> {
+        loop {
+            match self.uploaded.try_lock() {
+                Ok(slot) => return Ok(slot),
+                Err(TryLockError::Poisoned(slot)) => return Ok(slot.into_inner()),
+                Err(TryLockError::WouldBlock) if stop.is_wanted() => return Err(Fault::Stopped),
+                Err(TryLockError::WouldBlock) => thread::sleep(WAIT),
+            }
+        }
+    }
+
     fn on_gpu(
         &self,
         opened: &Arc<Opened>,
@@ -90,7 +107,7 @@ impl OnDevice {
         stop: &Stop,
     ) -> Outcome<Rendered> {
         let (headless, light) = (&opened.headless, Light::of(&look.settings));
-        let mut slot = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut slot = self.wait(stop)?;
         let fits = |found: &Uploaded| {
             Arc::ptr_eq(&found.opened, opened)
                 && [Light::None, found.for_light].contains(&light)
@@ -105,7 +122,7 @@ impl OnDevice {
             let pictures = views.iter().enumerate().map(|(done, view)| {
                 let watch = &mut |progress: &Progress| {
                     stop.report((done as f64 + progress.part) / views.len() as f64);
-                    decision(stop)
+                    stop.decision()
                 };
                 let picture =
                     headless.render_uploaded(buffers, view, &look.settings, layers, watch);
@@ -124,7 +141,7 @@ impl OnDevice {
                 let copied = Mutex::new(None);
                 let copy_and_work = |plan: &RenderPlan| {
                     plan.check(&headless.device().limits(), memory::available())?;
-                    let watch = &mut |_: &UploadProgress| decision(stop);
+                    let watch = &mut |_: &UploadProgress| stop.decision();
                     let buffers = headless.upload_planned(scene, &plan.structures(), watch)?;
                     let images = work(&buffers)?;
                     *copied.lock().unwrap_or_else(PoisonError::into_inner) = Some(buffers);
@@ -147,8 +164,9 @@ impl OnDevice {
                 done
             }
         };
-        let images = images?;
+        // A render that was stopped leaves a scene that the next one may use.
         *slot = kept;
+        let images = images?;
         let adapter = Some(headless.adapter_info().name.clone());
         Ok(Rendered { image: joined(images)?, adapter, warning: opened.warning.clone() })
     }
@@ -170,10 +188,6 @@ impl OnDevice {
     }
 }
 
-fn decision(stop: &Stop) -> Decision {
-    if stop.is_wanted() { Decision::Stop } else { Decision::GoOn }
-}
-
 fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<Rendered> {
     let plan = SearchPlan::new(scene);
     memory::check_on_cpu(&plan, look, layers)?;
@@ -182,7 +196,7 @@ fn on_cpu(scene: &Scene, look: &Look, layers: LayerSet, stop: &Stop) -> Outcome<
     let pictures = views.iter().enumerate().map(|(done, view)| {
         let watch = &mut |progress: &Progress| {
             stop.report((done as f64 + progress.part) / views.len() as f64);
-            decision(stop)
+            stop.decision()
         };
         let picture = cpu::render_watched(&structure, view, &look.settings, layers, watch);
         picture.map(|picture| picture.image).map_err(|error| match error {

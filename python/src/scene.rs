@@ -1,6 +1,6 @@
 //! Spheres with what a scene file says about data become a scene.
 
-use pinhole::color_by::{ColorBy, ColorKey};
+use pinhole::color_by::{ColorBy, ColorKey, JoinedKeys};
 use pinhole::load::Loaded;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole::scene_file::{DEFAULT_COLOR, Data, DataSpheres, SceneFile};
@@ -24,6 +24,8 @@ pub(crate) struct Given {
     pub(crate) colors: Option<Vec<[u8; 4]>>,
     /// Whether the caller gave radii, which bonds then leave as they are.
     pub(crate) radii: bool,
+    /// What colours mean in all frames of which the data is one.
+    pub(crate) keys: Option<JoinedKeys>,
 }
 
 /// Makes the scene of data.
@@ -39,6 +41,9 @@ pub(crate) fn scene_of(loaded: Loaded, text: &SceneText, given: Given) -> Outcom
     if given.colors.is_none() && data.color.is_none() && data.mapping.color.is_none() {
         by_kind = ColorBy::of_kinds(&loaded);
         data.mapping.color.clone_from(&by_kind);
+    }
+    if let (Some(keys), Some(by)) = (&given.keys, &mut data.mapping.color) {
+        keys.apply_to(by);
     }
     data.additions.keeps_radii = given.radii;
     let mut made = match is_plain(&data) {

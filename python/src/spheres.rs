@@ -18,6 +18,7 @@ use crate::certificate::{self, Judged};
 use crate::device::Backend;
 use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
+use crate::keys;
 use crate::look::{self, Look};
 use crate::render::OnDevice;
 use crate::scene::{Given, Made, scene_of};
@@ -30,7 +31,7 @@ pub(crate) struct SphereData {
     /// The scene; replaced or changed by updates.
     scene: Mutex<Arc<Scene>>,
     /// What colours mean, if a column gives them.
-    key: Option<ColorKey>,
+    pub(crate) key: Option<ColorKey>,
     /// What was loaded, if it says more than the scene does.
     pub(crate) loaded: Option<Arc<Loaded>>,
     /// Whether the caller gave radii.
@@ -121,7 +122,8 @@ impl SphereData {
             let mut loaded =
                 if has_radius { Loaded::new(spheres) } else { Loaded::of_centers(spheres) };
             (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
-            let given = Given { colors: rgba8.filter(|_| is_simple), radii: has_radius };
+            let given =
+                Given { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
             Self::of_loaded(loaded, &text, given, false)
         })?)
     }
@@ -142,7 +144,7 @@ impl SphereData {
             .into());
         };
         Ok(worker::run(py, None, |_| {
-            let given = Given { colors: None, radii: self.has_radii };
+            let given = Given { colors: None, radii: self.has_radii, keys: None };
             Self::of_loaded(loaded.as_ref().clone(), &text, given, self.z_is_up)
         })?)
     }
@@ -199,6 +201,11 @@ impl SphereData {
             }
             _ => Ok(py.None().into_bound(py)),
         }
+    }
+
+    /// What colours mean, if a column gives them.
+    fn color_key(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        self.key.as_ref().map(|key| keys::in_python(py, key)).transpose()
     }
 
     /// The three edges of the periodic cell; None if there is none.

@@ -8,6 +8,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use pinhole::render::Decision;
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
@@ -27,6 +28,11 @@ impl Stop {
     /// Whether the work should stop.
     pub(crate) fn is_wanted(&self) -> bool {
         self.is_wanted.load(Ordering::Relaxed)
+    }
+
+    /// What a render should do next.
+    pub(crate) fn decision(&self) -> Decision {
+        if self.is_wanted() { Decision::Stop } else { Decision::GoOn }
     }
 
     /// Says how much of the work is done, from 0 to 1.

@@ -69,6 +69,22 @@ def test_lists_and_other_libraries_are_arrays_too():
     assert ph.Spheres(Tensor(np.ones((4, 3), "f4")), 1).positions.tolist() == [[1, 1, 1]] * 4
 
 
+def test_arrays_on_a_device_are_copied_with_a_note():
+    class Cupy:
+        """An array of CuPy, which NumPy does not copy by itself."""
+
+        __cuda_array_interface__ = {"shape": (4, 3)}
+
+        def get(self):
+            return np.ones((4, 3), "f4")
+
+        def __array__(self, *_):
+            raise TypeError("Implicit conversion to a NumPy array is not allowed.")
+
+    with pytest.warns(ph.Note, match="positions is copied from a CUDA device"):
+        assert ph.Spheres(Cupy(), 1).positions.tolist() == [[1, 1, 1]] * 4
+
+
 @pytest.mark.parametrize("count", [0, 1])
 def test_few_spheres(count):
     spheres = ph.Spheres(np.zeros((count, 3)), radius=1.0)

@@ -56,6 +56,57 @@ def test_texts_have_colors_of_a_palette():
     assert first == third != second
 
 
+def test_names_of_colors_for_each_sphere():
+    bytes_of = [[255, 99, 71], [70, 130, 180], [255, 99, 71]]
+    assert shown(color=["tomato", "steelblue", "tomato"]) == bytes_of
+    assert shown(color=np.array(["#ff6347", "rgb(70 130 180)", "tomato"])) == bytes_of
+    assert ph.Spheres(ROW, radius=1.0, color=["red", "lime", "blue"]).color_key is None
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_what_colors_mean():
+    assert ph.Spheres(ROW, radius=1.0, color="red").color_key is None
+    scale = ph.Spheres(ROW, radius=1.0, columns={"v": [1.0, 5.5, 10]}, color_by={"column": "v", "log": True}).color_key
+    assert scale["title"] == "v" and scale["range"] == (1.0, 10.0) and scale["log"] is True
+    assert scale["colors"].dtype == np.uint8 and scale["colors"][0].tolist() == [0x44, 0x01, 0x54]
+    kinds = ph.Spheres(ROW, radius=1.0, columns={"species": ["A", "B", "A"]})
+    assert [*kinds.color_key["categories"].values()] == [tuple(rgb) for rgb in shown(columns={"species": ["A", "B", "A"]})[:2]]
+    assert [*kinds.color_key["categories"]] == ["A", "B"]
+
+
+def lit(material, **keys):
+    spheres = ph.Spheres(ROW, 1.0, "white", material=material, **keys)
+    return spheres.render((90, 30), style="path", samples=4, camera=ph.Camera.frame("z"), backend="cpu").color
+
+
+def test_a_material_for_each_sphere():
+    lamp, metal = ph.Material(kind="emissive", strength=3.0), ph.Material(kind="conductor", roughness=0.1)
+    different = lit([metal, lamp, metal])
+    assert np.allclose(different[15, 45], 3.0) and not np.allclose(different[15, 75], 3.0)
+    named = lit(["gold", "bulb", "gold"], materials={"bulb": lamp, "gold": metal})
+    assert np.array_equal(named, different)
+    assert np.array_equal(named, lit(np.array(["gold", "bulb", "gold"]), materials={"bulb": lamp, "gold": dict(metal)}))
+    assert np.array_equal(lit([metal] * 3), lit(metal))
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        ({"material": [ph.Material(kind="emissive")]}, "material has 1 values for 3 spheres"),
+        ({"material": ["a", "b", "a"]}, "there is no material 'a'; materials has none"),
+        ({"material": ["a", "b", "a"], "materials": {"a": {}}}, "there is no material 'b'; materials has a"),
+        ({"material": [1, 2, 3]}, "that of sphere 0 is 1"),
+        ({"material": [{"kind": "glass"}] * 3}, "glass"),
+        ({"material": [ph.Ground(height=1)] * 3}, "the table Ground is for ground"),
+        ({"material": [{}] * 3, "elements": {"A": {}}}, "material for each sphere and elements exclude each other"),
+    ],
+)
+def test_materials_that_are_refused(keys, words):
+    with pytest.raises(ph.InputError) as error:
+        ph.Spheres(ROW, radius=1.0, **keys)
+    assert words in str(error.value)
+
+
 @pytest.mark.parametrize(
     "keys, words",
     [

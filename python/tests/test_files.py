@@ -108,6 +108,31 @@ def test_numbered_pictures_of_a_turntable(tmp_path):
     assert len({file.read_bytes() for file in files}) == 4
 
 
+def colors_of(picture):
+    """The different colours of an image, or of a PNG file."""
+    if not isinstance(picture, ph.Image):
+        picture = pytest.importorskip("PIL.Image", reason="Pillow, which reads PNG files, is missing").open(picture)
+    return {*map(tuple, np.asarray(picture).reshape(-1, 3).tolist())}
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_equal_values_have_equal_colors_in_all_frames(tmp_path):
+    rows = [(0, 1), (5, 10)]
+    text = "".join(
+        "2\nProperties=species:S:1:pos:R:3:charge:R:1\n" + "".join(f"C {3 * i} 0 0 {value + 0.5}\n" for i, value in enumerate(row))
+        for row in rows
+    )
+    (tmp_path / "t.extxyz").write_text(text)
+    settings = {"size": (60, 20), "style": "fast", "shading": "flat", "backend": "cpu", "camera": "z"}
+    ph.read(tmp_path / "t.extxyz", color_by="charge").movie(tmp_path / "f%d.png", **settings)
+    fixed = ph.read(tmp_path / "t.extxyz", color_by={"column": "charge", "range": (0.5, 10.5)})
+    for number, frame in enumerate(fixed):
+        assert colors_of(tmp_path / f"f{number}.png") == colors_of(frame.render(**settings))
+    # Alone, each frame has the range of its own values.
+    alone = ph.read(tmp_path / "t.extxyz", color_by="charge")[0].render(**settings)
+    assert colors_of(tmp_path / "f0.png") != colors_of(alone)
+
+
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is missing")
 def test_a_movie_of_a_trajectory(tmp_path):
     (tmp_path / "t.extxyz").write_text(frames(5))

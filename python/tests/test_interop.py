@@ -64,4 +64,14 @@ def test_matplotlib_shows_every_pixel():
 
     image = ph.Spheres([[0, 0, 0]], 1.0).render((30, 20), backend="cpu")
     shown = interop.imshow(image, Figure().subplots())
+    axes = shown.axes
+    numbers = ph.Spheres(cloud(3), 0.5, color=np.array([1.0, 2.5, 4.0]), cmap="inferno", color_range=(0, 5))
+    bar = interop.colorbar(numbers, axes, label="speed")
+    assert (bar.vmin, bar.vmax) == (0, 5) and bar.ax.get_ylabel() == "speed"
+    ours = np.array(numbers.color_key["colors"])
+    assert np.array_equal((255 * bar.cmap(np.arange(len(ours)))[:, :3]).round(), ours)
+    legend = interop.colorbar(ph.Spheres(cloud(3), 0.5, color=["a", "b", "a"]), axes)
+    assert [text.get_text() for text in legend.get_texts()] == ["a", "b"]
+    with pytest.raises(ph.InputError, match="colors mean nothing"):
+        interop.colorbar(ph.Spheres(cloud(3), 0.5), axes)
     assert np.array_equal(shown.get_array(), image.rgb8) and tuple(shown.get_extent()) == (0, 30, 20, 0)

@@ -154,6 +154,50 @@ def test_ctrl_c_stops_within_a_second(backend):
     assert spheres.render(size=(8, 8), backend=backend).size == (8, 8)
 
 
+def test_ctrl_c_stops_who_waits_for_another_thread():
+    spheres = ph.Spheres(cloud(2000), 0.1)
+    stopped = threading.Event()
+
+    def progress(part):
+        if stopped.is_set():
+            raise RuntimeError("enough")
+
+    def long_render():
+        with pytest.raises(RuntimeError):
+            spheres.render(size=(1600, 1200), samples=10_000, style="path", progress=progress)
+
+    other = threading.Thread(target=long_render)
+    other.start()
+    time.sleep(0.5)
+    sent = []
+
+    def interrupt():
+        time.sleep(0.3)
+        sent.append(time.monotonic())
+        signal.raise_signal(signal.SIGINT) if os.name == "nt" else os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            spheres.render(size=(8, 8), samples=1)
+        assert time.monotonic() - sent[0] < 1.0
+    finally:
+        stopped.set()
+        other.join()
+
+
+def test_adapters_are_chosen_by_name():
+    names = ph.adapters()
+    picture = ph.Spheres([[0, 0, 0]], 1.0).render(size=(8, 8))
+    assert picture.adapter == (names[0] if names else None)
+    with pytest.raises(ph.DeviceError):
+        ph.use_adapter("an adapter that nobody has")
+    if names:
+        ph.use_adapter(names[-1][:8].upper())
+        assert ph.Spheres([[0, 0, 0]], 1.0).render(size=(8, 8)).adapter == names[-1]
+        ph.use_adapter()
+
+
 def test_progress_is_told():
     parts = []
     ph.Spheres(cloud(2000), 0.1).render(size=(500, 400), samples=16, backend="cpu", progress=parts.append)
