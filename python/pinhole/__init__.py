@@ -7,13 +7,15 @@
 (120, 160, 3)
 """
 
+import atexit
+
 from ._camera import Camera
 from ._certificate import Certificate
 from ._errors import DeviceError, Error, FileError, InputError, InternalError, Note, PackageError
 from ._files import Trajectory, read
 from ._image import Image
 from ._movie import movie
-from ._pinhole import __version__, adapters, use_adapter
+from ._pinhole import __version__, adapters, use_adapter, wait_for_threads
 from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
@@ -83,3 +85,5 @@ __all__ = [
     "sheet",
     "use_adapter",
 ]
+
+atexit.register(wait_for_threads)

@@ -32,13 +32,13 @@ impl FileData {
     fn new(
         py: Python<'_>,
         path: String,
-        format: Option<&str>,
+        format: Option<String>,
         radius: Option<f64>,
         topology: Option<PathBuf>,
         columns: Vec<String>,
     ) -> PyResult<Self> {
         Ok(worker::run(py, None, move |_| {
-            let format = format_of(&path, format)?;
+            let format = format_of(&path, format.as_deref())?;
             let mut options = Options::default().with_format(format).with_columns(columns);
             (options.radius, options.topology) = (radius, topology);
             format.check(&options).map_err(Fault::input)?;
@@ -68,21 +68,22 @@ impl FileData {
     /// Reads a frame, counted from 0. Equal values have equal colours in all frames with the same `keys`.
     #[pyo3(signature = (index, text, keys))]
     fn frame(
-        &self,
+        slf: Bound<'_, Self>,
         py: Python<'_>,
         index: usize,
         text: SceneText,
         keys: Option<&FrameKeys>,
     ) -> PyResult<SphereData> {
-        Ok(worker::run(py, None, |_| {
-            let mut loaded = self.read(index)?;
+        let (this, keys) = (slf.unbind(), keys.map(FrameKeys::joined));
+        Ok(worker::run(py, None, move |_| {
+            let this = this.get();
+            let mut loaded = this.read(index)?;
             for note in &mut loaded.notes {
-                *note = format!("{}: {note}", self.path);
+                *note = format!("{}: {note}", this.path);
             }
-            let keys = keys.map(FrameKeys::joined);
-            let given = Given { colors: None, radii: self.options.radius.is_some(), keys };
-            SphereData::of_loaded(loaded, &text, given, self.format.z_is_up)
-                .map_err(|fault| self.in_file(fault))
+            let given = Given { colors: None, radii: this.options.radius.is_some(), keys };
+            SphereData::of_loaded(loaded, &text, given, this.format.z_is_up)
+                .map_err(|fault| this.in_file(fault))
         })?)
     }
 }

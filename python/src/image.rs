@@ -77,27 +77,31 @@ impl Picture {
     }
 
     /// The encoded picture with its annotations: uint8 of shape (height, width, 3), or 4 channels if it is transparent.
-    fn rgb8<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let encoding = self.encoding.with_bits(Bits::Eight);
-        let samples = worker::run(py, None, |_| {
-            png::samples_annotated(&self.image, &encoding, &self.annotations).map_err(Fault::input)
-        })?;
+    fn rgb8<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (this, of_thread) = (slf.get(), slf.clone().unbind());
+        let encoding = this.encoding.with_bits(Bits::Eight);
         let channels = if encoding.transparent() { 4 } else { 3 };
-        self.shaped(py, samples, Some(channels))
+        let samples = worker::run(py, None, move |_| {
+            let Self { image, annotations, .. } = of_thread.get();
+            png::samples_annotated(image, &encoding, annotations).map_err(Fault::input)
+        })?;
+        this.shaped(py, samples, Some(channels))
     }
 
     /// The bytes of a PNG file.
-    fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = worker::run(py, None, |_| {
-            png::encode_annotated(&self.image, &self.encoding, &self.annotations)
-                .map_err(Fault::input)
+    fn png<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let this = slf.clone().unbind();
+        let bytes = worker::run(py, None, move |_| {
+            let Self { image, encoding, annotations, .. } = this.get();
+            png::encode_annotated(image, encoding, annotations).map_err(Fault::input)
         })?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// The bytes of an OpenEXR file with the layers that were asked for.
-    fn exr<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = worker::run(py, None, |_| self.exr_bytes())?;
+    fn exr<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let this = slf.clone().unbind();
+        let bytes = worker::run(py, None, move |_| this.get().exr_bytes())?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -122,7 +126,7 @@ pub(crate) fn png_of<'py>(
     let size = [side(width)?, side(height)?];
     // In the order of rows, whatever the strides are.
     let samples: Vec<u8> = pixels.as_array().iter().copied().collect();
-    let bytes = worker::run(py, None, |_| {
+    let bytes = worker::run(py, None, move |_| {
         let encoded = if channels == 4 {
             png::encode_rgba8(size, &samples)
         } else {

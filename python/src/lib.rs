@@ -27,7 +27,7 @@ use pyo3::prelude::*;
 /// Panics in work, so that tests see what becomes of it.
 #[pyfunction]
 fn panic_for_tests(py: Python<'_>, index: usize) -> PyResult<u8> {
-    Ok(worker::run(py, None, |_| Ok([1, 2, 3][index]))?)
+    Ok(worker::run(py, None, move |_| Ok([1, 2, 3][index]))?)
 }
 
 /// The compiled half of `pinhole`, which is not for use by itself.
@@ -45,6 +45,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;
     module.add_function(wrap_pyfunction!(colors::srgb_of_names, module)?)?;
     module.add_function(wrap_pyfunction!(image::png_of, module)?)?;
+    module.add_function(wrap_pyfunction!(worker::wait_for_threads, module)?)?;
     module.add_function(wrap_pyfunction!(panic_for_tests, module)?)?;
     Ok(())
 }

@@ -136,16 +136,17 @@ impl SphereData {
             )
             .into());
         }
-        let Some(loaded) = &self.loaded else {
+        let Some(loaded) = self.loaded.clone() else {
             return Err(Fault::Input(
                 "these spheres have no columns; make new Spheres(...) with other settings"
                     .to_owned(),
             )
             .into());
         };
-        Ok(worker::run(py, None, |_| {
-            let given = Given { colors: None, radii: self.has_radii, keys: None };
-            Self::of_loaded(loaded.as_ref().clone(), &text, given, self.z_is_up)
+        let (radii, z_is_up) = (self.has_radii, self.z_is_up);
+        Ok(worker::run(py, None, move |_| {
+            let given = Given { colors: None, radii, keys: None };
+            Self::of_loaded(loaded.as_ref().clone(), &text, given, z_is_up)
         })?)
     }
 
@@ -242,16 +243,18 @@ impl SphereData {
     }
 
     /// Renders the view by one ray for each pixel on the device, and decides whether the picture is legal.
-    fn verify(&self, py: Python<'_>, text: SceneText) -> PyResult<Judged> {
-        Ok(worker::run(py, None, |stop| {
-            let scene = self.scene();
-            certificate::verified(&scene, &self.look(&scene, &text)?, stop)
+    fn verify(slf: Bound<'_, Self>, py: Python<'_>, text: SceneText) -> PyResult<Judged> {
+        let this = slf.unbind();
+        Ok(worker::run(py, None, move |stop| {
+            let this = this.get();
+            let scene = this.scene();
+            certificate::verified(&scene, &this.look(&scene, &text)?, stop)
         })?)
     }
 
     /// Renders a picture.
     fn render(
-        &self,
+        slf: Bound<'_, Self>,
         py: Python<'_>,
         text: SceneText,
         layers: Vec<String>,
@@ -261,12 +264,14 @@ impl SphereData {
         let backend = Backend::of_name(backend)?;
         let layers = layers.iter().map(|name| name.parse::<Layer>());
         let layers = layers.collect::<Result<LayerSet, _>>().map_err(Fault::input)?;
-        Ok(worker::run(py, progress.as_ref(), |stop| {
-            let (scene, version) = self.versioned();
-            let mut look = self.look(&scene, &text)?;
+        let this = slf.unbind();
+        Ok(worker::run(py, progress.as_ref(), move |stop| {
+            let this = this.get();
+            let (scene, version) = this.versioned();
+            let mut look = this.look(&scene, &text)?;
             let layers_of_look = look.layers(layers);
             let rendered =
-                self.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
+                this.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
             look.notes.extend(rendered.warning);
             Ok(Picture {
                 image: rendered.image,
@@ -282,7 +287,7 @@ impl SphereData {
     /// Gives spheres new centres, radii or colours, from the sphere `first` on.
     #[pyo3(signature = (first, positions, radius, color))]
     fn update(
-        &self,
+        slf: Bound<'_, Self>,
         py: Python<'_>,
         first: u32,
         positions: Option<Centers<'_>>,
@@ -291,36 +296,36 @@ impl SphereData {
     ) -> PyResult<()> {
         let not_in_order = || Fault::Internal("an array is not contiguous".to_owned());
         // Copies, because other threads of Python may write into arrays while this one does not hold the GIL.
-        let (mut narrow, mut wide): (Vec<[f32; 3]>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
+        let (mut narrow, mut wide): (Option<Vec<[f32; 3]>>, Option<Vec<[f64; 3]>>) = (None, None);
         match &positions {
             Some(Centers::Narrow(centers)) => {
                 let centers = centers.as_slice().map_err(|_| not_in_order())?;
-                narrow = centers.as_chunks::<3>().0.to_vec();
+                narrow = Some(centers.as_chunks::<3>().0.to_vec());
             }
             Some(Centers::Wide(centers)) => {
                 let centers = centers.as_slice().map_err(|_| not_in_order())?;
-                wide = centers.as_chunks::<3>().0.to_vec();
+                wide = Some(centers.as_chunks::<3>().0.to_vec());
             }
             None => {}
         }
-        let centers = positions.as_ref().map(|centers| match centers {
-            Centers::Narrow(_) => NewCenters::F32(&narrow),
-            Centers::Wide(_) => NewCenters::F64(&wide),
-        });
         let radii = radius.as_ref().map(|radii| radii.as_slice()).transpose();
         let radii = radii.map_err(|_| not_in_order())?.map(<[f32]>::to_vec);
         let colors = color.as_ref().map(|colors| colors.as_slice()).transpose();
         let colors = colors.map_err(|_| not_in_order())?.map(|all| all.as_chunks::<4>().0.to_vec());
-        let colors = colors.as_deref().map(NewColors::Rgba8);
-        let update = SceneUpdate { first, centers, radii: radii.as_deref(), colors };
-        Ok(worker::run(py, None, |_| {
-            let mut locked = self.lock();
+        let this = slf.unbind();
+        Ok(worker::run(py, None, move |_| {
+            let this = this.get();
+            let centers = narrow.as_deref().map(NewCenters::F32);
+            let centers = centers.or(wide.as_deref().map(NewCenters::F64));
+            let colors = colors.as_deref().map(NewColors::Rgba8);
+            let update = SceneUpdate { first, centers, radii: radii.as_deref(), colors };
+            let mut locked = this.lock();
             Arc::make_mut(&mut locked).apply(&update).map_err(Fault::input)?;
-            let version = 1 + self.updates.fetch_add(1, Ordering::AcqRel);
+            let version = 1 + this.updates.fetch_add(1, Ordering::AcqRel);
             let scene = Arc::clone(&locked);
             // A render may keep the device for long, and others ask for the scene meanwhile.
             drop(locked);
-            self.on_device.update((&scene, version), &update);
+            this.on_device.update((&scene, version), &update);
             Ok(())
         })?)
     }

@@ -2,10 +2,9 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::sync::{Mutex, OnceLock, PoisonError};
-use std::thread;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use pinhole::render::Decision;
@@ -48,53 +47,83 @@ impl Stop {
     }
 }
 
+/// How long work may go on after it was asked to stop until its caller no longer waits for it. Structures are built in one
+/// go, which takes a few seconds for many millions of spheres.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// The number of threads for which no caller waits any more.
+static LEFT_ALONE: AtomicUsize = AtomicUsize::new(0);
+
+/// What a thread that works and the thread that waits for it share.
+struct Shared<T> {
+    stop: Stop,
+    done: Mutex<Option<Outcome<T>>>,
+    is_done: Condvar,
+}
+
 /// Runs work on a thread of its own without the GIL, and waits for it. If Python has a signal to handle that raises an
 /// exception, the work is asked to stop, and the exception is the result. A panic becomes an exception. Meanwhile
 /// `progress` is called with the part of the work that is done.
-pub(crate) fn run<T: Send>(
+pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&Stop) -> Outcome<T> + Send,
+    work: impl FnOnce(&Stop) -> Outcome<T> + Send + 'static,
 ) -> Outcome<T> {
-    let stop = Stop::default();
-    let (sender, receiver) = sync_channel(1);
-    // The GIL is released by a closure that may run on any thread, so what it uses must be shared.
-    let receiver = Mutex::new(receiver);
-    let wait = || {
-        let receiver = receiver.lock().unwrap_or_else(PoisonError::into_inner);
-        receiver.recv_timeout(SIGNALS_EVERY)
-    };
-    thread::scope(|scope| {
-        let stop = &stop;
-        let spawned =
-            thread::Builder::new().name("pinhole".to_owned()).spawn_scoped(scope, move || {
-                let done = catch_unwind(AssertUnwindSafe(|| on_live_threads(|| work(stop))));
-                let done = done.unwrap_or_else(|panic| Err(internal(panic.as_ref())));
-                // The receiver waits until this arrives.
-                let _ = sender.send(done);
-            });
+    let shared =
+        Arc::new(Shared { stop: Stop::default(), done: Mutex::new(None), is_done: Condvar::new() });
+    let of_thread = Arc::clone(&shared);
+    let spawned = thread::Builder::new().name("pinhole".to_owned()).spawn(move || {
+        let done = catch_unwind(AssertUnwindSafe(|| on_live_threads(|| work(&of_thread.stop))));
+        let done = done.unwrap_or_else(|panic| Err(internal(panic.as_ref())));
+        *of_thread.done.lock().unwrap_or_else(PoisonError::into_inner) = Some(done);
+        of_thread.is_done.notify_all();
+    });
+    let thread =
         spawned.map_err(|error| Fault::Device(format!("no thread can be started: {error}")))?;
-        let mut raised = None;
-        loop {
-            let waited = py.detach(wait);
-            match (waited, &raised) {
-                (Ok(_), Some(_)) | (Err(RecvTimeoutError::Disconnected), Some(_)) => break,
-                (Ok(done), None) => return done,
-                (Err(RecvTimeoutError::Disconnected), None) => {
-                    return Err(internal(&"the thread ended without a result"));
-                }
-                (Err(RecvTimeoutError::Timeout), Some(_)) => {}
-                (Err(RecvTimeoutError::Timeout), None) => {
-                    let told = py.check_signals().and_then(|()| stop.tell(py, progress));
-                    if let Err(error) = told {
-                        stop.is_wanted.store(true, Ordering::Relaxed);
-                        raised = Some(error);
-                    }
-                }
-            }
+    loop {
+        if let Some(done) = py.detach(|| shared.wait(SIGNALS_EVERY)) {
+            return done;
         }
-        Err(raised.map_or(Fault::Stopped, Fault::Python))
-    })
+        let told = py.check_signals().and_then(|()| shared.stop.tell(py, progress));
+        if let Err(raised) = told {
+            shared.stop.is_wanted.store(true, Ordering::Relaxed);
+            if py.detach(|| shared.wait(PATIENCE)).is_none() {
+                leave_alone(thread);
+            }
+            return Err(Fault::Python(raised));
+        }
+    }
+}
+
+impl<T> Shared<T> {
+    /// The result, if there is one within a time.
+    fn wait(&self, time: Duration) -> Option<Outcome<T>> {
+        let done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.is_done.wait_timeout_while(done, time, |done| done.is_none());
+        waited.unwrap_or_else(PoisonError::into_inner).0.take()
+    }
+}
+
+/// Lets a thread come to its end by itself.
+fn leave_alone(thread: JoinHandle<()>) {
+    LEFT_ALONE.fetch_add(1, Ordering::AcqRel);
+    let joined = thread::Builder::new().spawn(move || {
+        let _ = thread.join();
+        LEFT_ALONE.fetch_sub(1, Ordering::AcqRel);
+    });
+    if joined.is_err() {
+        LEFT_ALONE.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+/// Waits for threads that were left alone, because drivers do not survive the end of a process while they work.
+#[pyfunction]
+pub(crate) fn wait_for_threads(py: Python<'_>) {
+    py.detach(|| {
+        while !is_forked() && LEFT_ALONE.load(Ordering::Acquire) > 0 {
+            thread::sleep(SIGNALS_EVERY);
+        }
+    });
 }
 
 /// The panic of a defect, in one line.
@@ -114,21 +143,21 @@ fn is_forked() -> bool {
 
 /// Runs work on threads that exist: after a fork, on new ones.
 fn on_live_threads<T: Send>(work: impl FnOnce() -> Outcome<T> + Send) -> Outcome<T> {
-    static POOL: Mutex<Option<(u32, std::sync::Arc<rayon::ThreadPool>)>> = Mutex::new(None);
+    static POOL: Mutex<Option<(u32, Arc<rayon::ThreadPool>)>> = Mutex::new(None);
     if !is_forked() {
         return work();
     }
     let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     let threads = match pool.as_ref().filter(|(of, _)| *of == process) {
-        Some((_, threads)) => std::sync::Arc::clone(threads),
+        Some((_, threads)) => Arc::clone(threads),
         None => {
             let made = rayon::ThreadPoolBuilder::new().build();
             let made =
                 made.map_err(|error| Fault::Device(format!("threads cannot be started: {error}")))?;
-            let made = std::sync::Arc::new(made);
+            let made = Arc::new(made);
             // The threads of a parent process are not here to be ended.
-            std::mem::forget(pool.replace((process, std::sync::Arc::clone(&made))));
+            std::mem::forget(pool.replace((process, Arc::clone(&made))));
             made
         }
     };

@@ -186,6 +186,32 @@ def test_ctrl_c_stops_who_waits_for_another_thread():
         other.join()
 
 
+BUILD = """
+import os, signal, sys, threading, time
+import numpy as np, pinhole as ph
+spheres = ph.Spheres(np.random.default_rng(1).random((2_000_000, 3), "f4"), 0.005, (1.0, 0.0, 0.0))
+ph.Spheres([[0, 0, 0]], 1.0).render(size=(8, 8))
+sent = []
+def interrupt():
+    # Long before the structure is built.
+    time.sleep(0.1)
+    sent.append(time.monotonic())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt).start()
+try:
+    spheres.render(size=(8, 8), style="fast")
+except KeyboardInterrupt:
+    print(time.monotonic() - sent[0])
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="this system has no signals")
+def test_ctrl_c_stops_while_a_structure_is_built_and_the_process_ends_well():
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", BUILD], capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, done.stderr
+    assert 0 < float(done.stdout) < 1.0
+
+
 def test_adapters_are_chosen_by_name():
     names = ph.adapters()
     picture = ph.Spheres([[0, 0, 0]], 1.0).render(size=(8, 8))
