@@ -14,11 +14,12 @@ python3 -m venv "$work/tools"
 # Zig is a linker that knows the symbols of old versions of glibc.
 "$work/tools/bin/pip" install --quiet 'maturin>=1.9,<2' ziglang auditwheel
 export PATH="$work/tools/bin:$PATH"
-maturin sdist --quiet --manifest-path python/Cargo.toml --out "$out"
+maturin sdist --manifest-path python/Cargo.toml --out "$out" >"$work/sdist.log"
 sdist=$(ls -t "$out"/pinhole_rt-*.tar.gz | head -1)
 tar -xzf "$sdist" -C "$work"
 cd "$work"/pinhole_rt-*/
-maturin build --quiet --locked --zig --compatibility manylinux2014 --out "$out"
+# Not --locked: the lock file also names members of the workspace that an sdist leaves out.
+maturin build --quiet --zig --compatibility manylinux2014 --out "$out"
 wheel=$(ls -t "$out"/pinhole_rt-*.whl | head -1)
 auditwheel show "$wheel"
 echo "$(stat -c %s "$sdist") bytes: $sdist"
