@@ -56,6 +56,14 @@ pub enum NpzError {
         /// Names of the arrays.
         names: Vec<String>,
     },
+    /// The archive lacks an array.
+    #[error("the archive has no array `{wanted}`, but {}; save it with numpy.savez", listed(names))]
+    Missing {
+        /// Name of the array.
+        wanted: &'static str,
+        /// Names of the arrays.
+        names: Vec<String>,
+    },
     /// The array cannot be extracted.
     #[error("array `{name}`: {message}")]
     Entry {
@@ -148,6 +156,18 @@ pub fn array_bytes(bytes: &[u8]) -> Result<u64, NpzError> {
     main_array(&entries)?;
     let sizes = entries.iter().map(|entry| entry.wayfinder.uncompressed_size_hint());
     Ok(sizes.fold(0, u64::saturating_add))
+}
+
+/// Returns the `.npy` file of the array with this name.
+pub(super) fn array_of(bytes: &[u8], wanted: &'static str) -> Result<Vec<u8>, NpzError> {
+    let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
+    let entries = entries(&archive, bytes.len() as u64)?;
+    match entries.iter().find(|entry| entry.name == wanted) {
+        Some(entry) => Ok(entry.contents(&archive)?.into_owned()),
+        None => {
+            Err(NpzError::Missing { wanted, names: entries.into_iter().map(|e| e.name).collect() })
+        }
+    }
 }
 
 /// An array in its archive: where it is, and how it is compressed.

@@ -84,7 +84,19 @@ impl Dtype {
         column
     }
 
-    fn number(&self, bytes: &[u8]) -> f64 {
+    /// Decodes an integer of 32 or 64 bits.
+    pub(super) fn integer(&self, bytes: &[u8]) -> i128 {
+        let order = self.order;
+        match (self.kind, self.size) {
+            ('i', 4) => i32::decode(bytes, order).into(),
+            ('i', _) => i64::decode(bytes, order).into(),
+            (_, 4) => u32::decode(bytes, order).into(),
+            _ => u64::decode(bytes, order).into(),
+        }
+    }
+
+    /// Decodes a real number.
+    pub(super) fn number(&self, bytes: &[u8]) -> f64 {
         let order = self.order;
         match (self.kind, self.size) {
             ('f', 2) => half(u16::decode(bytes, order)),

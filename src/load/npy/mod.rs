@@ -2,6 +2,7 @@
 
 mod dtype;
 mod header;
+pub mod pixels;
 
 use std::collections::TryReserveError;
 
