@@ -12,6 +12,10 @@ from ._image import write
 from ._pinhole import Judged
 
 
+#: The outcomes in words.
+_NAMES = {"proved": "legal", "undecided": "UNDECIDED", "violated": "NOT LEGAL"}
+
+
 class Certificate:
     """Whether the picture of a device is one that a conforming device may have made, pixel by pixel."""
 
@@ -22,8 +26,14 @@ class Certificate:
 
     @property
     def is_legal(self) -> bool:
-        """Whether every pixel is legal."""
+        """Whether the outcome is ``"proved"``: every pixel is legal, and almost none has another legal answer."""
         return self._judged.is_legal
+
+    @property
+    def outcome(self) -> str:
+        """``"proved"``; ``"violated"`` if a pixel is not legal; or ``"undecided"`` if none is known not to be, but more
+        than 1 % of the pixels have several legal answers."""
+        return self._judged.outcome
 
     @property
     def adapter(self) -> str:
@@ -67,4 +77,4 @@ class Certificate:
 
     def __repr__(self) -> str:
         words = ", ".join(f"{count} {name}" for name, count in self.counts.items() if count)
-        return f"<pinhole.Certificate: {'legal' if self.is_legal else 'NOT LEGAL'}, {words}>"
+        return f"<pinhole.Certificate: {_NAMES[self.outcome]}, {words}>"

@@ -22,6 +22,13 @@ VERDICTS = {
     "violation": ("d55e00", "the device gave an answer that is not legal"),
 }
 
+#: The outcomes in words.
+OUTCOMES = {
+    "proved": ("Legal", "Every pixel is one that a conforming device may have made."),
+    "undecided": ("Undecided", "No violation was found, but more than 1 % of the pixels have several legal answers."),
+    "violated": ("Not legal", "The device gave answers that no conforming device gives."),
+}
+
 #: The colour of a verdict that has none.
 OTHER = ("808080", "")
 
@@ -36,21 +43,16 @@ def part(certificate: Certificate) -> str:
     """The report as a part of a page."""
     counts = certificate.counts
     pixels = sum(counts.values())
-    legal = certificate.is_legal
-    color, ground = ("#00563f", "#e6f2ee") if legal else ("#9a3f00", "#fdeee3")
+    title, says = OUTCOMES[certificate.outcome]
+    color, ground = ("#00563f", "#e6f2ee") if certificate.is_legal else ("#9a3f00", "#fdeee3")
     verdicts = certificate.verdicts
     height, width = verdicts.shape
-    says = (
-        "Every pixel is one that a conforming device may have made."
-        if legal
-        else "The device gave answers that no conforming device gives."
-    )
     rows = "".join(_row(name, count, pixels) for name, count in counts.items())
     parts = [
         '<div style="max-width: 60em; padding: 1em; color: #1b1f23; background: #fbfbfa; '
         'font: 15px/1.5 system-ui, sans-serif">',
         f'<div style="padding: 0.8em 1.2em; border-left: 8px solid {color}; background: {ground}">'
-        f'<b style="font-size: 1.6em; color: {color}">{"Legal" if legal else "Not legal"}</b><br>{says}<br>'
+        f'<b style="font-size: 1.6em; color: {color}">{title}</b><br>{says}<br>'
         f"{width}\u2009×\u2009{height} pixels on {escape(certificate.adapter)}, one ray for each. "
         "Light is not checked.</div>",
         '<table style="margin: 1em 0; border-collapse: collapse; color: inherit">'
@@ -72,7 +74,7 @@ def part(certificate: Certificate) -> str:
 
 def page(certificate: Certificate) -> str:
     """The report as a page."""
-    title = f"{'Legal' if certificate.is_legal else 'Not legal'}: {escape(certificate.adapter)}"
+    title = f"{OUTCOMES[certificate.outcome][0]}: {escape(certificate.adapter)}"
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'

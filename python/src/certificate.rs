@@ -22,7 +22,13 @@ pub(crate) struct Judged {
 
 #[pymethods]
 impl Judged {
-    /// Whether every pixel is one that a conforming device may have made.
+    /// The outcome: proved, undecided or violated.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        self.certificate.outcome().name()
+    }
+
+    /// Whether it is proved that every pixel is one that a conforming device may have made.
     #[getter]
     fn is_legal(&self) -> bool {
         self.certificate.is_legal()

@@ -19,7 +19,9 @@ class Judged:
 
     def __init__(self, verdicts, violations=(), adapter="<GPU & more>"):
         self.given = np.asarray(verdicts, np.uint8)
-        self.is_legal = not violations
+        undecided = np.isin(self.given, [1, 2]).mean() > 0.01
+        self.outcome = "violated" if violations else "undecided" if undecided else "proved"
+        self.is_legal = self.outcome == "proved"
         self.adapter = adapter
         self.given_violations = list(violations)
 

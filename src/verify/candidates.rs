@@ -72,22 +72,34 @@ impl Candidates {
         (self.nodes[0].low, self.nodes[0].high)
     }
 
+    /// The length of the longest vector from a point to a sphere's centre.
+    pub(super) fn longest_from(&self, point: DVec3) -> f64 {
+        farthest(point, &self.nodes[0])
+    }
+
     /// Calls `offer` for every sphere that a ray, displaced by up to `moved`, may hit before `nearest`. The return
     /// value of `offer` is the new `nearest`.
     pub(super) fn visit(
         &self,
         line: &Line,
         moved: f64,
+        nearest: f64,
+        offer: impl FnMut(&Candidate) -> f64,
+    ) {
+        let longest = self.longest_from(line.origin) + moved;
+        self.visit_beside(line, (BESIDE + 2.0 * line.bend) * longest + moved, nearest, offer);
+    }
+
+    /// Calls `offer` for every sphere that comes within `beside` of a ray before `nearest`, as [`Candidates::visit`] does.
+    pub(super) fn visit_beside(
+        &self,
+        line: &Line,
+        beside: f64,
         mut nearest: f64,
         mut offer: impl FnMut(&Candidate) -> f64,
     ) {
         let root = &self.nodes[0];
-        let longest = farthest(line.origin, root) + moved;
-        let slab = Slab {
-            origin: line.origin,
-            inverse: line.inverse(),
-            beside: (BESIDE + 2.0 * line.bend) * longest + moved,
-        };
+        let slab = Slab { origin: line.origin, inverse: line.inverse(), beside };
         // The entry of a box that is not hit is infinite, which is farther than any limit.
         nearest = nearest.min(f64::MAX);
         let mut stack = [Visit::default(); LEVELS];

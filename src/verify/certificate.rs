@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::outcome::Outcome;
 use super::upload::UploadError;
 use super::violation::Violation;
 
@@ -72,10 +73,25 @@ impl Certificate {
         self.count(Verdict::Decided) as f64 / self.verdicts.len().max(1) as f64
     }
 
-    /// Whether the uploaded data are correct and every pixel is legal.
+    /// The number of pixels for which several answers are legal, of which the device gave one.
+    #[must_use]
+    pub fn undecided(&self) -> usize {
+        self.count(Verdict::Silhouette) + self.count(Verdict::Tie)
+    }
+
+    /// The outcome: violated if the uploaded data are wrong or a pixel is not legal, and undecided if too many pixels
+    /// have several legal answers.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        let is_violated = self.upload.is_some() || !self.violations.is_empty();
+        Outcome::of(is_violated, self.undecided() as u64, self.verdicts.len() as u64)
+    }
+
+    /// Whether the outcome is [`Outcome::Proved`]: the uploaded data are correct, every pixel is legal, and almost all
+    /// pixels have no other legal answer.
     #[must_use]
     pub fn is_legal(&self) -> bool {
-        self.upload.is_none() && self.violations.is_empty()
+        self.outcome() == Outcome::Proved
     }
 }
 

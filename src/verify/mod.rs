@@ -41,9 +41,11 @@ mod candidates;
 mod certificate;
 mod checker;
 mod choices;
+pub mod conformance;
 mod hit;
 mod line;
 mod number;
+mod outcome;
 pub(crate) mod paths;
 mod pixel;
 mod recording;
@@ -60,6 +62,7 @@ pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
+pub use outcome::{MOST_UNDECIDED, Outcome};
 pub use paths::{
     PathCertificate, PathRecording, PathStage, PathUploadError, PathViolation, StageCounts,
 };

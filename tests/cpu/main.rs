@@ -29,6 +29,7 @@ mod camera_path;
 mod camera_tables;
 mod color_by;
 mod comparator;
+mod conformance;
 mod environment;
 mod environment_files;
 mod framing;

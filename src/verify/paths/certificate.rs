@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::upload::PathUploadError;
+use crate::verify::outcome::Outcome;
 
 /// A stage of a path: a kernel, or a part of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -116,10 +117,22 @@ impl PathCertificate {
             .fold(StageCounts::default(), StageCounts::plus)
     }
 
-    /// Whether the uploaded data are correct and every stage is legal.
+    /// The outcome: violated if the uploaded data are wrong or a stage is not legal, and undecided if too much is
+    /// undecided in any kind of stages.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        let is_violated = self.upload.is_some() || self.violation_count > 0;
+        let stages = [self.start, self.extend, self.scatter, self.occlude, self.accumulate];
+        let of = |counts: StageCounts| Outcome::of(is_violated, counts.undecided, counts.checked);
+        let used = stages.into_iter().filter(|counts| counts.checked > 0).map(of).max();
+        used.unwrap_or(Outcome::of(is_violated, 0, 0))
+    }
+
+    /// Whether the outcome is [`Outcome::Proved`]: the uploaded data are correct, every stage is legal, and almost
+    /// nothing is undecided.
     #[must_use]
     pub fn is_legal(&self) -> bool {
-        self.upload.is_none() && self.violation_count == 0
+        self.outcome() == Outcome::Proved
     }
 }
 

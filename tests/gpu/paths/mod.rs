@@ -12,7 +12,7 @@ use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
 use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions};
 use pinhole::internals::ShaderEdit;
-use pinhole::verify::{Checker, PathCertificate, PathRecording};
+use pinhole::verify::{Checker, Outcome, PathCertificate, PathRecording};
 use pinhole::{Film, RenderSettings};
 
 use crate::{headless, trial};
@@ -156,7 +156,7 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
         change(&mut recording);
     }
     let certificate = certify(&view, &recording);
-    if certificate.is_legal() {
+    if certificate.outcome() != Outcome::Violated {
         return Err(format!("the fault was not found: {certificate}").into());
     }
     Ok(())
@@ -174,7 +174,10 @@ fn part_of_a_large_film() -> Result<(), Failed> {
     }
     is_legal(&view, &recording)?;
     recording.origin[0] += 1;
-    if certify(&view, &recording).is_legal() { Err("of another place".into()) } else { Ok(()) }
+    match certify(&view, &recording).outcome() {
+        Outcome::Violated => Ok(()),
+        _ => Err("of another place".into()),
+    }
 }
 
 fn refuses_a_studio(headless: &'static Headless) {

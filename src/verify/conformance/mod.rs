@@ -1,0 +1,221 @@
+//! Whether the answers of any renderer are right: which sphere each pixel shows, at which depth and with which normal.
+//!
+//! No renderer in floating-point numbers gives the exact answer to every ray, and this is no fault: where a ray only
+//! just meets a sphere, rounding decides. A tolerance for depths and a share of pixels that may differ would hide real
+//! faults beside such rays. So answers are judged by *backward stability*, as numerical algorithms are (Higham,
+//! *Accuracy and Stability of Numerical Algorithms*, section 1.5): an answer is good if it is the exact answer to a
+//! question that differs by little from the one that was asked.
+//!
+//! # Definition
+//!
+//! Let ε = 2⁻²⁴, half the distance from 1 to the next f32. A sphere with radius r, whose centre is at the vector l from
+//! the start of the ray, is *moved by at most k* if its centre, seen from the ray, is at l + δ with
+//!
+//! |δ| ≤ k ε (max(|l|, r) + s).
+//!
+//! This is the same as a ray that starts up to k ε |l| elsewhere, or whose direction is turned by up to k ε. For given
+//! rays ([`Rays::Given`]) s is 0. For rays that the renderer makes by itself ([`Rays::View`]) s is an eighth of the
+//! distance of the camera from the origin of the scene's frame, because the camera's coordinates are rounded too, but
+//! not often. (The frame is that of
+//! the world, unless the data are far from the world's origin: [`Scene::origin`](crate::Scene::origin). Who narrows
+//! coordinates far from zero needs a larger k, and the picture shows it.)
+//!
+//! An answer is *legal for k* if every sphere can be moved by at most k, each by itself, such that
+//!
+//! * the claimed sphere is hit, where depths are given at exactly the claimed distance, and where normals are given
+//!   with the claimed normal (for which the move may be another, and s is never 0, because the point that is hit has
+//!   coordinates);
+//! * no other sphere is hit before that; or, if a miss is claimed, no sphere is hit at all.
+//!
+//! Each sphere is moved by itself because a renderer tests each sphere by itself, with roundings of its own. Each of
+//! these conditions holds for all larger k if it holds for one, so that there is a *least k*. All spheres that are
+//! moved by at most a fill the ball of radius r + a, and share the ball of radius r − a; so the least move for each
+//! condition is the distance of a point from a circle, in closed form (`seen.rs`). The least k of a pixel is the
+//! largest of them. (Without a depth, how near the claimed sphere may be depends on k as well, and the least k is found
+//! by doubling and bisection.) Everything is computed in f64, whose errors are 2⁻²⁹ of one k.
+//!
+//! A sphere that contains the start of its ray shows its far side. Spheres that are equal to the bit count as one.
+//!
+//! # Outcomes
+//!
+//! For a limit K, a pixel is *violated* if its least k is above K. It is *proved* if every answer that is legal for K
+//! names the sphere that the renderer named. Otherwise it is *undecided*: the answer is legal, but so are others, as at
+//! silhouettes and where spheres touch; nothing is said about it. A sphere whose radius is smaller than its move is
+//! never proved.
+//!
+//! # What an honest f32 renderer needs
+//!
+//! Claim: a renderer that is given rays in f32, rounds every sum, product, quotient and root to nearest, fused or in any
+//! order, and tests spheres by
+//!
+//! l = c − o, b = l·d, f = l − b d, q = r² − f·f, h = √q, t = b − h or (l·l − r²)/(b + h),
+//!
+//! needs k ≤ 9 for ids, k ≤ 21 with depths, and k ≤ 27 with normals. Let L = |l| ≥ r (from inside, the same holds with
+//! r in place of L), and ε the error of one rounding; terms in ε² are left out.
+//!
+//! 1. The difference l is off by ε L: a move by 1, in units of ε L.
+//! 2. b is off by at most 3 ε L (three roundings of l·d, by Cauchy and Schwarz). This moves f along d, across which it
+//!    lies, so that |f| changes only in second order, unless r itself is of the size ε L; then by at most (3 + √2) ε L.
+//! 3. The product b d and the difference l − b d add ε |b| and ε |f|, together at most √2 ε L. With 2 these are at most
+//!    6 ε L.
+//! 4. Rounding f·f changes |f| by 3/2 ε |f|; rounding r² and the difference q has the effect of a radius, or an |f|, that
+//!    is off by ε r/2 each. Whether the sphere is hit is decided by the sign of q: 1 + 6 + 3/2 + 1/2 = **9**.
+//! 5. The depth: b is off by 3 ε L along the ray; h, given q, by ε h/2 for q and ε h for the root; t by ε L. That is
+//!    5.5 ε L along the ray, and a point that is moved by x along the ray is at most x farther from the surface. With the
+//!    quotient instead of the difference: l·l − r² is off by at most (3 + 1) ε L², which moves t by 4 ε L²/(b + h), and
+//!    the point's distance from the surface by h/r of that; where L ≥ √2 r, b ≥ L/√2 and this is at most 4 √2 ε L; where
+//!    L < √2 r, it is at most 2 √2 ε L, because b > h. The sum b + h and the quotient add (3 + 1.5 + 1) ε L. With the
+//!    9 of the id: at most 9 + 5.7 + 5.5 < **21**. Each further ULP in roots or quotients adds 2, so that those of WGSL
+//!    (2.5 ULP for a quotient, and a root that is as good) need less than 29.
+//! 6. The normal (o + t d − c)/r or made unit: the point is off by 21 as above, and by three more roundings of numbers
+//!    that are at most L + |o| + r, of which s takes up |o|; making it unit adds 3.5 ε r: less than 21 + 2.5 + 3.5 = **27**.
+//! 7. A direction in f32 is of unit length up to 1.5 ε, so that distances and parameters differ by at most 1.5 ε t.
+//!
+//! So the limit is 24 for given rays ([`OF_GIVEN_RAYS`]), and 8 more where normals are judged ([`FOR_NORMALS`]). A
+//! renderer that makes its rays also rounds o, by ε |o|, and may move the ray's start along it, to numbers of at most
+//! |o| + 2 L; the limit times s covers |o|, and 2 remain. It rounds d: for a location x, y it sums x right + y up +
+//! forward. The location is off by 3 ε (the quotient, the difference), and each vector, product and sum by ε:
+//! 3 (|right| + |up|) + 4 (|x right| + |y up| + |forward|), relative to the length of the sum. Up to a field of view of 90°
+//! that is at most 6 + 4 √3 < 13, and making it unit adds 3.5: together less than 17 + 2. So the limit is 16 more
+//! ([`FOR_CAMERAS`]): 21 + 19 = 40. Wider fields of view, and cameras whose angles come from trigonometry with the errors
+//! that WGSL allows, may need more.
+//!
+//! The textbook's quadratic formula is not honest in this sense: from b² − 4ac it subtracts numbers of the size L²,
+//! which loses ε L² from r², and a small sphere far away is moved by L/r times as much.
+//!
+//! In practice sums of so many roundings never meet, and honest renderers need k below 6 (`docs/conformance.md`).
+//!
+//! ```
+//! use pinhole::camera::{PinholeCamera, Pose};
+//! use pinhole::verify::conformance::{Answers, Rays};
+//! use pinhole::verify::{Checker, Outcome};
+//! use pinhole::{Film, LinearRgb, Scene, View};
+//!
+//! let scene = Scene::from_f32(vec![[0.0_f32, 0.0, 0.0, 1.0]], LinearRgb::WHITE)?;
+//! let pose = Pose::looking_at([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
+//! let camera = PinholeCamera::with_vertical_fov(pose, 0.1, 1.0)?;
+//! let view = View::new(&camera, Film::new(1, 1)?);
+//! // What another renderer found: the sphere 0 at the distance 3.
+//! let answers = Answers { size: [1, 1], ids: &[0], depths: Some(&[3.0]), ..Answers::default() };
+//! let found = Checker::new(&scene)?.certify_answers(&answers, Rays::View(view), None)?;
+//! assert_eq!(found.outcome(), Outcome::Proved, "{found}");
+//! let wrong = Answers { depths: Some(&[3.001]), ..answers };
+//! let found = Checker::new(&scene)?.certify_answers(&wrong, Rays::View(view), None)?;
+//! assert_eq!(found.outcome(), Outcome::Violated, "{found}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod answers;
+mod pixel;
+mod report;
+mod seen;
+
+pub use answers::{Answers, ConformanceError, DepthKind, Rays};
+pub use report::{Conformance, Finding, Reason};
+
+use pixel::PixelCheck;
+
+use super::checker::Checker;
+use super::outcome::Outcome;
+use crate::parallel::{map_parts, ranges};
+
+/// The unit of k: 2⁻²⁴, half the distance from 1 to the next f32.
+pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
+
+/// The largest k that an honest f32 renderer needs for ids and depths, for rays that it is given.
+pub const OF_GIVEN_RAYS: f64 = 24.0;
+
+/// What is added to the limit if the renderer made the rays by itself.
+pub const FOR_CAMERAS: f64 = 16.0;
+
+/// What is added to the limit if normals are judged.
+pub const FOR_NORMALS: f64 = 8.0;
+
+/// The part of the distance of a ray's start from the origin that is added to the size of a sphere.
+const OF_COORDINATES: f64 = 1.0 / 8.0;
+
+/// The number of pixels that a thread takes at a time.
+const CHUNK: usize = 1 << 12;
+
+/// The results for a range of pixels.
+struct Part {
+    outcomes: Vec<Outcome>,
+    least: Vec<f32>,
+    /// The indices of the pixels with the largest k, the worst first.
+    worst: Vec<usize>,
+}
+
+impl Checker<'_> {
+    /// Judges the answers of any renderer to exact rays. `at_most` is the limit of k; without it, the limit is
+    /// [`OF_GIVEN_RAYS`], and [`FOR_CAMERAS`] and [`FOR_NORMALS`] where they apply.
+    ///
+    /// # Errors
+    /// Returns an error if a list has a wrong length, an id is not that of a sphere, a number is not finite or not
+    /// positive where it must be, or if depths along an axis are given without a camera that has one.
+    pub fn certify_answers(
+        &self,
+        answers: &Answers<'_>,
+        rays: Rays<'_>,
+        at_most: Option<f64>,
+    ) -> Result<Conformance, ConformanceError> {
+        let at_most = at_most.unwrap_or_else(|| answers.limit(rays));
+        if !(at_most > 0.0 && at_most.is_finite()) {
+            return Err(ConformanceError::Limit { found: at_most });
+        }
+        answers.check(self.scene, rays)?;
+        let check = PixelCheck {
+            scene: self.scene,
+            candidates: &self.candidates,
+            answers: *answers,
+            rays,
+            axis: rays.axis(),
+            at_most,
+        };
+        let mut found = Conformance {
+            size: answers.size,
+            at_most,
+            outcomes: Vec::new(),
+            least: Vec::new(),
+            worst: Vec::new(),
+        };
+        let mut worst = Vec::new();
+        for part in map_parts(ranges(answers.ids.len(), CHUNK), |range| judge(&check, range)) {
+            found.outcomes.extend(part.outcomes);
+            found.least.extend(part.least);
+            worst.extend(part.worst);
+        }
+        keep_worst(&mut worst, |index| found.least[*index]);
+        let explain =
+            |index: usize| check.explain(index, found.outcomes[index], found.least[index].into());
+        found.worst = map_parts(worst, explain);
+        Ok(found)
+    }
+}
+
+fn judge(check: &PixelCheck<'_>, range: std::ops::Range<usize>) -> Part {
+    let (start, count) = (range.start, range.len());
+    let mut part = Part {
+        outcomes: Vec::with_capacity(count),
+        least: Vec::with_capacity(count),
+        worst: range.clone().collect(),
+    };
+    let mut others = Vec::new();
+    for index in range {
+        let (outcome, least) = check.judge(index, &mut others);
+        part.outcomes.push(outcome);
+        part.least.push(least as f32);
+    }
+    part.worst.retain(|index| part.least[index - start] > 0.0);
+    keep_worst(&mut part.worst, |index| part.least[index - start]);
+    part
+}
+
+/// Sorts pixels by their k, the largest first, and then by their index, and keeps the first.
+fn keep_worst(pixels: &mut Vec<usize>, least: impl Fn(&usize) -> f32) {
+    let order = |a: &usize, b: &usize| least(b).total_cmp(&least(a)).then(a.cmp(b));
+    if pixels.len() > report::KEPT {
+        pixels.select_nth_unstable_by(report::KEPT, order);
+        pixels.truncate(report::KEPT);
+    }
+    pixels.sort_unstable_by(order);
+}

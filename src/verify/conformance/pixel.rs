@@ -1,0 +1,296 @@
+//! The least change of a ray with which a pixel is legal.
+
+use glam::DVec3;
+
+use super::answers::{Answers, DepthKind, Rays};
+use super::report::{Finding, Reason};
+use super::seen::Seen;
+use super::{EPSILON, OF_COORDINATES};
+use crate::image::NO_ID;
+use crate::scene::Scene;
+use crate::verify::candidates::Candidates;
+use crate::verify::line::Line;
+use crate::verify::outcome::Outcome;
+
+/// With this k a centre may be moved by its distance, and every answer is legal that is consistent with one sphere.
+const EVERYTHING: f64 = 1.0 / EPSILON;
+
+/// The rounding errors of a search in f64, relative to the longest vector to a sphere: many times what they are.
+const OF_SEARCH: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// The data with which pixels are judged.
+pub(super) struct PixelCheck<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) candidates: &'a Candidates,
+    pub(super) answers: Answers<'a>,
+    pub(super) rays: Rays<'a>,
+    pub(super) axis: Option<DVec3>,
+    pub(super) at_most: f64,
+}
+
+/// The exact ray of a pixel, in the scene's frame.
+struct ExactRay {
+    line: Line,
+    /// The length that is added where numbers of the size of coordinates are rounded.
+    coordinates: f64,
+    /// The length that is added to the size of every sphere, where the renderer made the ray by itself.
+    start: f64,
+}
+
+/// A sphere beside the one that the renderer found.
+pub(super) struct Other {
+    id: u32,
+    seen: Seen,
+    /// The distance at which it may be hit.
+    earliest: f64,
+}
+
+/// What a renderer says of a pixel that it calls a hit.
+struct Claim {
+    sphere: [f32; 4],
+    seen: Seen,
+    /// The move that is k = 1.
+    unit: f64,
+    distance: Option<f64>,
+    /// The least k for this sphere by itself, and what needs it.
+    alone: f64,
+    reason: Reason,
+}
+
+impl ExactRay {
+    fn seen(&self, sphere: [f32; 4]) -> Seen {
+        Seen::new(self.line.origin, self.line.direction, sphere)
+    }
+
+    /// The move of a sphere that is k = 1.
+    fn unit(&self, seen: &Seen) -> f64 {
+        EPSILON * (seen.size() + self.start)
+    }
+}
+
+impl PixelCheck<'_> {
+    fn ray(&self, index: usize) -> Option<ExactRay> {
+        let (ray, is_made) = match self.rays {
+            Rays::View(view) => (view.ray_through_center(self.answers.pixel(index))?, true),
+            Rays::Given(rays) => (rays[index], false),
+        };
+        let origin = ray.origin - self.scene.origin();
+        let line = Line::exact(origin, ray.direction / ray.direction.length());
+        let coordinates = OF_COORDINATES * origin.length();
+        Some(ExactRay { line, coordinates, start: if is_made { coordinates } else { 0.0 } })
+    }
+
+    /// Judges a pixel: its outcome and its least k. `others` is memory that is reused.
+    pub(super) fn judge(&self, index: usize, others: &mut Vec<Other>) -> (Outcome, f64) {
+        let id = self.answers.ids[index];
+        let Some(ray) = self.ray(index) else {
+            // Where the camera has no ray, only a miss is legal.
+            return if id == NO_ID {
+                (Outcome::Proved, 0.0)
+            } else {
+                (Outcome::Violated, f64::INFINITY)
+            };
+        };
+        let (least, is_only) = match self.claim(index, id, &ray) {
+            None => {
+                self.find(&ray, None, others);
+                let least = self.to_be_missed(&ray, others);
+                let is_legal = least <= self.at_most;
+                if !is_legal {
+                    self.find_crossed(&ray, None, f64::INFINITY, others);
+                }
+                (if is_legal { least } else { self.to_be_missed(&ray, others) }, others.is_empty())
+            }
+            Some(claim) => {
+                let is_certain = self.find(&ray, Some(&claim), others);
+                let mut least = Self::to_be_nearest(&ray, &claim, others);
+                if least > self.at_most {
+                    let t = claim.distance.unwrap_or_else(|| claim.earliest(claim.alone));
+                    self.find_crossed(&ray, Some(&claim), t, others);
+                    least = Self::to_be_nearest(&ray, &claim, others);
+                }
+                (least, is_certain && others.is_empty())
+            }
+        };
+        let outcome = match (least <= self.at_most, is_only) {
+            (false, _) => Outcome::Violated,
+            (true, false) => Outcome::Undecided,
+            (true, true) => Outcome::Proved,
+        };
+        (outcome, least)
+    }
+
+    /// Explains why a pixel needs its k.
+    pub(super) fn explain(&self, index: usize, outcome: Outcome, least: f64) -> Finding {
+        let id = self.answers.ids[index];
+        let mut finding = Finding {
+            pixel: self.answers.pixel(index),
+            id,
+            depth: self.answers.depths.map(|depths| depths[index]),
+            outcome,
+            least,
+            margin: f64::INFINITY,
+            reason: Reason::NoRay,
+            exact: None,
+        };
+        let Some(ray) = self.ray(index) else { return finding };
+        let mut crossed = Vec::new();
+        self.find_crossed(&ray, None, f64::INFINITY, &mut crossed);
+        let nearest =
+            crossed.iter().min_by(|a, b| a.earliest.total_cmp(&b.earliest).then(a.id.cmp(&b.id)));
+        finding.exact = nearest.map(|other| (other.id, other.earliest));
+        match self.claim(index, id, &ray) {
+            Some(claim) if claim.alone as f32 >= least as f32 => {
+                (finding.margin, finding.reason) = (claim.alone * claim.unit, claim.reason);
+            }
+            claim => {
+                // The sphere that is in the way the most.
+                let needed = |other: &Other| {
+                    let unit = ray.unit(&other.seen);
+                    let t = claim
+                        .as_ref()
+                        .map(|claim| claim.distance.unwrap_or_else(|| claim.earliest(least)));
+                    let moved =
+                        t.map_or_else(|| other.seen.move_to_miss(), |t| other.seen.move_to_pass(t));
+                    (moved / unit, moved)
+                };
+                let others = crossed.iter().filter(|other| {
+                    claim.as_ref().is_none_or(|claim| !is_same(self.sphere(other.id), claim.sphere))
+                });
+                let worst = others.max_by(|a, b| needed(a).0.total_cmp(&needed(b).0));
+                if let Some(worst) = worst {
+                    (finding.margin, finding.reason) = (needed(worst).1, Reason::Hidden(worst.id));
+                }
+            }
+        }
+        finding
+    }
+
+    fn sphere(&self, id: u32) -> [f32; 4] {
+        self.scene.spheres()[id as usize]
+    }
+
+    /// What the renderer says of a hit; `None` for a miss.
+    fn claim(&self, index: usize, id: u32, ray: &ExactRay) -> Option<Claim> {
+        if id == NO_ID {
+            return None;
+        }
+        let sphere = self.sphere(id);
+        let (seen, direction) = (ray.seen(sphere), ray.line.direction);
+        let unit = ray.unit(&seen);
+        let distance =
+            self.answers.depths.map(|depths| match (self.answers.depth_kind, self.axis) {
+                (DepthKind::AlongAxis, Some(axis)) => depths[index] / direction.dot(axis),
+                _ => depths[index],
+            });
+        let (mut alone, mut reason) = match distance {
+            Some(t) => (seen.move_to_hit_at(t) / unit, Reason::Depth),
+            None => (seen.move_to_hit() / unit, Reason::Missed),
+        };
+        if seen.move_to_hit() / unit >= alone {
+            reason = Reason::Missed;
+        }
+        if let Some(normals) = self.answers.normals {
+            let normal = DVec3::from(normals[index]);
+            let length = normal.length();
+            let moved = seen
+                .move_to_normal(direction, normal.normalize_or_zero())
+                .max((length - 1.0).abs() * f64::from(sphere[3]));
+            // The point of the hit has coordinates, which are rounded, whoever made the ray.
+            let needed = moved / (EPSILON * (seen.size() + ray.coordinates));
+            if needed > alone {
+                (alone, reason) = (needed, Reason::Normal);
+            }
+        }
+        // NaN, if a ray is across the axis of depth.
+        let alone = if alone.is_nan() { f64::INFINITY } else { alone };
+        Some(Claim { sphere, seen, unit, distance, alone, reason })
+    }
+
+    /// Finds the spheres that may be the nearest beside the one that the renderer found, for k of at most the limit.
+    /// Returns whether the sphere of the claim is certainly hit.
+    fn find(&self, ray: &ExactRay, claim: Option<&Claim>, others: &mut Vec<Other>) -> bool {
+        others.clear();
+        let k = self.at_most;
+        let longest = self.candidates.longest_from(ray.line.origin);
+        let beside = k * EPSILON * (longest + ray.start) + OF_SEARCH * longest;
+        let claimed = claim.map(|claim| (claim, k * claim.unit));
+        let certain = claimed.filter(|(claim, a)| claim.seen.move_to_miss() > *a);
+        let mut limit = certain.map_or(f64::INFINITY, |(claim, a)| claim.seen.latest(a));
+        self.candidates.visit_beside(&ray.line, beside, limit, |candidate| {
+            let seen = ray.seen(candidate.sphere);
+            let a = k * ray.unit(&seen);
+            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.sphere))
+            {
+                return limit;
+            }
+            let earliest = seen.earliest(a);
+            if earliest <= limit {
+                others.push(Other { id: candidate.id, seen, earliest });
+                if seen.move_to_miss() > a {
+                    limit = limit.min(seen.latest(a));
+                }
+            }
+            limit
+        });
+        others.retain(|other| other.earliest <= limit);
+        certain.is_some()
+    }
+
+    /// Finds the spheres beside that of the claim which the exact ray meets before `t`.
+    fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64, others: &mut Vec<Other>) {
+        others.clear();
+        let beside = OF_SEARCH * self.candidates.longest_from(ray.line.origin);
+        self.candidates.visit_beside(&ray.line, beside, t, |candidate| {
+            let seen = ray.seen(candidate.sphere);
+            let is_other = claim.is_none_or(|claim| !is_same(claim.sphere, candidate.sphere));
+            if is_other && seen.move_to_miss() > 0.0 {
+                others.push(Other { id: candidate.id, seen, earliest: seen.earliest(0.0) });
+            }
+            t
+        });
+    }
+
+    /// The least k with which every sphere is missed.
+    fn to_be_missed(&self, ray: &ExactRay, others: &[Other]) -> f64 {
+        let needed = |other: &Other| other.seen.move_to_miss() / ray.unit(&other.seen);
+        others.iter().map(needed).fold(0.0, f64::max)
+    }
+
+    /// The least k with which a claim is right by itself, and no other sphere certainly hides it.
+    fn to_be_nearest(ray: &ExactRay, claim: &Claim, others: &[Other]) -> f64 {
+        let hidden = |t: f64| {
+            let needed = |other: &Other| other.seen.move_to_pass(t) / ray.unit(&other.seen);
+            others.iter().map(needed).fold(0.0, f64::max)
+        };
+        let alone = claim.alone;
+        if let Some(t) = claim.distance {
+            return alone.max(hidden(t));
+        }
+        // Without a depth, the sphere may be as near as k allows, so that k is found by bisection.
+        let is_enough = |k: f64| hidden(claim.earliest(k)) <= k;
+        if is_enough(alone) {
+            return alone;
+        }
+        let (mut low, mut high) = (alone, alone.max(1.0 / 16.0));
+        while !is_enough(high) && high < EVERYTHING {
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if is_enough(middle) { high = middle } else { low = middle }
+        }
+        high
+    }
+}
+
+impl Claim {
+    fn earliest(&self, k: f64) -> f64 {
+        self.seen.earliest(k * self.unit)
+    }
+}
+
+/// Whether spheres are equal to the bit, so that no renderer can tell them apart.
+fn is_same(a: [f32; 4], b: [f32; 4]) -> bool {
+    a.map(f32::to_bits) == b.map(f32::to_bits)
+}
