@@ -188,6 +188,8 @@ mod pages {
     #[cfg(feature = "gpu")]
     #[doc = include_str!("../docs/verify.md")]
     struct Verify;
+    #[doc = include_str!("../docs/conformance.md")]
+    struct Conformance;
     #[cfg(all(feature = "annotate", feature = "pdb", feature = "png"))]
     #[doc = include_str!("../docs/color.md")]
     struct Color;

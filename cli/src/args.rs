@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::camera::CameraArgs;
+use super::certify::CertifyArgs;
 use super::data::format_parser;
 use super::encoding::EncodingArgs;
 use super::file_info::FileArgs;
@@ -22,7 +23,7 @@ use pinhole::load::Format;
 #[command(version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
     after_help = "Exit codes: 0 done; 1 the job failed or does not fit; 2 wrong usage; 3 a check failed; \
-    130 stopped by a signal."
+    4 a check could not decide; 130 stopped by a signal."
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -37,6 +38,8 @@ pub(super) enum Command {
     View(Box<ViewArguments>),
     /// Render on an adapter, and check for every pixel whether a conforming device may have made it
     Verify(Box<VerifyArgs>),
+    /// Check the ids, depths and normals that any renderer made of a scene
+    Certify(Box<CertifyArgs>),
     /// Show how much memory a render would need on the device and the machine, and whether it fits
     #[cfg(feature = "gpu")]
     Plan(Box<PlanArgs>),
@@ -256,12 +259,13 @@ const RENDERING: [&str; 33] = [
     f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
     given one of them. The CPU reference never replaces an adapter here.\n\n\
     Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
-    or RUN is damaged; 2 wrong usage; 3 the picture is not legal.\n\n\
+    or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
+    pixels have several legal answers, or of the stages of light paths have bounds so wide that they say little.\n\n\
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
     wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
-    stages, upload, violation_count, violations, legal), `legal`, `command`. `version` and `command` are those \
+    stages, upload, violation_count, violations, outcome, legal), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
     of the program that rendered. New versions may add keys, but do not change these."
 )]
 pub(super) struct VerifyArgs {

@@ -12,6 +12,9 @@ pub(super) const USAGE: u8 = 2;
 /// Exit code of a check that found something wrong.
 pub(super) const CHECK_FAILED: u8 = 3;
 
+/// Exit code of a check that found nothing wrong, but could not decide enough.
+pub(super) const UNDECIDED: u8 = 4;
+
 /// Exit code of a job that a signal stopped, as shells use it for SIGINT.
 pub(super) const STOPPED: u8 = 130;
 
@@ -27,6 +30,8 @@ pub(super) enum Failure {
     Job(anyhow::Error),
     /// The job was done, and its check found a violation.
     CheckFailed(anyhow::Error),
+    /// The job was done, and its check found no violation, but left too much undecided.
+    Undecided(anyhow::Error),
     /// The user stopped it while a device was at work.
     #[cfg_attr(
         not(feature = "gpu"),
@@ -45,7 +50,10 @@ impl Failure {
     /// Returns the error with all its contexts.
     pub(super) fn message(&self) -> String {
         match self {
-            Self::Usage(error) | Self::Job(error) | Self::CheckFailed(error) => {
+            Self::Usage(error)
+            | Self::Job(error)
+            | Self::CheckFailed(error)
+            | Self::Undecided(error) => {
                 format!("{error:#}")
             }
             Self::Stopped => NOTHING_WRITTEN.to_owned(),
@@ -58,6 +66,7 @@ impl Failure {
             Self::Usage(_) => USAGE.into(),
             Self::Job(_) => FAILED.into(),
             Self::CheckFailed(_) => CHECK_FAILED.into(),
+            Self::Undecided(_) => UNDECIDED.into(),
             Self::Stopped | Self::StoppedBetween(_) => STOPPED.into(),
         }
     }
@@ -73,7 +82,7 @@ impl fmt::Display for Failure {
     /// Writes the line that the program prints before it ends.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(_) | Self::Job(_) | Self::CheckFailed(_) => {
+            Self::Usage(_) | Self::Job(_) | Self::CheckFailed(_) | Self::Undecided(_) => {
                 write!(f, "error: {}", self.message())
             }
             Self::Stopped | Self::StoppedBetween(_) => f.write_str(&self.message()),

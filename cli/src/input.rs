@@ -187,6 +187,14 @@ impl Source {
         Ok(Self { size: size.map(parse_size).transpose()?, ..self })
     }
 
+    /// Returns this source with a size, if it is a data file, and no flag gives its size.
+    pub(super) fn with_size_of_data(self, [width, height]: [u32; 2]) -> Self {
+        match (self.format, self.size) {
+            (Format::Data(_), None) => Self { size: Some((width, height)), ..self },
+            _ => self,
+        }
+    }
+
     /// Makes a source from a file that `bench` measures.
     #[cfg(feature = "gpu")]
     pub(super) fn of_bench(

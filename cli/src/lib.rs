@@ -27,6 +27,8 @@ mod bench_scene;
 #[cfg(feature = "gpu")]
 mod calibrate;
 mod camera;
+mod certify;
+mod certify_report;
 mod color_flags;
 mod data;
 mod demo;
@@ -92,7 +94,8 @@ use speak::{answer, tell, tell_all};
 
 /// Runs the program with the arguments of the process. This must be the first thing that the process does.
 ///
-/// Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed, 130 stopped.
+/// Exit codes: 0 done, 1 the job failed, 2 wrong usage, 3 a check failed, 4 a check
+/// could not decide, 130 stopped.
 #[must_use]
 pub fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
@@ -127,6 +130,7 @@ fn run() -> ExitCode {
     let result = interrupt::install().and_then(|()| match arguments.command {
         Command::Render(args) => render::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Certify(args) => certify::run(&args),
         #[cfg(feature = "gpu")]
         Command::Plan(args) => plan::run(&args),
         #[cfg(feature = "gpu")]

@@ -13,7 +13,7 @@ use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads};
 use pinhole::verify::run_file::{self, Run};
-use pinhole::verify::{Certificate, Checker, PathCertificate, Verdict};
+use pinhole::verify::{Certificate, Checker, MOST_UNDECIDED, Outcome, PathCertificate, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let Recorded { run, outputs, paths, lit } = match (&args.replay, &args.path) {
@@ -32,8 +32,12 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report, lit.as_ref())?;
-    verdict(&certificate)?;
-    paths.as_ref().map_or(Ok(()), verdict_of_paths)
+    let of_paths = paths.as_ref().map_or(Ok(()), verdict_of_paths);
+    match (verdict(&certificate), of_paths) {
+        // A violation says more than what is undecided.
+        (Err(Failure::Undecided(_)), Err(worse @ Failure::CheckFailed(_))) => Err(worse),
+        (of_picture, of_paths) => of_picture.and(of_paths),
+    }
 }
 
 /// Reads a saved recording.
@@ -51,6 +55,10 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     if let Some(error) = &certificate.upload {
         return Err(Failure::CheckFailed(anyhow!("the picture is not legal: {error}")));
     }
+    if certificate.outcome() == Outcome::Undecided {
+        let (count, all) = (certificate.undecided(), certificate.verdicts.len());
+        return Err(undecided(&format!("{count} of {all} pixels have several legal answers")));
+    }
     match certificate.violations.first() {
         None => Ok(()),
         Some(first) => Err(Failure::CheckFailed(anyhow!(
@@ -61,9 +69,22 @@ fn verdict(certificate: &Certificate) -> Result<(), Failure> {
     }
 }
 
+/// The failure of a check that says too little.
+fn undecided(what: &str) -> Failure {
+    let percent = 100.0 * MOST_UNDECIDED;
+    Failure::Undecided(anyhow!("no violation was found, but {what}; at most {percent} % may"))
+}
+
 fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
     if let Some(error) = &certificate.upload {
         return Err(Failure::CheckFailed(anyhow!("the paths are not legal: {error}")));
+    }
+    if certificate.outcome() == Outcome::Undecided {
+        let stages = certificate.stages();
+        return Err(undecided(&format!(
+            "the bounds of {} of {} stages of light paths are so wide that they say little",
+            stages.undecided, stages.checked
+        )));
     }
     match certificate.violations.first() {
         None => Ok(()),

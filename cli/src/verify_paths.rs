@@ -15,6 +15,7 @@ pub(super) struct PathReport {
     pub(super) upload: Option<String>,
     pub(super) violation_count: u64,
     pub(super) violations: Vec<Listed>,
+    pub(super) outcome: &'static str,
     pub(super) legal: bool,
     /// The certificate as one line of text.
     #[serde(skip)]
@@ -68,6 +69,7 @@ impl From<&PathCertificate> for PathReport {
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violation_count: certificate.violation_count,
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
+            outcome: certificate.outcome().name(),
             legal: certificate.is_legal(),
             line: certificate.to_string(),
         }

@@ -8,7 +8,7 @@ use super::adapter::AdapterReport;
 use super::verify_paths::PathReport;
 use pinhole::internals::text::one_line;
 use pinhole::verify::run_file::{Run, scene_sha256};
-use pinhole::verify::{Certificate, PathCertificate, Verdict, Violation};
+use pinhole::verify::{Certificate, Outcome, PathCertificate, Verdict, Violation};
 
 /// The largest number of violations in the JSON document.
 pub(super) const LISTED: usize = 100;
@@ -31,6 +31,7 @@ pub(super) struct Report {
     /// The check of the light paths, for a scene with the integrator `path`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) paths: Option<PathReport>,
+    pub(super) outcome: &'static str,
     pub(super) legal: bool,
     pub(super) command: String,
     /// The certificate as a table of text.
@@ -83,6 +84,8 @@ impl Report {
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
+        let of_paths = paths.map_or(Outcome::Proved, PathCertificate::outcome);
+        let outcome = certificate.outcome().max(of_paths);
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter {
@@ -106,7 +109,8 @@ impl Report {
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
             paths: paths.map(PathReport::from),
-            legal: certificate.is_legal() && paths.is_none_or(PathCertificate::is_legal),
+            outcome: outcome.name(),
+            legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
             table: certificate.to_string(),
         }
@@ -121,6 +125,9 @@ impl Report {
             }
             (true, ..) => {
                 "legal: every pixel is as a conforming device may have made it".to_owned()
+            }
+            (false, ..) if self.outcome == Outcome::Undecided.name() => {
+                "undecided: no violation was found, but too many answers could be others".to_owned()
             }
             (false, Some(_), _) => {
                 "NOT legal: the data on the device are not those of this scene and view".to_owned()
@@ -153,7 +160,6 @@ impl Report {
 }
 
 /// Returns the command line of this program, quoted for a shell.
-#[cfg(feature = "gpu")]
 pub(super) fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| {
         let argument = one_line(&argument.to_string_lossy());

@@ -9,6 +9,7 @@ mod npy_files;
 mod arrays;
 mod bad_input;
 mod camera_path;
+mod certify;
 mod colors;
 mod file_info;
 mod frames;

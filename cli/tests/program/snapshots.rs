@@ -18,6 +18,7 @@ use similar::TextDiff;
 use crate::support::Folder;
 
 mod cases;
+mod certify;
 mod contents;
 mod points;
 
@@ -50,7 +51,8 @@ fn compare(name: &str, found: &str) {
 #[cfg_attr(not(feature = "gpu"), ignore = "without the feature `gpu` there are fewer commands")]
 fn help() {
     let folder = Folder::new();
-    for command in ["", "render", "verify", "plan", "bench", "demo", "generate", "info"] {
+    for command in ["", "render", "verify", "certify", "plan", "bench", "demo", "generate", "info"]
+    {
         let run = folder.run(&format!("{command} --help")).succeeded();
         assert_eq!(run.stderr, "", "{command}");
         let name = if command.is_empty() { "help" } else { &format!("help-{command}") };
@@ -103,6 +105,7 @@ areas!(
     cases::arguments
     cases::files
     cases::arrays
+    certify::certify
     cases::light
     contents::scene_files
     contents::lit_scene_files

@@ -69,11 +69,14 @@ pub(super) fn folder() -> Folder {
     ] {
         std::fs::write(folder.path(name), contents).unwrap();
     }
+    for (name, contents) in super::certify::files() {
+        std::fs::write(folder.path(name), contents).unwrap();
+    }
     folder
 }
 
 /// Reads command lines, one a line.
-fn lines(lines: &str) -> Vec<Case> {
+pub(super) fn lines(lines: &str) -> Vec<Case> {
     let lines = lines.lines().map(str::trim).filter(|line| !line.is_empty());
     lines.map(|line| Case { input: None, arguments: line.to_owned() }).collect()
 }

@@ -1,0 +1,278 @@
+//! `pinhole certify`: judges the answers of any renderer by exact rays.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use clap::{Args, ValueEnum};
+
+use super::args::ViewArgs;
+use super::certify_report::Report;
+use super::failure::Failure;
+use super::input::{Input, Source, read};
+use super::output::{check_not_inputs, check_writable, name_all, unnamed};
+use super::speak::{answer, tell};
+use super::{progress, threads};
+use pinhole::geometry::ray::Ray;
+use pinhole::load::npy::pixels::{self, Pixels, PixelsError};
+use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays};
+use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
+
+/// Arguments that describe a camera; rays that are given replace it.
+const CAMERA: [&str; 21] = [
+    "size",
+    "camera",
+    "eye",
+    "look_at",
+    "direction",
+    "view",
+    "turn",
+    "margin",
+    "zoom",
+    "up",
+    "fov",
+    "distance",
+    "half_extent",
+    "aperture_radius",
+    "f_stop",
+    "focal_length",
+    "focus_distance",
+    "focus_on",
+    "angle",
+    "separation",
+    "convergence",
+];
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "For each pixel the check computes the least k for which the answer is legal: the exact answer for a \
+    sphere that is moved, relative to the ray, by at most k times 2^-24 of its distance (of its radius, from inside; and \
+    with rays of the scene's camera, of its distance plus an eighth of that of the camera from the origin). An honest f32 \
+    renderer needs at most 24 for given rays; 16 more for rays that it makes itself, and 8 more for normals. A pixel is proved if its answer is the only \
+    legal one for the limit, undecided if there are others, and violated if it needs more than the limit.\n\n\
+    Arrays have row 0 at the top, in either byte order. IDs are uint32, int32, uint64 or int64 of shape (height, width): \
+    indices of spheres in the order of the data; a miss is -1 or the largest number of the type. Depths are float32 or \
+    float64; those of misses are not looked at. Normals have the shape (height, width, 3), in world space, and point away \
+    from centers. RAYS.npz has the arrays `directions`, of shape (height, width, 3) and unit length, and `origins`, of the \
+    same shape or (3,).\n\n\
+    Exit codes: 0 no pixel needs more than the limit, and at most 1 % of the pixels are undecided; 1 the job failed; \
+    2 wrong usage; 3 a pixel needs more than the limit; 4 none does, but more is undecided.\n\n\
+    JSON: `version`, `scene` (spheres, sha256), `picture` (width, height, camera; null for given rays), `checked`, \
+    `at_most`, `counts` (proved, undecided, violated), `decided_fraction`, `largest`, `histogram` (up_to, count), `worst` \
+    (up to a hundred pixels: pixel, id, depth, outcome, k, margin, reason, exact_id, exact_distance, message), `outcome`, \
+    `command`; what is infinite or a miss is null. New versions may add keys, but do not change these."
+)]
+pub(super) struct CertifyArgs {
+    /// File that was rendered: a scene file or a data file, as for `render`
+    #[arg(value_name = "SCENE_OR_DATA")]
+    path: PathBuf,
+    #[command(flatten)]
+    view: ViewArgs,
+    /// The sphere of each pixel
+    #[arg(long, value_name = "ID.npy")]
+    id: PathBuf,
+    /// The depth of each pixel
+    #[arg(long, value_name = "DEPTH.npy")]
+    depth: Option<PathBuf>,
+    /// What depths are [default: t]
+    #[arg(long, value_enum, requires = "depth")]
+    depth_is: Option<DepthIs>,
+    /// The unit normal of each pixel
+    #[arg(long, value_name = "NORMAL.npy")]
+    normal: Option<PathBuf>,
+    /// The rays that the renderer was given, in world space [default: those of the camera]
+    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = CAMERA)]
+    rays: Option<PathBuf>,
+    /// The largest k that a pixel may need [default: 40, or 24 with --rays; 8 more with --normal]
+    #[arg(long, value_name = "K")]
+    at_most: Option<f64>,
+    /// Also write the results to this file as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum DepthIs {
+    /// Distance along the ray
+    T,
+    /// Distance from the camera's plane
+    Z,
+}
+
+impl CertifyArgs {
+    fn inputs(&self) -> impl Iterator<Item = &PathBuf> {
+        [&self.id].into_iter().chain(&self.depth).chain(&self.normal).chain(&self.rays)
+    }
+}
+
+pub(super) fn run(args: &CertifyArgs) -> Result<(), Failure> {
+    check(args)?;
+    threads::start()?;
+    let ids = array(&args.id, pixels::ids)?;
+    let source = Source::of_view(&args.path, &args.view)?;
+    let input = source.with_size_of_data(ids.size).load()?;
+    let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
+    check_not_inputs(args.json.iter(), &files)?;
+    for note in &input.notes {
+        tell(format_args!("note: {note}"));
+    }
+    let numbers = |path: &Option<PathBuf>| path.as_ref().map(|path| array(path, pixels::numbers));
+    let depths = numbers(&args.depth).transpose()?;
+    let normals = args.normal.as_ref().map(|path| array(path, pixels::vectors)).transpose()?;
+    let rays = args.rays.as_ref().map(|path| array(path, pixels::rays)).transpose()?;
+    same_size(args, &ids, &depths, &normals, &rays)?;
+    let answers = Answers {
+        size: ids.size,
+        ids: &ids.values,
+        depths: depths.as_ref().map(|depths| &*depths.values),
+        depth_kind: match args.depth_is {
+            Some(DepthIs::Z) => DepthKind::AlongAxis,
+            Some(DepthIs::T) | None => DepthKind::Distance,
+        },
+        normals: normals.as_ref().map(|normals| &*normals.values),
+    };
+    let found = certified(args, &input, &answers, rays.as_ref())?;
+    let report = Report::new(&input, &answers, rays.is_some(), &found);
+    progress::clear();
+    answer(report.table().as_bytes()).context("standard output: cannot be written")?;
+    if let Some(path) = &args.json {
+        let json = serde_json::to_string_pretty(&report)
+            .context("the report cannot be written as JSON")?
+            + "\n";
+        name_all(vec![(path, unnamed(path, json.as_bytes())?)])?;
+    }
+    verdict(&found)
+}
+
+/// Refuses what is wrong whatever the files hold.
+fn check(args: &CertifyArgs) -> Result<(), Failure> {
+    if let Some(limit) = args.at_most
+        && !(limit > 0.0 && limit.is_finite())
+    {
+        let message = format!("--at-most {limit}: the limit must be finite and greater than 0");
+        return Err(Failure::usage(message));
+    }
+    if args.depth_is == Some(DepthIs::Z) && args.rays.is_some() {
+        return Err(Failure::usage(
+            "--depth-is z: rays have no camera whose plane depths could be measured from; give distances along the rays",
+        ));
+    }
+    args.json.as_deref().map_or(Ok(()), check_writable)
+}
+
+/// Reads an array.
+fn array<T>(
+    path: &Path,
+    decode: impl FnOnce(&[u8]) -> Result<Pixels<T>, PixelsError>,
+) -> Result<Pixels<T>, Failure> {
+    progress::stage(format!("reading {}", path.display()));
+    let bytes = read(path)?;
+    Ok(decode(&bytes).with_context(|| path.display().to_string())?)
+}
+
+/// Refuses arrays of other sizes than that of the ids.
+fn same_size(
+    args: &CertifyArgs,
+    ids: &Pixels<u32>,
+    depths: &Option<Pixels<f64>>,
+    normals: &Option<Pixels<[f64; 3]>>,
+    rays: &Option<Pixels<Ray>>,
+) -> Result<(), Failure> {
+    let depths = args.depth.iter().zip(depths.as_ref().map(|depths| depths.size));
+    let normals = args.normal.iter().zip(normals.as_ref().map(|normals| normals.size));
+    let rays = args.rays.iter().zip(rays.as_ref().map(|rays| rays.size));
+    let [width, height] = ids.size;
+    match depths.chain(normals).chain(rays).find(|(_, size)| *size != ids.size) {
+        None => Ok(()),
+        Some((path, size)) => Err(Failure::Job(anyhow!(
+            "{}: the array is of {}x{} pixels, but {} is of {width}x{height}; give arrays of one picture",
+            path.display(),
+            size[0],
+            size[1],
+            args.id.display()
+        ))),
+    }
+}
+
+fn certified(
+    args: &CertifyArgs,
+    input: &Input,
+    answers: &Answers<'_>,
+    rays: Option<&Pixels<Ray>>,
+) -> Result<Conformance, Failure> {
+    let view = input.view();
+    let film = [view.film.width(), view.film.height()];
+    if rays.is_none() && film != answers.size {
+        let [width, height] = answers.size;
+        return Err(Failure::Job(anyhow!(
+            "{}: the array is of {width}x{height} pixels, but the picture is of {}x{}; to change that, add --size \
+             {width}x{height}",
+            args.id.display(),
+            film[0],
+            film[1]
+        )));
+    }
+    if rays.is_none() && input.eyes.is_some() {
+        tell(
+            "note: the camera has two eyes; the picture is taken for that of the middle between them",
+        );
+    }
+    progress::stage("checking");
+    let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
+    let rays = rays.map_or(Rays::View(view), |rays| Rays::Given(&rays.values));
+    let found = checker.certify_answers(answers, rays, args.at_most);
+    found.map_err(|error| explained(args, &error))
+}
+
+/// Names the file, or the flag, that an error is about.
+fn explained(args: &CertifyArgs, error: &ConformanceError) -> Failure {
+    let file = match error {
+        ConformanceError::Id { .. } => Some(&args.id),
+        ConformanceError::Depth { .. } => args.depth.as_ref(),
+        ConformanceError::Normal { .. } => args.normal.as_ref(),
+        ConformanceError::Origin { .. } | ConformanceError::Direction { .. } => args.rays.as_ref(),
+        ConformanceError::NoAxis => return Failure::usage(format!("--depth-is z: {error}")),
+        _ => None,
+    };
+    let place = file.map_or("the answers".into(), |file| file.to_string_lossy());
+    Failure::Job(anyhow!("{place}: {error}"))
+}
+
+fn verdict(found: &Conformance) -> Result<(), Failure> {
+    let all = found.outcomes.len();
+    match (found.outcome(), found.worst.first()) {
+        (Outcome::Violated, Some(worst)) => Err(Failure::CheckFailed(anyhow!(
+            "{} of {all} pixels need k above {}; the worst is {worst}",
+            found.count(Outcome::Violated),
+            found.at_most
+        ))),
+        (Outcome::Proved, _) => Ok(()),
+        _ => Err(Failure::Undecided(anyhow!(
+            "{} of {all} pixels are undecided, more than {} %; a smaller --at-most or a larger picture decides more",
+            found.count(Outcome::Undecided),
+            100.0 * MOST_UNDECIDED
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, FromArgMatches as _};
+
+    use super::*;
+
+    #[test]
+    fn rays_exclude_all_arguments_that_describe_a_camera() {
+        let command = CertifyArgs::augment_args(Command::new("certify"));
+        let others = [
+            "path", "format", "radius", "color", "frame", "topology", "columns", "id", "depth",
+            "depth_is", "normal", "rays", "at_most", "json", "help",
+        ];
+        let ids = command.get_arguments().map(|argument| argument.get_id().as_str());
+        let of_camera: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
+        assert!(of_camera.iter().all(|id| CAMERA.contains(id)), "{of_camera:?}");
+        assert_eq!(of_camera.len(), CAMERA.len());
+        let words = ["certify", "a.npy", "--id", "b.npy", "--rays", "c.npz"];
+        let matches = command.get_matches_from(words);
+        assert!(CertifyArgs::from_arg_matches(&matches).unwrap().rays.is_some());
+    }
+}
