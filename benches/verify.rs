@@ -6,6 +6,7 @@
 //! cargo bench --bench verify -- fences      # tracing with and without fences, in turns
 //! cargo bench --bench verify -- campaign    # 100 million rays over many scenes; ends at a violation
 //! cargo bench --bench verify -- lit-campaign 500    # light paths of this number of random scenes; ends at a violation
+//! cargo bench --bench verify -- studio-campaign 500    # the same in random studios
 //! ```
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
@@ -18,7 +19,9 @@ use pinhole::glam::DVec3;
 use pinhole::gpu::wgpu::DeviceType;
 use pinhole::gpu::{Decision, Headless, HeadlessOptions, Query, Structures};
 use pinhole::internals::ShaderEdit;
-use pinhole::verify::{Certificate, Checker, Outcome, PathCertificate, Recording, Verdict};
+use pinhole::verify::{
+    Certificate, Checker, LitCertificate, LitRecording, Outcome, Recording, Verdict,
+};
 use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 #[path = "../tests/support/spheres.rs"]
@@ -27,6 +30,11 @@ mod spheres;
 
 #[path = "../tests/support/random_light.rs"]
 mod random_light;
+
+use random_light::RandomView;
+
+/// The random view of a seed.
+type ViewOf = fn(u64) -> RandomView;
 
 fn main() {
     let headless = Headless::open(&HeadlessOptions::default()).unwrap();
@@ -47,9 +55,13 @@ fn main() {
     if wanted.iter().any(|wanted| wanted == "campaign") {
         campaign(&headless);
     }
-    if let Some(at) = wanted.iter().position(|wanted| wanted == "lit-campaign") {
-        let count = wanted.get(at + 1).map_or(500, |count| count.parse().unwrap());
-        lit_campaign(&headless, count);
+    let campaigns: [(&str, ViewOf); 2] =
+        [("lit-campaign", random_light::view), ("studio-campaign", random_light::studio)];
+    for (name, view) in campaigns {
+        if let Some(at) = wanted.iter().position(|wanted| wanted == name) {
+            let count = wanted.get(at + 1).map_or(500, |count| count.parse().unwrap());
+            lit_campaign(&headless, count, view);
+        }
     }
 }
 
@@ -280,20 +292,23 @@ fn campaign(headless: &Headless) {
     println!("{rays} rays in {pictures} pictures, {:.0} s\n", started.elapsed().as_secs_f64());
 }
 
-/// Checks the light paths of `count` random scenes, with the seeds from 0 on.
-fn lit_campaign(headless: &Headless, count: u64) {
-    let mut all = PathCertificate::default();
+/// Checks the light of `count` random scenes, with the seeds from 0 on.
+fn lit_campaign(headless: &Headless, count: u64, view: ViewOf) {
+    let mut all = LitCertificate::default();
     let (mut undecided, mut worst) = (0, 0.0);
     let started = Instant::now();
     for seed in 0..count {
-        let random_light::RandomView { scene, camera, film, settings, name } =
-            random_light::view(seed);
-        let accel = headless.plan_accel(&scene, AccelChoice::Auto).build(scene.spheres());
-        let buffers = headless.upload(&scene, &accel.into()).unwrap();
+        let RandomView { scene, camera, film, settings, name } = view(seed);
         let go_on = &mut |_: &_| Decision::GoOn;
         let view = View::new(camera.as_ref(), film);
-        let recording = headless.record_paths(&buffers, &view, &settings, 0..2, go_on).unwrap();
-        let certificate = Checker::new(&scene).unwrap().certify_paths(&recording);
+        let layers = LayerSet::COLOR;
+        let plan = headless.plan(&scene, &view, &settings, layers, AccelChoice::Auto, 0);
+        let buffers = headless.upload(&scene, &plan.build(&scene)).unwrap();
+        let checker = Checker::new(&scene).unwrap();
+        let mut certificate = LitCertificate::default();
+        let each =
+            &mut |recording: LitRecording<'_>| certificate.join(checker.certify_lit(recording));
+        headless.record_lit(&buffers, &view, &settings, &[0, 1], (each, go_on)).unwrap();
         assert_ne!(certificate.outcome(), Outcome::Violated, "seed {seed}: {name}: {certificate}");
         let stages = certificate.stages();
         let share = stages.undecided as f64 / stages.checked as f64;
@@ -306,5 +321,5 @@ fn lit_campaign(headless: &Headless, count: u64) {
     }
     let seconds = started.elapsed().as_secs_f64();
     println!("{count} scenes, {undecided} with undecided stages, {seconds:.0} s: {all}");
-    println!("{:#?}\n", [all.start, all.extend, all.scatter, all.occlude, all.accumulate]);
+    println!("{:#?}\n", all.named());
 }

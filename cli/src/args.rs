@@ -265,7 +265,8 @@ const RENDERING: [&str; 33] = [
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
     wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
-    stages, upload, violation_count, violations, outcome, legal), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
+    stages, upload, violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
+     stages and so on), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
     of the program that rendered. New versions may add keys, but do not change these."
 )]
 pub(super) struct VerifyArgs {
@@ -278,8 +279,9 @@ pub(super) struct VerifyArgs {
     pub(super) adapter: AdapterArgs,
     #[command(flatten)]
     pub(super) accel: AccelArgs,
-    /// Samples of each pixel whose light paths are checked bounce by bounce, for scenes with the integrator `path`. In
-    /// a picture with a side of more than 256 pixels, only the middle is checked [default: 1]
+    /// Samples of each pixel that are checked stage by stage, in scenes with light: paths bounce by bounce, studios
+    /// surface by surface and light by light. The last sample is one of them. In a picture with a side of more than 256
+    /// pixels, only the middle is checked, and of a studio with many lights a smaller part [default: 1]
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub(super) paths: Option<u32>,
     /// Also write the results to this file as JSON

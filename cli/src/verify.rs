@@ -13,13 +13,13 @@ use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
 use super::{progress, threads};
 use pinhole::verify::run_file::{self, Run};
-use pinhole::verify::{Certificate, Checker, MOST_UNDECIDED, Outcome, PathCertificate, Verdict};
+use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    let Recorded { run, outputs, paths, lit } = match (&args.replay, &args.path) {
+    let Recorded { run, outputs, light, lit } = match (&args.replay, &args.path) {
         (Some(path), _) => {
             let (run, outputs) = replayed(path, args)?;
-            Recorded { run, outputs, paths: None, lit: None }
+            Recorded { run, outputs, light: None, lit: None }
         }
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
@@ -28,15 +28,15 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
     drop(checker);
-    let report = Report::new(&run, &certificate, paths.as_ref());
+    let report = Report::new(&run, &certificate, light.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report, lit.as_ref())?;
-    let of_paths = paths.as_ref().map_or(Ok(()), verdict_of_paths);
-    match (verdict(&certificate), of_paths) {
+    let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
+    match (verdict(&certificate), of_light) {
         // A violation says more than what is undecided.
         (Err(Failure::Undecided(_)), Err(worse @ Failure::CheckFailed(_))) => Err(worse),
-        (of_picture, of_paths) => of_picture.and(of_paths),
+        (of_picture, of_light) => of_picture.and(of_light),
     }
 }
 
@@ -75,21 +75,22 @@ fn undecided(what: &str) -> Failure {
     Failure::Undecided(anyhow!("no violation was found, but {what}; at most {percent} % may"))
 }
 
-fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
+fn verdict_of_light(certificate: &LitCertificate) -> Result<(), Failure> {
+    let what = if certificate.is_studio { "the studio is" } else { "the paths are" };
     if let Some(error) = &certificate.upload {
-        return Err(Failure::CheckFailed(anyhow!("the paths are not legal: {error}")));
+        return Err(Failure::CheckFailed(anyhow!("{what} not legal: {error}")));
     }
     if certificate.outcome() == Outcome::Undecided {
         let stages = certificate.stages();
         return Err(undecided(&format!(
-            "the bounds of {} of {} stages of light paths are so wide that they say little",
+            "the bounds of {} of {} stages of light are so wide that they say little",
             stages.undecided, stages.checked
         )));
     }
     match certificate.violations.first() {
         None => Ok(()),
         Some(first) => Err(Failure::CheckFailed(anyhow!(
-            "the paths are not legal: {} of {} stages; the first is {first}",
+            "{what} not legal: {} of {} stages; the first is {first}",
             certificate.violation_count,
             certificate.stages().checked
         ))),
@@ -100,8 +101,8 @@ fn verdict_of_paths(certificate: &PathCertificate) -> Result<(), Failure> {
 struct Recorded {
     run: Run,
     outputs: VerifyOutputs,
-    /// The certificate of the light paths, if they were checked.
-    paths: Option<PathCertificate>,
+    /// The certificate of the light, if it was checked.
+    light: Option<LitCertificate>,
     /// The picture with light, for the page.
     lit: Option<LitPicture>,
 }
@@ -127,10 +128,9 @@ mod recorded {
     use crate::speak::tell;
     use crate::verify_report::command_line;
     use crate::with_scene::{upload, with_structures};
-    use crate::{interrupt, memory, prices, progress, self_test, verify_lit, verify_paths};
+    use crate::{interrupt, memory, prices, progress, self_test, verify_light, verify_lit};
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
-    use pinhole::render::Integrator;
     use pinhole::verify::run_file::Provenance;
 
     /// Renders a scene on an adapter and records it.
@@ -150,21 +150,14 @@ mod recorded {
             );
         }
         let is_lit = !input.settings.integrator.is_primary();
-        let has_paths = matches!(input.settings.integrator, Integrator::Path(_));
-        if !has_paths && args.paths.is_some() {
+        if !is_lit && args.paths.is_some() {
             return Err(Failure::usage(
-                "--paths needs a scene with the integrator `path`; remove --paths",
+                "--paths needs a scene with the integrator `studio` or `path`; remove --paths",
             ));
         }
-        if is_lit && !has_paths {
+        if is_lit && args.save.is_some() {
             tell(
-                "note: the scene asks for light, but its picture without light is checked, with one ray per pixel; \
-                 to check light as well, use a scene with the integrator `path`",
-            );
-        }
-        if has_paths && args.save.is_some() {
-            tell(
-                "note: --save stores the picture with one ray per pixel, but no light paths; to check those again, \
+                "note: --save stores the picture with one ray per pixel, but no light; to check that again, \
                  run `verify` on the scene again",
             );
         }
@@ -191,14 +184,14 @@ mod recorded {
         let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
         let provenance = provenance(&headless, structure);
         let samples = args.paths.unwrap_or(1);
-        let certify = || verify_paths::certify(&headless, &input, samples, choice);
-        let paths = has_paths.then(certify).transpose()?;
+        let certify = || verify_light::certify(&headless, &input, samples, choice);
+        let light = is_lit.then(certify).transpose()?;
         let lit = (is_lit && outputs.has_page())
             .then(|| verify_lit::render(&headless, &input, choice))
             .transpose()?;
         let run =
             Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-        Ok(Recorded { run, outputs, paths, lit })
+        Ok(Recorded { run, outputs, light, lit })
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

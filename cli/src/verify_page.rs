@@ -8,7 +8,7 @@ use minijinja::{Environment, Value};
 use serde::Serialize;
 
 use super::verify_lit::{LitFigure, LitPicture};
-use super::verify_page_paths::PathSection;
+use super::verify_page_light::LightSection;
 use super::verify_pictures::{
     DECIDED_HIT, MISS, Pictures, Window, css, depth_color, verdict_color,
 };
@@ -97,8 +97,8 @@ impl PictureSize {
 #[derive(Serialize)]
 struct Page<'a> {
     report: &'a Report,
-    /// The check of the light paths, if there was one.
-    paths: Option<PathSection<'a>>,
+    /// The check of light, if there was one.
+    light: Option<LightSection<'a>>,
     /// The lit picture, which is not checked, if the scene asks for light and the picture was rendered now.
     lit: Option<LitFigure>,
     /// Version of the program that checks.
@@ -142,7 +142,7 @@ pub(super) fn page(
     let first = (1..=ENLARGED).zip(&certificate.violations);
     let page = Page {
         report,
-        paths: report.paths.as_ref().map(PathSection::new),
+        light: report.light().map(LightSection::new),
         lit: lit.map(|lit| lit.figure(whole)).transpose()?,
         program: env!("CARGO_PKG_VERSION"),
         run_file: run_file.map(|path| path.to_string()),

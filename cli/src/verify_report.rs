@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
-use super::verify_paths::PathReport;
+use super::verify_light::LightReport;
 use pinhole::internals::text::one_line;
 use pinhole::verify::run_file::{Run, scene_sha256};
-use pinhole::verify::{Certificate, Outcome, PathCertificate, Verdict, Violation};
+use pinhole::verify::{Certificate, LitCertificate, Outcome, Verdict, Violation};
 
 /// The largest number of violations in the JSON document.
 pub(super) const LISTED: usize = 100;
@@ -30,7 +30,10 @@ pub(super) struct Report {
     pub(super) violations: Vec<Listed>,
     /// The check of the light paths, for a scene with the integrator `path`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) paths: Option<PathReport>,
+    pub(super) paths: Option<LightReport>,
+    /// The check of the light of a studio, for a scene with the integrator `studio`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) studio: Option<LightReport>,
     pub(super) outcome: &'static str,
     pub(super) legal: bool,
     pub(super) command: String,
@@ -80,12 +83,12 @@ impl Report {
     pub(super) fn new(
         run: &Run,
         certificate: &Certificate,
-        paths: Option<&PathCertificate>,
+        light: Option<&LitCertificate>,
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
-        let of_paths = paths.map_or(Outcome::Proved, PathCertificate::outcome);
-        let outcome = certificate.outcome().max(of_paths);
+        let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);
+        let outcome = certificate.outcome().max(of_light);
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter {
@@ -108,7 +111,8 @@ impl Report {
             rendered_otherwise: certificate.rendered_otherwise,
             upload: certificate.upload.as_ref().map(ToString::to_string),
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
-            paths: paths.map(PathReport::from),
+            paths: light.filter(|light| !light.is_studio).map(LightReport::from),
+            studio: light.filter(|light| light.is_studio).map(LightReport::from),
             outcome: outcome.name(),
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
@@ -116,11 +120,21 @@ impl Report {
         }
     }
 
+    /// The check of light, if there was one.
+    pub(super) fn light(&self) -> Option<&LightReport> {
+        self.paths.as_ref().or(self.studio.as_ref())
+    }
+
     /// Returns the verdict on one line.
     pub(super) fn verdict(&self) -> String {
         match (self.legal, &self.upload, self.count(Verdict::Violation)) {
             (true, ..) if self.paths.is_some() => {
                 "legal: every pixel by one ray, and every path, is as a conforming device may have made it"
+                    .to_owned()
+            }
+            (true, ..) if self.studio.is_some() => {
+                "legal: every pixel by one ray, and every sample of its light, is as a conforming device may have made \
+                 it"
                     .to_owned()
             }
             (true, ..) => {
@@ -131,6 +145,9 @@ impl Report {
             }
             (false, Some(_), _) => {
                 "NOT legal: the data on the device are not those of this scene and view".to_owned()
+            }
+            (false, None, 0) if self.studio.is_some() => {
+                "NOT legal: violations in the light of the studio".to_owned()
             }
             (false, None, 0) => "NOT legal: violations in the light paths".to_owned(),
             (false, None, 1) => "NOT legal: 1 violation".to_owned(),
@@ -147,11 +164,11 @@ impl Report {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
         let adapter = one_line(&self.adapter.adapter.line());
-        let paths = self.paths.as_ref().map_or(String::new(), |paths| format!("{}\n", paths.line));
+        let light = self.light().map_or(String::new(), |light| format!("{}\n", light.line));
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
-             structure: {structure}\n{}\n{paths}{}\n",
+             structure: {structure}\n{}\n{light}{}\n",
             16 * spheres,
             self.table,
             self.verdict()

@@ -116,11 +116,6 @@ pub enum GpuError {
     /// The caller asked to stop the render.
     #[error("stopped before the picture was finished")]
     Stopped,
-    /// A recording of paths was requested for settings of another integrator than `path`.
-    #[error(
-        "the integrators `primary` and `studio` trace no paths that could be recorded; choose the integrator `path`"
-    )]
-    NotPaths,
     /// A function that supports primary rays only was called with another integrator.
     #[error(
         "frames and recordings do not support the integrator `{integrator}` yet; choose `primary`, or render with \
@@ -130,7 +125,7 @@ pub enum GpuError {
         /// The integrator that was requested.
         integrator: &'static str,
     },
-    /// A lit picture was requested for the integrator `primary`, which has no light that samples are taken of.
+    /// A lit picture or a recording of one was requested for the integrator `primary`, which has no light that samples are taken of.
     #[error(
         "lit pictures have the integrator `studio` or `path`; pictures of `primary` are those of `Frame`"
     )]

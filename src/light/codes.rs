@@ -31,10 +31,8 @@ pub(crate) mod sampling {
 pub(crate) mod lighting {
     pub(crate) const TRANSPARENT: u32 = 1;
     pub(crate) const SKY_SEEN: u32 = 2;
-    #[cfg(feature = "gpu")]
     pub(crate) const SHADOWS: u32 = 4;
     pub(crate) const GROUND: u32 = 8;
-    #[cfg(feature = "gpu")]
     pub(crate) const CATCHER: u32 = 16;
 }
 
@@ -43,6 +41,7 @@ pub(crate) mod path {
     pub(crate) const ALIVE: u32 = 1;
     pub(crate) const INSIDE: u32 = 2;
     pub(crate) const ON_GROUND: u32 = 4;
+    pub(crate) const BACK: u32 = 16;
     pub(crate) const FULL: u32 = 32;
     pub(crate) const SCATTERED: u32 = 64;
 }

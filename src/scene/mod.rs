@@ -230,7 +230,6 @@ impl Scene {
     }
 
     /// The indices of the opaque spheres, in ascending order.
-    #[cfg(feature = "gpu")]
     pub(crate) fn opaque_ids(&self) -> impl Iterator<Item = u32> {
         (0..self.len() as u32).filter(|id| self.surface(*id).opacity >= 1.0)
     }

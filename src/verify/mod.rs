@@ -44,6 +44,8 @@ mod choices;
 pub mod conformance;
 mod hit;
 mod line;
+pub(crate) mod lit;
+mod lit_recording;
 mod number;
 mod outcome;
 pub(crate) mod paths;
@@ -55,6 +57,7 @@ mod rounding;
 pub mod run_file;
 mod shading;
 mod sphere;
+pub(crate) mod studio;
 mod upload;
 mod violation;
 
@@ -62,17 +65,22 @@ pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};
 pub use checker::Checker;
 pub use hit::{LegalHit, LegalHits};
-pub use outcome::{MOST_UNDECIDED, Outcome};
-pub use paths::{
-    PathCertificate, PathRecording, PathStage, PathUploadError, PathViolation, StageCounts,
-};
+pub use lit::{LitCertificate, LitInputs, LitStage, LitUploadError, LitViolation, StageCounts};
 #[cfg(feature = "gpu")]
-pub(crate) use paths::{PathState, RecordedSample, RecordedSurface, UploadedLighting, UploadedSky};
+pub(crate) use lit::{PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
+pub use lit_recording::LitRecording;
+pub use outcome::{MOST_UNDECIDED, Outcome};
+pub use paths::PathRecording;
+#[cfg(feature = "gpu")]
+pub(crate) use paths::{RecordedSample, RecordedSurface};
 pub use recording::{
     NO_HIT, Recording, Rendered, RequestedCamera, TracedPixel, TracedRay, UploadedView,
 };
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
 pub(crate) use rounding::{DIVIDE_ULP, SQRT_ULP, gamma};
+pub use studio::StudioRecording;
+#[cfg(feature = "gpu")]
+pub(crate) use studio::{StudioLight, StudioSample, StudioSurface};
 pub use upload::UploadError;
 pub use violation::{Violation, ViolationKind};

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 
 /// The smallest margin between the spheres and the box to which rays are moved, relative to the box's diagonal: twice
 /// the largest rounding error of a ray's entry point.
-const LEAST_MARGIN: f64 = 16.0 * U;
+pub(super) const LEAST_MARGIN: f64 = 16.0 * U;
 
 /// Why the data on the device are not those that were requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

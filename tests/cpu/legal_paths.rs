@@ -5,10 +5,12 @@ use std::f64::consts::PI;
 use pinhole::camera::sampling::{pair, pixel_seed, unit};
 use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::image::NO_ID;
-use pinhole::internals::{NO_HIT, PathState, RecordedSample, RecordedSurface, UploadedLighting};
+use pinhole::internals::{
+    NO_HIT, PathState, PixelSums, RecordedFilm, RecordedSample, RecordedSurface, UploadedLighting,
+};
 use pinhole::light::{Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
-use pinhole::verify::{Checker, Outcome, PathRecording, TracedRay};
+use pinhole::verify::{Checker, LitInputs, Outcome, PathRecording, TracedRay};
 use pinhole::{Film, LinearRgb, Scene, Sphere};
 
 use crate::legal_device::{Habit, LegalDevice};
@@ -64,20 +66,21 @@ fn recording(scene: &Scene, camera: &dyn Camera, film: Film) -> PathRecording {
     // The ground's material, and those of the spheres, which are matt and opaque.
     let material = [[0, 0, (0.3_f32 * 0.3).to_bits(), 0], [0, 0, 0, 1_f32.to_bits()]];
     let tables = (0..=scene.appearance().surfaces().len()).flat_map(|_| material).collect();
-    PathRecording {
+    let given = LitInputs {
         camera: made.camera,
+        occluders: [made.uploaded.scene_min, made.uploaded.scene_max],
         uploaded: made.uploaded,
         film,
         origin: [0, 0],
         size: [film.width(), film.height()],
         settings,
-        max_depth: DEPTH,
+        max_surfaces: DEPTH,
         lighting,
         tables,
         emitters: Vec::new(),
         sky: None,
-        samples: Vec::new(),
-    }
+    };
+    PathRecording { given, samples: Vec::new() }
 }
 
 /// A path, in the order of its slots.
@@ -132,9 +135,9 @@ const SCATTERED: u32 = 64;
 impl LegalDevice {
     /// `start` of shaders/path/start.wgsl.
     fn start(&mut self, made: &PathRecording, pixel: [u32; 2], seed: u32) -> Path {
-        let table = &made.lighting.filter_table;
+        let table = &made.given.lighting.filter_table;
         let u = pair(seed, 0, 0);
-        let side = [made.film.width(), made.film.height()];
+        let side = [made.given.film.width(), made.given.film.height()];
         let [x, y] = [0, 1].map(|axis| {
             let (low, high) =
                 (table[(u[axis] >> 24) as usize], table[(u[axis] >> 24) as usize + 1]);
@@ -147,7 +150,7 @@ impl LegalDevice {
             self.divide(sum, side[axis] as f32)
         });
         let lens = pair(seed, 0, 1).map(|bits| unit(bits) as f32);
-        let ray = self.camera_ray(made.camera.kind, &made.uploaded, [x, -y], lens);
+        let ray = self.camera_ray(made.given.camera.kind, &made.given.uploaded, [x, -y], lens);
         Path {
             origin: ray.origin,
             flags: ALIVE | FULL,
@@ -162,7 +165,7 @@ impl LegalDevice {
 
     /// `trace` of shaders/primary/trace.wgsl.
     fn extend(&mut self, scene: &Scene, made: &PathRecording, path: &Path, last: Hit) -> Hit {
-        let (ray, is_inside) = self.enter(&made.uploaded, path.origin, path.direction);
+        let (ray, is_inside) = self.enter(&made.given.uploaded, path.origin, path.direction);
         let mut hit = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         if path.flags & INSIDE != 0 {
             hit = Hit { t: path.left.1, id: last.id, distance: 0.0 };
@@ -217,7 +220,7 @@ impl LegalDevice {
         let mut next = *path;
         let d = path.direction;
         if hit.id == NO_ID {
-            let lighting = &made.lighting;
+            let lighting = &made.given.lighting;
             let end = if d[1] >= 0.0 { lighting.zenith } else { lighting.nadir };
             let along = d[1].abs();
             let level = self.add(1.0, -along);
@@ -280,21 +283,36 @@ impl LegalDevice {
         next
     }
 
-    /// `accumulate` of shaders/path/accumulate.wgsl.
-    fn accumulate(&mut self, path: &Path) -> [[u32; 4]; 2] {
-        let [r, g, b, _] = path.radiance;
-        let light = self.dot(&mut [(r, 0.2126), (g, 0.7152), (b, 0.0722)]);
-        let square = self.mul(light, light);
-        let [x, y, z, _] = path.first;
-        [path.radiance.map(f32::to_bits), bits([x, y, z], square.to_bits())]
+    /// `accumulate` of shaders/path/accumulate.wgsl, and `plus` of `film_sums.wgsl`.
+    fn accumulate(&mut self, path: &Path, before: PixelSums) -> PixelSums {
+        let [[r, g, b, alpha], rest, [x, y, z, square]] =
+            before.map(|four| four.map(f32::from_bits));
+        let [red, green, blue, opacity] = path.radiance;
+        let light = self.dot(&mut [(red, 0.2126), (green, 0.7152), (blue, 0.0722)]);
+        let more = [red, green, blue, self.mul(light, light)];
+        let (mut value, mut rest) = ([r, g, b, square], rest);
+        for channel in 0..4 {
+            let (sum, more) = (value[channel], more[channel]);
+            value[channel] = self.add(sum, more);
+            let part = self.add(value[channel], -sum);
+            let kept = self.add(value[channel], -part);
+            let lost = [self.add(sum, -kept), self.add(more, -part)];
+            let lost = self.add(lost[0], lost[1]);
+            rest[channel] = self.add(rest[channel], lost);
+        }
+        let [first, others] = [path.first, [x, y, z, 0.0]];
+        let albedo = [0, 1, 2].map(|c| self.add(others[c], first[c]));
+        let color = [value[0], value[1], value[2], self.add(alpha, opacity)];
+        [color, rest, [albedo[0], albedo[1], albedo[2], value[3]]]
+            .map(|four| four.map(f32::to_bits))
     }
 
     fn follow(&mut self, scene: &Scene, made: &PathRecording) -> RecordedSample {
-        let [width, height] = made.size;
+        let [width, height] = made.given.size;
         let pixels: Vec<[u32; 2]> =
             (0..height).flat_map(|j| (0..width).map(move |i| [i, j])).collect();
         let seeds: Vec<u32> =
-            pixels.iter().map(|pixel| pixel_seed(*pixel, made.lighting.seed)).collect();
+            pixels.iter().map(|pixel| pixel_seed(*pixel, made.given.lighting.seed)).collect();
         let nothing = Hit { t: NO_HIT, id: NO_ID, distance: 0.0 };
         let mut paths: Vec<Path> = pixels
             .iter()
@@ -322,7 +340,18 @@ impl LegalDevice {
                 open: vec![0; paths.len()],
             });
         }
-        recorded.sums = paths.iter().map(|path| self.accumulate(path)).collect();
+        // Sums of some samples of any light.
+        let sum = |k: usize| [0.3, 1.7, 900.0, 1e-4, 0.0].map(|x: f32| x * (k % 13) as f32);
+        let before: Vec<PixelSums> = (0..paths.len())
+            .map(|k| {
+                let [a, b, c, d, e] = sum(k);
+                let small = [a, b, c, d].map(|x| x * 1e-8);
+                [[a, b, c, d], small, [b, e, a, c]].map(|four| four.map(f32::to_bits))
+            })
+            .collect();
+        let after = paths.iter().zip(&before).map(|(path, sums)| self.accumulate(path, *sums));
+        let after = after.collect();
+        recorded.film = RecordedFilm { before, after };
         recorded
     }
 }

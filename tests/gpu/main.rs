@@ -29,6 +29,7 @@ mod profile;
 mod scenes;
 mod self_test;
 mod structures;
+mod studio;
 mod twin;
 mod update;
 mod verify;
@@ -53,6 +54,7 @@ fn main() {
             device::trials(),
             device_shape::trials(),
             structures::trials(),
+            studio::trials(),
             plan::trials(),
             profile::trials(),
             self_test::trials(),

@@ -11,7 +11,9 @@ use pinhole::camera::{
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
-use pinhole::render::{Integrator, LightSampling, PathTracing, Sampling};
+use pinhole::render::{
+    DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio,
+};
 use pinhole::{
     Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene,
     Sphere, SphereArray,
@@ -26,12 +28,21 @@ pub(crate) struct RandomView {
     pub(crate) name: String,
 }
 
-/// The view of a seed.
+/// The view of a seed, with light along paths.
 pub(crate) fn view(seed: u64) -> RandomView {
+    view_with(seed, Random::settings)
+}
+
+/// The view of a seed in a studio.
+pub(crate) fn studio(seed: u64) -> RandomView {
+    view_with(seed, Random::studio)
+}
+
+fn view_with(seed: u64, settings: fn(&mut Random) -> RenderSettings) -> RandomView {
     let mut random = Random(Rng::with_seed(seed));
     let spheres = random.spheres();
     let (camera, camera_name) = random.camera(&spheres);
-    let settings = random.settings();
+    let settings = settings(&mut random);
     let name = format!(
         "{} spheres, {camera_name}, {} lights, {}",
         spheres.len(),
@@ -273,6 +284,36 @@ impl Random {
         let normal = DVec3::Y + self.point(0.4);
         let point = self.point(0.2) + height * DVec3::Y;
         Ground { point, normal, color: self.color(1.0), is_shadow_catcher: false }
+    }
+
+    fn studio(&mut self) -> RenderSettings {
+        // More lights and directions than are taken at once, or fewer.
+        let lights = if self.chance(0.05) { 40 } else { self.0.usize(0..5) };
+        let directions = if self.chance(0.05) { 40 } else { self.0.u32(1..6) };
+        let radius = self.chance(0.6).then(|| self.between(0.1, 3.0));
+        let occlusion = Occlusion { radius, samples: directions };
+        let near = self.between(0.0, 6.0);
+        let cue = DepthCue { near, far: near + self.between(0.1, 8.0), color: self.color(1.0) };
+        let mut ground = self.chance(0.5).then(|| self.ground());
+        if let Some(ground) = &mut ground {
+            ground.is_shadow_catcher = self.chance(0.5);
+        }
+        let studio = Studio {
+            ambient: if self.chance(0.2) { LinearRgb::BLACK } else { self.color(1.0) },
+            occlusion: self.chance(0.5).then_some(occlusion),
+            has_shadows: self.chance(0.8),
+            max_surfaces: self.0.u32(1..8),
+            depth_cue: self.chance(0.4).then_some(cue),
+            outline: None,
+        };
+        let path = self.settings();
+        RenderSettings {
+            integrator: Integrator::Studio(studio),
+            lights: (0..lights).map(|_| self.light()).collect(),
+            sky: Sky::default(),
+            ground,
+            ..path
+        }
     }
 
     fn settings(&mut self) -> RenderSettings {

@@ -16,6 +16,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("verify::no_sphere_and_one_pixel", small),
         trial("verify::a_pixel_that_is_wrong_is_named", named),
         trial("verify::paths_are_proved", paths),
+        trial("verify::studios_are_proved", studio),
     ]
 }
 
@@ -142,4 +143,24 @@ fn paths(_: &'static Headless) {
     assert!(!json.contains("paths"), "{json}");
     let refused = command(&folder, "verify scene.toml --paths 2").output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
+}
+
+fn studio(_: &'static Headless) {
+    let folder = folder();
+    std::fs::write(folder.path().join("studio.toml"), PATHS.replace("'path'", "'studio'")).unwrap();
+    let found = table(&folder, "verify studio.toml --paths 2 --json a.json --report page");
+    assert!(found.contains("\n2400 samples, ") && found.contains(", 0 violations\n"), "{found}");
+    let json = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["studio"]["samples"], &json["paths"]), (&2400.into(), &().into()));
+    assert_eq!(json["studio"]["stages"]["accumulate"]["checked"], 2400);
+    assert_eq!((&json["studio"]["legal"], &json["legal"]), (&true.into(), &true.into()));
+    let page = std::fs::read_to_string(folder.path().join("page/report.html")).unwrap();
+    for words in [
+        "and so are the 2\u{202f}400 samples of its light.",
+        "<td class=\"name\">shadow</td>",
+        "stages, none of them not legal.",
+    ] {
+        assert!(page.contains(words), "{words}\n{page}");
+    }
 }

@@ -1,12 +1,11 @@
 //! The blocking forms of everything that waits. Browsers cannot block, so they do not exist for `wasm32`.
 
-use std::ops::Range;
-
 use wgpu::Adapter;
 
 use crate::camera::View;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::lit_recording::EachSample;
 use crate::gpu::headless::plan::{RenderPlan, StructurePlans};
 use crate::gpu::headless::progress::{Picture, UploadWatch, Watch};
 use crate::gpu::headless::timer::TraceTime;
@@ -19,7 +18,7 @@ use crate::gpu::waiting::block_on;
 use crate::image::{Image, LayerSet};
 use crate::render::RenderSettings;
 use crate::scene::{Scene, SceneUpdate};
-use crate::verify::{Certificate, PathRecording, Recording};
+use crate::verify::{Certificate, Recording};
 
 impl Headless {
     /// Opens a device on the first of [`candidates`](crate::gpu::adapter::candidates) that can open one.
@@ -173,7 +172,7 @@ impl Headless {
     ///
     /// # Errors
     /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
-    /// picture. [`Headless::record_paths`] records the paths of such pictures.
+    /// picture. [`Headless::record_lit`] records such pictures.
     pub fn record(
         &self,
         scene: &SceneBuffers,
@@ -199,22 +198,24 @@ impl Headless {
         block_on(self.record_and_render_async(scene, view, settings, watch))
     }
 
-    /// Traces the paths of some samples and records their state after every pass, from which
-    /// [`Checker::certify_paths`](crate::verify::Checker::certify_paths) judges the device. If a side of the film has
-    /// more than 256 pixels, only a rectangle in the middle of the film is recorded.
+    /// Takes some samples of a lit picture one by one and records the state of every path, or of every ray of a studio,
+    /// after every pass, from which [`Checker::certify_lit`](crate::verify::Checker::certify_lit) judges the device.
+    /// `each` is called with the recording of each sample; the sums of pixels go on from one to the next. If a side of
+    /// the film has more than 256 pixels, only a rectangle in the middle of the film is recorded, and in a studio with
+    /// many lights or directions of ambient light a smaller one. The passes are those that take samples step by step.
     ///
     /// # Errors
-    /// [`GpuError::NotPaths`] if the integrator is not `path`; the same errors as for [`Headless::render_uploaded`];
+    /// [`GpuError::NotLit`] if the integrator is `primary`; the same errors as for [`Headless::render_uploaded`];
     /// [`GpuError::Stopped`] if `watch` finishes or stops the recording.
-    pub fn record_paths(
+    pub fn record_lit(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
         settings: &RenderSettings,
-        samples: Range<u32>,
-        watch: &mut Watch<'_>,
-    ) -> Result<PathRecording, GpuError> {
-        block_on(self.record_paths_async(scene, view, settings, samples, watch))
+        samples: &[u32],
+        callbacks: (&mut EachSample<'_>, &mut Watch<'_>),
+    ) -> Result<(), GpuError> {
+        block_on(self.record_lit_async(scene, view, settings, samples, callbacks))
     }
 
     /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Both the kernels

@@ -1,11 +1,12 @@
 //! The check of scattering at surfaces. The WGSL twins are `shaders/path/bsdf.wgsl`, `dielectric.wgsl` and
 //! `scatter_light.wgsl`.
 
-use super::kernel::{Kernel, Surface};
-use super::material::{
+use super::kernel::Surface;
+use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::material::{
     ENERGIES, Material, ggx_lambda, mirrors_brdf, reflected_density, visible_mirror,
 };
-use super::warp::{cosine_direction, pi};
+use crate::verify::lit::warp::{cosine_direction, pi};
 use crate::verify::number::{Number, Vector};
 
 /// The BSDF times the cosine, and the density with which the direction is sampled.

@@ -1,35 +1,29 @@
 //! The check of all stages of all paths of a recording.
 
-use super::certificate::{PathCertificate, PathStage, PathViolation, StageCounts};
-use super::expected::{Expected, Mismatch};
-use super::kernel::{Address, Hit, Kernel, radiance_so_far};
-use super::recording::{NO_EMITTER, PathRecording, PathState, RecordedSample, flag, slot};
-use super::search::{self, Searched};
-use super::{start, upload};
-use crate::image::color::LUMINANCE;
+use super::kernel::radiance_so_far;
+use super::recording::{PathRecording, RecordedSample};
 use crate::parallel::{map_parts, ranges};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
 use crate::verify::certificate::KEPT;
 use crate::verify::checker::Checker;
-use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
-use crate::verify::number::{Number, Vector};
+use crate::verify::lit::certificate::{LitCertificate, LitStage};
+use crate::verify::lit::expected::{Expected, Mismatch};
+use crate::verify::lit::film;
+use crate::verify::lit::judge::{StageOutcome, along_choices, note, simple};
+use crate::verify::lit::kernel::{Address, Hit, Kernel};
+use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
+use crate::verify::lit::search::{self, Searched};
+use crate::verify::lit::{start, upload};
 
 /// The number of pixels that a thread takes at a time.
 const CHUNK: usize = 256;
 
-/// The verdict about a stage.
-enum StageOutcome {
-    Decided,
-    Open,
-    Undecided,
-}
-
 /// The data with which paths are judged.
 struct PathCheck<'a> {
     checker: &'a Checker<'a>,
-    recording: &'a PathRecording,
+    inputs: &'a LitInputs,
     model: CameraModel,
     is_matt: bool,
 }
@@ -37,9 +31,12 @@ struct PathCheck<'a> {
 impl Checker<'_> {
     /// Judges every stage of every path. The recording must be of the scene of this checker.
     #[must_use]
-    pub fn certify_paths(&self, recording: &PathRecording) -> PathCertificate {
-        let upload = upload::check(self.scene, &self.candidates, recording).err();
-        let mut certificate = PathCertificate { upload, ..PathCertificate::default() };
+    pub fn certify_paths(&self, recording: &PathRecording) -> LitCertificate {
+        let given = &recording.given;
+        let upload = upload::check(self.scene, &self.candidates, given)
+            .and_then(|()| recording.check_size())
+            .err();
+        let mut certificate = LitCertificate { upload, ..LitCertificate::default() };
         if certificate.upload.is_some() {
             return certificate;
         }
@@ -50,8 +47,8 @@ impl Checker<'_> {
         };
         let check = PathCheck {
             checker: self,
-            recording,
-            model: CameraModel::new(recording.camera.kind, &recording.uploaded, &recording.film),
+            inputs: given,
+            model: CameraModel::new(given.camera.kind, &given.uploaded, &given.film),
             is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
         };
         for sample in &recording.samples {
@@ -64,84 +61,9 @@ impl Checker<'_> {
     }
 }
 
-impl PathCertificate {
-    /// Adds the results for other paths.
-    pub fn join(&mut self, part: Self) {
-        self.paths += part.paths;
-        self.start = self.start.plus(part.start);
-        self.extend = self.extend.plus(part.extend);
-        self.scatter = self.scatter.plus(part.scatter);
-        self.occlude = self.occlude.plus(part.occlude);
-        self.accumulate = self.accumulate.plus(part.accumulate);
-        self.violation_count += part.violation_count;
-        self.upload = self.upload.take().or(part.upload);
-        let room = KEPT.saturating_sub(self.violations.len());
-        self.violations.extend(part.violations.into_iter().take(room));
-    }
-}
-
-impl StageCounts {
-    fn count(&mut self, verdict: &StageOutcome) {
-        self.checked += 1;
-        match verdict {
-            StageOutcome::Decided => self.decided += 1,
-            StageOutcome::Open => self.open += 1,
-            StageOutcome::Undecided => self.undecided += 1,
-        }
-    }
-}
-
-/// Records the verdict about a stage.
-fn note(
-    counts: &mut StageCounts,
-    violations: &mut Vec<PathViolation>,
-    Address { pixel, sample, surface }: Address,
-    result: Result<StageOutcome, Mismatch>,
-) {
-    match result {
-        Ok(verdict) => counts.count(&verdict),
-        Err(mismatch) => {
-            counts.checked += 1;
-            let (stage, message) = (mismatch.stage, mismatch.to_string());
-            violations.push(PathViolation { pixel, sample, surface, stage, message });
-        }
-    }
-}
-
-/// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
-fn along_choices(
-    mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
-) -> Result<StageOutcome, Mismatch> {
-    let mut choices = Choices::default();
-    let mut nearest: Option<Mismatch> = None;
-    loop {
-        match follow(&mut choices) {
-            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided),
-            Ok(_) if choices.were_open() => return Ok(StageOutcome::Open),
-            Ok(_) => return Ok(StageOutcome::Decided),
-            Err(mismatch) => {
-                if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
-                    nearest = Some(mismatch);
-                }
-            }
-        }
-        if !choices.advance() {
-            break;
-        }
-    }
-    match nearest {
-        Some(mismatch) if !choices.were_too_many() => Err(mismatch),
-        _ => Ok(StageOutcome::Undecided),
-    }
-}
-
-fn simple(is_open: bool) -> StageOutcome {
-    if is_open { StageOutcome::Open } else { StageOutcome::Decided }
-}
-
 impl PathCheck<'_> {
-    fn judge(&self, sample: &RecordedSample, range: std::ops::Range<usize>) -> PathCertificate {
-        let mut part = PathCertificate::default();
+    fn judge(&self, sample: &RecordedSample, range: std::ops::Range<usize>) -> LitCertificate {
+        let mut part = LitCertificate::default();
         let mut legal = LegalHits::default();
         for index in range {
             part.paths += 1;
@@ -156,16 +78,13 @@ impl PathCheck<'_> {
         &self,
         recorded: &RecordedSample,
         index: usize,
-        part: &mut PathCertificate,
+        part: &mut LitCertificate,
         legal: &mut LegalHits,
     ) {
-        let PathRecording { origin, size, .. } = self.recording;
-        let width = size[0].max(1) as usize;
-        // The sides of a film are u32.
-        let pixel = [origin[0] + (index % width) as u32, origin[1] + (index / width) as u32];
+        let pixel = self.inputs.pixel(index);
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
-        let PathCertificate { violations, start, extend, scatter, occlude, accumulate, .. } = part;
+        let LitCertificate { violations, start, extend, scatter, occlude, accumulate, .. } = part;
         note(start, violations, address, self.start(address, &state));
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
@@ -180,7 +99,7 @@ impl PathCheck<'_> {
                 // The state of a path that has ended does not change.
                 let mut expected = Expected::default();
                 let same = (0..PathState::SLOTS).try_for_each(|which| {
-                    let name = (PathStage::Scatter, "a path that has ended");
+                    let name = (LitStage::Scatter, "a path that has ended");
                     expected.same(name, [&state, &after], which)
                 });
                 if let Err(mismatch) = same {
@@ -188,15 +107,15 @@ impl PathCheck<'_> {
                 }
             }
             let open = f32::from_bits(stage.open[index]);
-            let is_searched = surface < self.recording.max_depth
-                && self.recording.lighting.source_count > 0
+            let is_searched = surface < self.inputs.max_surfaces
+                && self.inputs.lighting.source_count > 0
                 && after.number(slot::SHADOW) > 0.0;
             if is_searched {
                 note(occlude, violations, address, self.occlude(&after, open));
             } else if stage.open[index] != after.bits(slot::PENDING) {
                 let words = format!("{open:?}, without a search");
                 let fail = Expected::default().fail(
-                    PathStage::Occlude,
+                    LitStage::Occlude,
                     "the visibility of the light",
                     words,
                 );
@@ -211,17 +130,21 @@ impl PathCheck<'_> {
         }
         if state.has(flag::ALIVE) {
             let words = "the path was not followed to its end".to_owned();
-            let fail = Expected::default().fail(PathStage::Extend, "the hit", words);
+            let fail = Expected::default().fail(LitStage::Extend, "the hit", words);
             note(extend, violations, address, Err(fail));
         }
-        note(accumulate, violations, address, Self::accumulate(&state, recorded.sums[index]));
+        note(
+            accumulate,
+            violations,
+            address,
+            film::check(radiance_so_far(&state), &state, &recorded.film, index),
+        );
     }
 
     fn start(&self, address: Address, state: &PathState) -> Result<StageOutcome, Mismatch> {
         along_choices(|choices| {
             let mut expected = Expected::default();
-            let (recording, model) = (self.recording, &self.model);
-            start::check(recording, model, address, state, &mut expected, choices)?;
+            start::check(self.inputs, &self.model, address, state, &mut expected, choices)?;
             Ok(expected)
         })
     }
@@ -252,7 +175,7 @@ impl PathCheck<'_> {
         along_choices(|choices| {
             let mut kernel = Kernel {
                 scene: self.checker.scene,
-                recording: self.recording,
+                inputs: self.inputs,
                 is_matt: self.is_matt,
                 address,
                 before,
@@ -268,29 +191,12 @@ impl PathCheck<'_> {
 
     fn occlude(&self, state: &PathState, open: f32) -> Result<StageOutcome, Mismatch> {
         let mut expected = Expected::default();
-        let PathRecording { emitters, .. } = self.recording;
+        let LitInputs { emitters, .. } = self.inputs;
         let emitter = state.departure().emitter;
         let sphere_of_light = (emitter != NO_EMITTER)
             .then(|| emitters.get((emitter as usize).saturating_mul(3)))
             .flatten()
             .map(|sphere| sphere.map(f32::from_bits));
         search::check_open(self.searched(), state, sphere_of_light, open, &mut expected).map(simple)
-    }
-
-    /// Judges the contribution of a sample to the picture.
-    fn accumulate(state: &PathState, sums: [[u32; 4]; 2]) -> Result<StageOutcome, Mismatch> {
-        const COLOR: (PathStage, &str) = (PathStage::Accumulate, "the sample's color");
-        const ALPHA: (PathStage, &str) = (PathStage::Accumulate, "the sample's opacity");
-        const ALBEDO: (PathStage, &str) = (PathStage::Accumulate, "the first surface's color");
-        const SQUARE: (PathStage, &str) = (PathStage::Accumulate, "the square of the luminance");
-        let [[r, g, b, alpha], [x, y, z, square]] = sums.map(|sum| sum.map(f32::from_bits));
-        let mut expected = Expected::default();
-        let color = radiance_so_far(state);
-        expected.vector(COLOR, [r, g, b], color)?;
-        expected.number(ALPHA, alpha, Number::recorded(state.number(slot::RADIANCE)))?;
-        expected.vector(ALBEDO, [x, y, z], Vector::recorded(state.vector(slot::FIRST)))?;
-        let weights = Vector(LUMINANCE.map(Number::constant));
-        expected.number(SQUARE, square, color.dot(weights).squared())?;
-        Ok(if expected.is_wide { StageOutcome::Undecided } else { StageOutcome::Decided })
     }
 }

@@ -1,106 +1,53 @@
 //! The check of the shading kernel, number by number: from its input to its legal output. The WGSL twins are
 //! `shaders/path/scatter.wgsl`, `bounce.wgsl` and the parts that they use.
 
-use super::certificate::PathStage;
-use super::expected::{Expected, Mismatch};
-use super::recording::{PathRecording, PathState, UploadedLighting, flag, slot};
-use super::vertex::Vertex;
-use super::warp::Axes;
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::image::NO_ID;
-use crate::scene::Scene;
-use crate::verify::choices::Choices;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::expected::Mismatch;
+use crate::verify::lit::kernel::{Address, Kernel, unit};
+use crate::verify::lit::material::Material;
+use crate::verify::lit::recording::{PathState, flag, slot};
+use crate::verify::lit::vertex::Vertex;
+use crate::verify::lit::warp::Axes;
 use crate::verify::number::{Number, Vector};
-
-/// The hit of a ray as the device recorded it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Hit {
-    pub(super) t: f32,
-    pub(super) id: u32,
-    pub(super) shape_index: u32,
-    pub(super) distance: f32,
-}
-
-impl Hit {
-    pub(super) fn new([t, id, shape_index, distance]: [u32; 4]) -> Self {
-        Self { t: f32::from_bits(t), id, shape_index, distance: f32::from_bits(distance) }
-    }
-}
-
-/// The address of a surface: pixel, sample, and index on the path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Address {
-    pub(super) pixel: [u32; 2],
-    pub(super) sample: u32,
-    pub(super) surface: u32,
-}
-
-/// One invocation of the kernel, for one combination of its open decisions.
-pub(super) struct Kernel<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) recording: &'a PathRecording,
-    /// Whether this is the kernel for scenes in which every material is matt or emissive.
-    pub(super) is_matt: bool,
-    pub(super) address: Address,
-    pub(super) before: &'a PathState,
-    pub(super) hit: Hit,
-    pub(super) after: &'a PathState,
-    pub(super) expected: Expected,
-    pub(super) choices: &'a mut Choices,
-}
+use crate::verify::rounding::{FLUSH, U};
 
 /// A point of a surface that scatters light.
 pub(super) struct Surface {
     pub(super) vertex: Vertex,
-    pub(super) material: super::material::Material,
+    pub(super) material: Material,
     pub(super) axes: Axes,
     /// The direction back along the arriving ray, in the tangent frame.
     pub(super) out: Vector,
 }
 
 /// The stage and the name of a number, for reports.
-type Name = (PathStage, &'static str);
+type Name = (LitStage, &'static str);
 
-const ORIGIN: Name = (PathStage::Vertex, "the origin of the next ray");
-const DIRECTION: Name = (PathStage::Scatter, "the direction of the next ray");
-const DENSITY: Name = (PathStage::Scatter, "the density of the next direction");
-const FLAGS: Name = (PathStage::Scatter, "the path's flags");
-const DEPARTURE: Name = (PathStage::Vertex, "the sphere that the path leaves");
+const ORIGIN: Name = (LitStage::Vertex, "the origin of the next ray");
+const DIRECTION: Name = (LitStage::Scatter, "the direction of the next ray");
+const DENSITY: Name = (LitStage::Scatter, "the density of the next direction");
+const FLAGS: Name = (LitStage::Scatter, "the path's flags");
+const DEPARTURE: Name = (LitStage::Vertex, "the sphere that the path leaves");
 const EXIT_DISTANCE: Name =
-    (PathStage::Scatter, "the exit distance of the sphere that the path leaves");
-const THROUGHPUT: Name = (PathStage::Scatter, "the path's throughput");
-const RADIANCE: Name = (PathStage::Radiance, "the path's radiance");
-const ALPHA: Name = (PathStage::Radiance, "the path's opacity");
-const PENDING: Name = (PathStage::Light, "the pending light");
-const LIGHT: Name = (PathStage::Light, "the sampled light");
-const MEDIUM: Name = (PathStage::Scatter, "the absorption along the next ray");
-const FIRST: Name = (PathStage::Vertex, "the first surface's color");
+    (LitStage::Scatter, "the exit distance of the sphere that the path leaves");
+const THROUGHPUT: Name = (LitStage::Scatter, "the path's throughput");
+const RADIANCE: Name = (LitStage::Radiance, "the path's radiance");
+const ALPHA: Name = (LitStage::Radiance, "the path's opacity");
+const PENDING: Name = (LitStage::Light, "the pending light");
+const LIGHT: Name = (LitStage::Light, "the sampled light");
+const MEDIUM: Name = (LitStage::Scatter, "the absorption along the next ray");
+const FIRST: Name = (LitStage::Vertex, "the first surface's color");
 
-impl<'a> Kernel<'a> {
-    pub(super) fn lighting(&self) -> &'a UploadedLighting {
-        &self.recording.lighting
-    }
-
-    /// An entry of the tables; zeros beyond their end.
-    pub(super) fn table(&self, at: u32) -> [u32; 4] {
-        self.recording.tables.get(at as usize).copied().unwrap_or_default()
-    }
-
-    pub(super) fn emitter_words(&self, at: u32) -> [u32; 4] {
-        self.recording.emitters.get(at as usize).copied().unwrap_or_default()
-    }
-
-    pub(super) fn table_numbers(&self, at: u32) -> [f32; 4] {
-        self.table(at).map(f32::from_bits)
-    }
-
+impl Kernel<'_> {
     pub(super) fn pair(&self, number: u32) -> [u32; 2] {
         let Address { pixel, sample, surface } = self.address;
         pair(pixel_seed(pixel, self.lighting().seed), sample, number + 8 * surface)
     }
 
     pub(super) fn is_last(&self) -> bool {
-        self.address.surface >= self.recording.max_depth
+        self.address.surface >= self.inputs.max_surfaces
     }
 
     /// Follows the kernel, and compares its output.
@@ -120,7 +67,7 @@ impl<'a> Kernel<'a> {
             through.times(medium.map(|m| (-m * vertex.distance).exp()))
         };
         self.compare_departure(&vertex)?;
-        if vertex.is_passed {
+        if self.is_passed(&vertex) {
             return self.pass(&vertex, radiance_so_far, arriving);
         }
         let is_seen = !before.has(flag::SCATTERED);
@@ -151,6 +98,18 @@ impl<'a> Kernel<'a> {
         self.bounce(&at, arriving)
     }
 
+    /// Whether the path passes through the surface as if it were not there.
+    fn is_passed(&mut self, at: &Vertex) -> bool {
+        let [_, pass] = self.pair(3).map(crate::camera::sampling::unit);
+        let [material, alpha] = at.opacities.map(f64::from);
+        // The product in f64 is exact, because both numbers have 24 bits.
+        let opacity = material * alpha;
+        let is_exact = f64::from(opacity as f32).to_bits() == opacity.to_bits();
+        let error = if is_exact { 0.0 } else { U * opacity + FLUSH };
+        let is_open = (pass - opacity).abs() <= error && !is_exact;
+        self.choices.decide((!is_open).then_some(pass >= opacity))
+    }
+
     /// Compares the sphere that the path leaves, and its exit distance along the next ray.
     fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
         let (after, departure) = (self.after, self.after.departure());
@@ -172,7 +131,7 @@ impl<'a> Kernel<'a> {
     }
 
     pub(super) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
-        const KEPT: Name = (PathStage::Scatter, "an unchanged part of the path's state");
+        const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
         let states = [self.before, self.after];
         slots.iter().try_for_each(|slot| self.expected.same(KEPT, states, *slot))
     }
@@ -284,11 +243,6 @@ impl<'a> Kernel<'a> {
         let alive = if is_dead { 0 } else { flag::ALIVE };
         self.compare_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
     }
-}
-
-/// The number in [0, 1) that the upper 24 bits stand for, exactly.
-pub(super) fn unit(bits: u32) -> Number {
-    Number::known(crate::camera::sampling::unit(bits))
 }
 
 /// The radiance of a path, including the pending light if it is not occluded.

@@ -1,12 +1,15 @@
-//! The check of light sampling at a surface. The WGSL twins are `shaders/path/direct.wgsl`, `lamp.wgsl` and `emitters.wgsl`.
+//! The check of light sampling at a surface. The WGSL twins are `shaders/path/direct.wgsl` and
+//! `scene/emitters.wgsl`.
 
-use super::certificate::PathStage;
-use super::expected::Mismatch;
-use super::kernel::{Kernel, Surface, unit};
-use super::recording::{NO_EMITTER, flag, slot};
-use super::warp::{axes_around, cone_direction, cone_of_sphere, pi};
-use crate::light::codes::lamp::{DIRECTIONAL, HEAD, POINT};
+use super::kernel::Surface;
+use crate::light::codes::lamp::HEAD;
 use crate::light::codes::sampling::{CHANCE, MULTIPLE};
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::expected::Mismatch;
+use crate::verify::lit::kernel::{Kernel, unit};
+use crate::verify::lit::lamp::Lamp;
+use crate::verify::lit::recording::{NO_EMITTER, flag, slot};
+use crate::verify::lit::warp::{axes_around, cone_direction, cone_of_sphere, pi};
 use crate::verify::number::{Number, Vector};
 use crate::verify::recording::NO_HIT;
 
@@ -29,9 +32,9 @@ struct Emitter {
     radiance: Vector,
 }
 
-const DIRECTION: (PathStage, &str) = (PathStage::Light, "the direction towards the light");
-const DISTANCE: (PathStage, &str) = (PathStage::Light, "the distance to the light");
-const EMITTER: (PathStage, &str) = (PathStage::Light, "the sampled emitter");
+const DIRECTION: (LitStage, &str) = (LitStage::Light, "the direction towards the light");
+const DISTANCE: (LitStage, &str) = (LitStage::Light, "the distance to the light");
+const EMITTER: (LitStage, &str) = (LitStage::Light, "the sampled emitter");
 
 impl Kernel<'_> {
     /// The light of lights at the eye, which reaches only surfaces that the camera sees.
@@ -122,53 +125,16 @@ impl Kernel<'_> {
 
     fn sample_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> LightSample {
         let light = self.table(3 * source + 2)[0];
-        let at = light.saturating_mul(3);
-        let [x, y, z, _] = self.table_numbers(at);
-        let position_of_light = Vector::recorded([x, y, z]);
-        let [r, g, b, size] = self.table_numbers(at.saturating_add(1));
-        let (power, size) = (Vector::recorded([r, g, b]), Number::recorded(size));
-        let kind = self.table(at)[3];
-        let far = Number::known(NO_HIT.into());
+        let recorded = Some(Vector::recorded(self.after.vector(slot::SHADOW)));
+        let Lamp { direction, distance, strength, sun } = self.lamp(light, position, u, recorded);
         let sources = self.sources();
-        let found = |direction, distance, density, strength: Vector| LightSample {
-            direction,
-            distance,
-            density,
-            radiance: strength * (pi() * sources),
-            emitter: NO_EMITTER,
-        };
-        if kind == DIRECTIONAL {
-            let direction =
-                axes_around(position_of_light, self.choices).to_world(cone_direction(u, size));
-            let direction = self.narrowed_direction(direction);
-            let strength = power * (Number::TWO / (Number::TWO - size));
-            let density = if size.is_zero() {
-                Number::ZERO
-            } else {
-                Number::ONE / (Number::TWO * pi() * size * sources)
-            };
-            return found(direction, far, density, strength);
-        }
-        let toward = position_of_light - position;
-        let distance = toward.fence().squared().sqrt();
-        let axis = toward.fence().map(|c| c / distance.max(Number::constant(1e-30)));
-        if kind == POINT {
-            let square = distance.squared().max(Number::constant(1e-30));
-            return found(axis, distance, Number::ZERO, power.map(|p| p / square));
-        }
-        let is_outside = self.choices.decide(size.is_less(distance));
-        let (k, around) = if is_outside {
-            (cone_of_sphere(size, distance), axis)
+        let density = if sun.is_zero() {
+            Number::ZERO
         } else {
-            (Number::TWO, Vector([Number::ZERO, Number::ZERO, Number::ONE]))
+            Number::ONE / (Number::TWO * pi() * sun * sources)
         };
-        let direction = axes_around(around, self.choices).to_world(cone_direction(u, k));
-        let direction = self.narrowed_direction(direction);
-        let middle = toward.dot(direction);
-        let foot = toward - direction * middle;
-        let chord = (size.squared() - foot.squared()).max(Number::ZERO).sqrt();
-        let side = if is_outside { middle - chord } else { middle + chord };
-        found(direction, side.max(Number::ZERO), Number::ZERO, power * (Number::TWO * k))
+        let radiance = strength * (pi() * sources);
+        LightSample { direction, distance, density, radiance, emitter: NO_EMITTER }
     }
 
     /// The direction towards a light, narrowed to the fenced direction in the recorded state if that is legal.

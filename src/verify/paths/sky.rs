@@ -1,11 +1,11 @@
 //! The check of light from infinitely far away. The WGSL twins are `shaders/path/by_chance.wgsl`, `sky.wgsl` and
 //! `environment.wgsl`.
 
-use super::kernel::Kernel;
-use super::recording::{UploadedSky, flag, slot};
-use super::warp::pi;
 use crate::camera::sampling::unit;
 use crate::light::codes::lamp::DIRECTIONAL;
+use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::recording::{UploadedSky, flag, slot};
+use crate::verify::lit::warp::pi;
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
 
 impl Kernel<'_> {
@@ -45,7 +45,7 @@ impl Kernel<'_> {
 
     /// The image of the sky, if there is one.
     fn image(&self) -> Option<&UploadedSky> {
-        self.recording.sky.as_ref()
+        self.inputs.sky.as_ref()
     }
 
     pub(super) fn sky_radiance(&mut self, direction: Vector) -> Vector {

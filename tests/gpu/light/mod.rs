@@ -9,6 +9,7 @@ use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::PinholeCamera;
 use pinhole::gpu::{Decision, GpuError, Headless, Progress};
 use pinhole::render::{RenderSettings, Sampling};
+use pinhole::verify::LitRecording;
 use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, Sphere, View, cpu};
 
 use crate::headless;
@@ -224,6 +225,7 @@ fn not_recorded(device: &'static Headless) {
     assert_eq!(recording.err(), refused("path"));
     let certificate = device.verify(&scene, &view, &RenderSettings::studio());
     assert_eq!(certificate.err(), refused("studio"));
-    let paths = device.record_paths(&buffers, &view, &RenderSettings::default(), 0..1, go_on);
-    assert_eq!(paths.err(), Some(GpuError::NotPaths));
+    let each = &mut |_: LitRecording<'_>| {};
+    let light = device.record_lit(&buffers, &view, &RenderSettings::default(), &[0], (each, go_on));
+    assert_eq!(light.err(), Some(GpuError::NotLit));
 }

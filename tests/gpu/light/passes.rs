@@ -2,10 +2,11 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, Progress};
+use pinhole::gpu::{Decision, EachSample, GpuError, Headless, HeadlessOptions, Progress, Watch};
 use pinhole::image::Layer;
-use pinhole::internals::ShaderEdit;
+use pinhole::internals::{RecordedFilm, ShaderEdit};
 use pinhole::render::{Integrator, Occlusion};
+use pinhole::verify::LitRecording;
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
 use super::scenes::{self, LitView};
@@ -158,30 +159,43 @@ fn structures(headless: &'static Headless) {
     }
 }
 
-/// Samples that are recorded one by one and summed in f64 give the same picture, regardless of the number of samples in
-/// flight and the sizes of batches.
+/// The sums of samples that are recorded one by one, pass by pass, are those of the picture, regardless of the number of
+/// samples in flight, of the sizes of batches, and of whether one pass takes whole samples.
 fn sums(headless: &'static Headless) {
     const SAMPLES: u32 = 11;
-    for (name, mut view) in scenes::paths() {
+    let samples: Vec<u32> = (0..SAMPLES).collect();
+    for (name, mut view) in scenes::all() {
         view.settings.sampling.samples = SAMPLES;
         view.settings.is_denoised = false;
         let LitView { scene, settings, .. } = &view;
-        let accel = headless.plan_accel(scene, AccelChoice::Auto).build(scene.spheres());
-        let buffers = headless.upload(scene, &accel.into()).unwrap();
+        let layers = LayerSet::COLOR;
+        let plan = headless.plan(scene, &view.seen(), settings, layers, AccelChoice::Auto, 0);
+        let buffers = headless.upload(scene, &plan.build(scene)).unwrap();
+        let mut film = RecordedFilm::default();
+        let mut each = |recording: LitRecording<'_>| {
+            let one = match recording {
+                LitRecording::Paths(recording) => &recording.samples[0].film,
+                LitRecording::Studio(recording) => &recording.samples[0].film,
+                _ => panic!("{name}"),
+            };
+            assert!(film.after.is_empty() || film.after == one.before, "{name}");
+            film = one.clone();
+        };
         let go_on = &mut |_: &Progress| Decision::GoOn;
-        let recording =
-            headless.record_paths(&buffers, &view.seen(), settings, 0..SAMPLES, go_on).unwrap();
-        let wanted: Vec<[f32; 3]> = (0..view.film.pixel_count() as usize)
-            .map(|pixel| {
+        let callbacks = (&mut each as &mut EachSample<'_>, go_on as &mut Watch<'_>);
+        headless.record_lit(&buffers, &view.seen(), settings, &samples, callbacks).unwrap();
+        let wanted: Vec<[f32; 3]> = film
+            .after
+            .iter()
+            .map(|[color, rest, _]| {
                 [0, 1, 2].map(|c| {
-                    let of = recording.samples.iter().map(|sample| sample.sums[pixel][0][c]);
-                    let sum: f64 = of.map(|bits| f64::from(f32::from_bits(bits))).sum();
-                    (sum / f64::from(SAMPLES)) as f32
+                    let sum = [color[c], rest[c]].map(|bits| f64::from(f32::from_bits(bits)));
+                    ((sum[0] + sum[1]) / f64::from(SAMPLES)) as f32
                 })
             })
             .collect();
-        let picture = headless.render(scene, &view.seen(), settings, LayerSet::COLOR).unwrap();
-        assert_eq!(picture.color(), wanted, "{name}");
+        let picture = headless.render(scene, &view.seen(), settings, layers).unwrap();
+        assert!(picture.color() == wanted, "{name}");
     }
 }
 

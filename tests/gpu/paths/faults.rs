@@ -1,7 +1,7 @@
 //! Faults of the kernels of paths that the checker must find, with the stage in which it must find them.
 
-use pinhole::verify::PathStage;
-use pinhole::verify::PathStage::{
+use pinhole::verify::LitStage;
+use pinhole::verify::LitStage::{
     Accumulate, Extend, Light, Occlude, Radiance, Scatter, Start, Vertex,
 };
 
@@ -10,14 +10,14 @@ use super::scenes::{self, LitView};
 /// A shader edit that is a fault, with a view in which it is visible.
 pub(crate) struct Fault {
     pub(crate) name: &'static str,
-    pub(crate) stage: PathStage,
+    pub(crate) stage: LitStage,
     pub(crate) view: fn() -> LitView,
     pub(crate) file: &'static str,
     pub(crate) find: &'static str,
     pub(crate) replace: &'static str,
 }
 
-type Row = (&'static str, PathStage, fn() -> LitView, &'static str, &'static str, &'static str);
+type Row = (&'static str, LitStage, fn() -> LitView, &'static str, &'static str, &'static str);
 
 pub(crate) fn all() -> impl Iterator<Item = Fault> {
     [RAYS, SURFACES, COLORS, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(fault)

@@ -89,25 +89,28 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
             view.settings.lights.pop();
         }),
     ),
-    ("another_number_of_sources", Spoil::Said(|recording| recording.lighting.source_count += 1)),
+    (
+        "another_number_of_sources",
+        Spoil::Said(|recording| recording.given.lighting.source_count += 1),
+    ),
     (
         "energy_of_a_lobe",
         Spoil::Said(|recording| {
-            let last = recording.tables.len() - 3;
-            recording.tables[last][1] ^= 1;
+            let last = recording.given.tables.len() - 3;
+            recording.given.tables[last][1] ^= 1;
         }),
     ),
     (
         "opacity_of_a_material",
         Spoil::Said(|recording| {
-            let at = recording.lighting.material_first as usize + 2 * 3 + 1;
-            recording.tables[at][3] ^= 1 << 3;
+            let at = recording.given.lighting.material_first as usize + 2 * 3 + 1;
+            recording.given.tables[at][3] ^= 1 << 3;
         }),
     ),
     (
         "emitter_more_likely",
         Spoil::Said(|recording| {
-            recording.emitters[1][1] += 1 << 20;
+            recording.given.emitters[1][1] += 1 << 20;
         }),
     ),
     (
@@ -126,7 +129,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
     (
         "a_bit_of_a_sum",
         Spoil::Said(|recording| {
-            recording.samples[1].sums[777][0][0] ^= 1 << 3;
+            recording.samples[1].film.after[777][0][0] ^= 1 << 3;
         }),
     ),
     (
@@ -137,7 +140,7 @@ pub(crate) const ALL: &[(&str, Spoil)] = &[
             surfaces[last].scattered[0].slots[4][1] ^= 1;
         }),
     ),
-    ("a_camera_elsewhere", Spoil::Said(|recording| recording.uploaded.origin[1] += 1e-5)),
+    ("a_camera_elsewhere", Spoil::Said(|recording| recording.given.uploaded.origin[1] += 1e-5)),
 ];
 
 fn on_spheres(view: &mut LitView, change: impl FnOnce(&mut Vec<Sphere>)) {

@@ -10,10 +10,10 @@ use std::path::Path;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions};
+use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, SceneBuffers};
 use pinhole::internals::ShaderEdit;
-use pinhole::verify::{Checker, Outcome, PathCertificate, PathRecording};
-use pinhole::{Film, RenderSettings};
+use pinhole::verify::{Checker, LitCertificate, LitRecording, Outcome, PathRecording};
+use pinhole::{Film, View};
 
 use crate::{headless, trial};
 use faults::Fault;
@@ -60,7 +60,6 @@ pub(crate) fn trials() -> Vec<Trial> {
     }
     trials.push(Trial::test("paths::faults::film_of_one_pixel_more", part_of_a_large_film));
     trials.extend(random::trials());
-    trials.push(trial("paths::refuses_a_studio", refuses_a_studio));
     trials.push(trial("paths::stops_when_told", stops_when_told));
     trials
 }
@@ -72,11 +71,31 @@ fn record(headless: &Headless, view: &LitView) -> Result<PathRecording, Failed> 
 
 fn record_in(headless: &Headless, view: &LitView, accel: Accel) -> Result<PathRecording, Failed> {
     let buffers = headless.upload(&view.scene, &accel.into())?;
-    let go_on = &mut |_: &_| Decision::GoOn;
-    Ok(headless.record_paths(&buffers, &view.seen(), &view.settings, 0..2, go_on)?)
+    Ok(recorded(headless, &buffers, view, &[0, 1])?)
 }
 
-fn certify(view: &LitView, recording: &PathRecording) -> PathCertificate {
+/// Records samples of all paths.
+pub(crate) fn recorded(
+    headless: &Headless,
+    buffers: &SceneBuffers,
+    LitView { camera, film, settings, .. }: &LitView,
+    samples: &[u32],
+) -> Result<PathRecording, GpuError> {
+    let mut all: Option<PathRecording> = None;
+    let mut each = |recording: LitRecording<'_>| {
+        let LitRecording::Paths(one) = recording else { panic!("not of paths") };
+        match &mut all {
+            None => all = Some(one.clone()),
+            Some(all) => all.samples.extend(one.samples.iter().cloned()),
+        }
+    };
+    let go_on = &mut |_: &_| Decision::GoOn;
+    let view = View::new(camera.as_ref(), *film);
+    headless.record_lit(buffers, &view, settings, samples, (&mut each, go_on))?;
+    Ok(all.unwrap())
+}
+
+fn certify(view: &LitView, recording: &PathRecording) -> LitCertificate {
     Checker::new(&view.scene).unwrap().certify_paths(recording)
 }
 
@@ -151,7 +170,7 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
         inputs::Spoil::Said(change) => spoilt = Some(change),
     }
     let mut recording = record(headless()?, &given)?;
-    recording.settings = view.settings.clone();
+    recording.given.settings = view.settings.clone();
     if let Some(change) = spoilt {
         change(&mut recording);
     }
@@ -169,26 +188,15 @@ fn part_of_a_large_film() -> Result<(), Failed> {
     let film = Film::new(300, 270)?;
     let view = LitView { camera: Box::new(camera), film, ..scenes::matt() };
     let mut recording = record(headless()?, &view)?;
-    if recording.origin != [22, 7] || recording.size != [256, 256] {
-        return Err(format!("{:?}, {:?}", recording.origin, recording.size).into());
+    if recording.given.origin != [22, 7] || recording.given.size != [256, 256] {
+        return Err(format!("{:?}, {:?}", recording.given.origin, recording.given.size).into());
     }
     is_legal(&view, &recording)?;
-    recording.origin[0] += 1;
+    recording.given.origin[0] += 1;
     match certify(&view, &recording).outcome() {
         Outcome::Violated => Ok(()),
         _ => Err("of another place".into()),
     }
-}
-
-fn refuses_a_studio(headless: &'static Headless) {
-    let view = scenes::matt();
-    // The studio has its own sky and ground.
-    let settings = RenderSettings::studio();
-    let accel = headless.plan_accel(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
-    let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
-    let go_on = &mut |_: &_| Decision::GoOn;
-    let refused = headless.record_paths(&buffers, &view.seen(), &settings, 0..1, go_on);
-    assert_eq!(refused.unwrap_err(), GpuError::NotPaths);
 }
 
 fn stops_when_told(headless: &'static Headless) {
@@ -196,6 +204,7 @@ fn stops_when_told(headless: &'static Headless) {
     let accel = headless.plan_accel(&view.scene, AccelChoice::Auto).build(view.scene.spheres());
     let buffers = headless.upload(&view.scene, &accel.into()).unwrap();
     let stop = &mut |_: &_| Decision::Stop;
-    let stopped = headless.record_paths(&buffers, &view.seen(), &view.settings, 0..1, stop);
+    let each = &mut |_: LitRecording<'_>| {};
+    let stopped = headless.record_lit(&buffers, &view.seen(), &view.settings, &[0], (each, stop));
     assert_eq!(stopped.unwrap_err(), GpuError::Stopped);
 }

@@ -35,7 +35,7 @@ pub(in crate::gpu) struct LightingData {
     pub(in crate::gpu) emitters: Vec<[f32; 4]>,
     /// Maximum number of surfaces that a path is scattered at; it may end on one more. In a studio, the maximum number
     /// of surfaces that a ray passes through, which is 1 if every sphere is opaque.
-    pub(super) max_surfaces: u32,
+    pub(in crate::gpu) max_surfaces: u32,
     /// Whether all spheres are opaque.
     is_opaque: bool,
     /// Whether lights have no size, no place and no shadows, and all surfaces are matt.

@@ -80,8 +80,18 @@ pub(super) enum Work {
 pub(in crate::gpu) enum Moment {
     Started,
     Extended,
-    Scattered,
+    /// The hits of all rays are shaded.
+    Shaded,
+    /// Along paths, the sampled lights are searched for.
     Occluded,
+    /// In a studio, some lights are searched for.
+    Shadowed,
+    /// In a studio, some lights are added.
+    Illuminated,
+    /// In a studio, some directions of ambient light are searched.
+    Searched,
+    /// In a studio, some directions of ambient light are added.
+    Gathered,
     Accumulated,
 }
 
@@ -307,7 +317,7 @@ impl<'a> Steps<'a> {
             self.extend(dispatch)?;
             self.mark(Moment::Extended);
             self.shade(scatter, dispatch);
-            self.mark(Moment::Scattered);
+            self.mark(Moment::Shaded);
             if lighting.parameters.source_count > 0 && surface < lighting.max_surfaces {
                 let dispatch = DispatchParameters { list: LIST_OF_LIGHT, ..dispatch };
                 self.advance(dispatch);
@@ -331,7 +341,9 @@ impl<'a> Steps<'a> {
         for surface in 0..lighting.max_surfaces {
             let dispatch = self.surface(dispatch, surface, surface + 1 == lighting.max_surfaces);
             self.extend(dispatch)?;
+            self.mark(Moment::Extended);
             self.shade(passes.surface, dispatch);
+            self.mark(Moment::Shaded);
             if lights == 0 && directions == 0 {
                 continue;
             }
@@ -341,15 +353,20 @@ impl<'a> Steps<'a> {
                 let count = (lights - light).min(BITS as u32);
                 let casts =
                     |light: &u32| lighting.has_shadows && lighting.casts_shadow[*light as usize];
-                for light in (light..light + count).filter(casts) {
+                let casting: Vec<u32> = (light..light + count).filter(casts).collect();
+                for &light in &casting {
                     self.search_occluders(
                         passes.shadow,
                         DispatchParameters { light, ..dispatch },
                         Area::Occluders,
                     );
                 }
+                if !casting.is_empty() {
+                    self.mark(Moment::Shadowed);
+                }
                 let dispatch = DispatchParameters { light, count, ..dispatch };
                 self.push(passes.illuminate, dispatch, Some(first), Work::List(Area::Whole));
+                self.mark(Moment::Illuminated);
             }
             for light in (0..directions).step_by(BITS) {
                 let count = (directions - light).min(BITS as u32);
@@ -359,8 +376,10 @@ impl<'a> Steps<'a> {
                     self.search_occluders(passes.ambient, dispatch, Area::Occluders);
                     self.set_rays(count);
                 }
+                self.mark(Moment::Searched);
                 let dispatch = DispatchParameters { light, count, ..dispatch };
                 self.push(passes.gather, dispatch, Some(first), Work::List(Area::Whole));
+                self.mark(Moment::Gathered);
             }
         }
         Ok(())

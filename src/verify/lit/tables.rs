@@ -6,8 +6,8 @@ use std::cmp::Ordering;
 use glam::Vec4;
 
 use super::material::ENERGIES;
-use super::recording::{PathRecording, UploadedLighting};
-use super::upload::{PathUploadError, are_near, is_near};
+use super::recording::{LitInputs, UploadedLighting};
+use super::upload::{LitUploadError, are_near, is_near};
 use crate::image::color::luminance;
 use crate::light::codes;
 use crate::light::energy::EnergyTables;
@@ -37,28 +37,28 @@ impl Tables<'_> {
     }
 }
 
-pub(super) fn check(scene: &Scene, recording: &PathRecording) -> Result<(), PathUploadError> {
-    let tables = Tables { words: &recording.tables, lighting: &recording.lighting };
-    let lamps = check_lights(&tables, scene, recording)?;
-    let emitters = check_emitters(scene, recording)?;
+pub(in crate::verify) fn check(scene: &Scene, inputs: &LitInputs) -> Result<(), LitUploadError> {
+    let tables = Tables { words: &inputs.tables, lighting: &inputs.lighting };
+    let lamps = check_lights(&tables, scene, inputs)?;
+    let emitters = check_emitters(scene, inputs)?;
     check_materials(&tables, scene)?;
-    let is_image = match &recording.settings.sky.light {
+    let is_image = match &inputs.settings.sky.light {
         SkyLight::Image { environment, strength, .. } => {
-            environment.has_light() && *strength > 0.0 && uses_light_sampling(recording)
+            environment.has_light() && *strength > 0.0 && uses_light_sampling(inputs)
         }
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
     };
     let sources = lamps + u32::from(emitters > 0) + u32::from(is_image);
-    let UploadedLighting { source_count, lamp_sources, emitter_count, .. } = recording.lighting;
+    let UploadedLighting { source_count, lamp_sources, emitter_count, .. } = inputs.lighting;
     if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
         Ok(())
     } else {
-        Err(PathUploadError::Lighting { what: "the number of light sources" })
+        Err(LitUploadError::Lighting { what: "the number of light sources" })
     }
 }
 
-fn uses_light_sampling(recording: &PathRecording) -> bool {
-    match &recording.settings.integrator {
+fn uses_light_sampling(inputs: &LitInputs) -> bool {
+    match &inputs.settings.integrator {
         Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
         Integrator::Primary(_) | Integrator::Studio(_) => false,
     }
@@ -68,11 +68,13 @@ fn uses_light_sampling(recording: &PathRecording) -> bool {
 fn check_lights(
     tables: &Tables<'_>,
     scene: &Scene,
-    recording: &PathRecording,
-) -> Result<u32, PathUploadError> {
-    let vectors = &recording.camera.vectors;
+    inputs: &LitInputs,
+) -> Result<u32, LitUploadError> {
+    let vectors = &inputs.camera.vectors;
     let mut lamps = 0_u32;
-    let lights = recording.settings.lights.iter().filter_map(|light| light.in_view(vectors));
+    // A studio samples every light.
+    let is_chosen = matches!(inputs.settings.integrator, Integrator::Path(_));
+    let lights = inputs.settings.lights.iter().filter_map(|light| light.in_view(vectors));
     let mut count = 0;
     for (light, index) in lights.zip(0_u32..) {
         count = index + 1;
@@ -98,7 +100,7 @@ fn check_lights(
                 let is_size = (f64::from(size) - k).abs() <= 2e-7 * k + 4.0 * f64::EPSILON;
                 let is_right =
                     is_kind && near(strength) && are_near(position, toward.to_array()) && is_size;
-                (is_right, angular_radius == 0.0 || uses_light_sampling(recording))
+                (is_right, angular_radius == 0.0 || uses_light_sampling(inputs))
             }
             LightKind::Point { position, intensity } => {
                 (is_kind && near(intensity) && is_at(position), true)
@@ -108,22 +110,23 @@ fn check_lights(
                 (is_right, true)
             }
         };
+        let is_lamp = is_lamp && is_chosen;
         // The indices of the sampled lights are stored one after the other in the third words of the first entries.
         let is_found = !is_lamp || tables.words(3 * lamps + 2)[0] == index;
         lamps += u32::from(is_lamp);
         if !(is_right && is_found) {
-            return Err(PathUploadError::Table { what: "light", index: index as usize });
+            return Err(LitUploadError::Table { what: "light", index: index as usize });
         }
     }
     if tables.lighting.light_count != count {
-        return Err(PathUploadError::Lighting { what: "the number of lights" });
+        return Err(LitUploadError::Lighting { what: "the number of lights" });
     }
     Ok(lamps)
 }
 
 /// Checks the table of emissive spheres, and returns how many of them light sampling chooses from.
-fn check_emitters(scene: &Scene, recording: &PathRecording) -> Result<u32, PathUploadError> {
-    if !uses_light_sampling(recording) {
+fn check_emitters(scene: &Scene, inputs: &LitInputs) -> Result<u32, LitUploadError> {
+    if !uses_light_sampling(inputs) {
         return Ok(0);
     }
     let radiance = |id: u32| {
@@ -150,7 +153,7 @@ fn check_emitters(scene: &Scene, recording: &PathRecording) -> Result<u32, PathU
     let mut before = 0.0;
     for (index, id) in ids.iter().enumerate() {
         let words =
-            |at: usize| recording.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
+            |at: usize| inputs.emitters.get(3 * index + at).copied().unwrap_or([u32::MAX; 4]);
         let [found_id, last, probability, _] = words(1);
         let end = f64::from(last) + 1.0;
         let probability = f32::from_bits(probability);
@@ -164,7 +167,7 @@ fn check_emitters(scene: &Scene, recording: &PathRecording) -> Result<u32, PathU
             && is_near(probability, (end - before) / all)
             && (index + 1 < ids.len() || last == u32::MAX);
         if !is_right {
-            return Err(PathUploadError::Table { what: "emitter", index });
+            return Err(LitUploadError::Table { what: "emitter", index });
         }
         before = end;
     }
@@ -191,7 +194,7 @@ fn keep_first_of_equals(ids: &mut Vec<u32>, spheres: &[[f32; 4]]) {
 }
 
 /// Checks the material of the ground, which is the first, and those of the spheres.
-fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadError> {
+fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), LitUploadError> {
     let rows = scene.checked_appearance().material_rows();
     let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
     let energies = EnergyTables::of(&surfaces);
@@ -226,7 +229,7 @@ fn check_materials(tables: &Tables<'_>, scene: &Scene) -> Result<(), PathUploadE
             && is_near(opacity, surface.opacity.into())
             && start.is_none_or(|start| has_energies(tables, first, &energies, start, surface));
         if !is_right {
-            return Err(PathUploadError::Table { what: "material", index });
+            return Err(LitUploadError::Table { what: "material", index });
         }
     }
     Ok(())

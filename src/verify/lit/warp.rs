@@ -9,35 +9,35 @@ use crate::verify::number::{Number, Vector, sin_cos_eighth};
 
 /// A tangent frame: two unit vectors perpendicular to a third and to each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axes {
+pub(in crate::verify) struct Axes {
     x: Vector,
     y: Vector,
     z: Vector,
 }
 
 impl Axes {
-    pub(super) fn to_world(self, v: Vector) -> Vector {
+    pub(in crate::verify) fn to_world(self, v: Vector) -> Vector {
         let Vector([x, y, z]) = v;
         (self.x * x + self.y * y + self.z * z).normalized().fence()
     }
 
-    pub(super) fn to_local(self, v: Vector) -> Vector {
+    pub(in crate::verify) fn to_local(self, v: Vector) -> Vector {
         Vector([self.x.dot(v), self.y.dot(v), self.z.dot(v)].map(Number::fence))
     }
 }
 
 /// π as a constant of the kernels.
-pub(super) fn pi() -> Number {
+pub(in crate::verify) fn pi() -> Number {
     Number::constant(PI)
 }
 
 impl Kernel<'_> {
-    pub(super) fn axes_around(&mut self, n: Vector) -> Axes {
+    pub(in crate::verify) fn axes_around(&mut self, n: Vector) -> Axes {
         axes_around(n, self.choices)
     }
 }
 
-pub(super) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
+pub(in crate::verify) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
     let Vector([x, y, z]) = n;
     let is_down = choices.decide(z.is_less(Number::ZERO));
     let (s, z) = if is_down {
@@ -55,7 +55,7 @@ pub(super) fn axes_around(n: Vector, choices: &mut Choices) -> Axes {
 }
 
 /// Maps a point of the unit square to the unit disk.
-pub(super) fn disk(u: [u32; 2]) -> [Number; 2] {
+pub(in crate::verify) fn disk(u: [u32; 2]) -> [Number; 2] {
     // The numbers are multiples of 2⁻²³ below 1, so they are exact.
     let [x, y] = u.map(|bits| 2.0 * unit(bits) - 1.0);
     let is_wide = x.abs() > y.abs();
@@ -72,7 +72,7 @@ pub(super) fn disk(u: [u32; 2]) -> [Number; 2] {
 }
 
 /// A random direction around z, with the density cosine over π.
-pub(super) fn cosine_direction(u: [u32; 2]) -> Vector {
+pub(in crate::verify) fn cosine_direction(u: [u32; 2]) -> Vector {
     let [x, y] = disk(u);
     let square = x.squared() + y.squared();
     let z = (Number::ONE - square).max(Number::ZERO).sqrt();
@@ -80,7 +80,7 @@ pub(super) fn cosine_direction(u: [u32; 2]) -> Vector {
 }
 
 /// A random direction within an angle of z, uniformly distributed; `k` is 1 minus the cosine of the angle.
-pub(super) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
+pub(in crate::verify) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
     let [x, y] = disk(u);
     let q = (x.squared() + y.squared()) * k;
     let aside = (k * (Number::TWO - q)).max(Number::ZERO).sqrt();
@@ -89,7 +89,7 @@ pub(super) fn cone_direction(u: [u32; 2], k: Number) -> Vector {
 
 /// The parameter `k` of [`cone_direction`] for a sphere seen from a distance beyond its radius: 1 minus the cosine of
 /// its angular radius.
-pub(super) fn cone_of_sphere(radius: Number, distance: Number) -> Number {
+pub(in crate::verify) fn cone_of_sphere(radius: Number, distance: Number) -> Number {
     let square = (radius / distance).squared();
     square / (Number::ONE + (Number::ONE - square).max(Number::ZERO).sqrt())
 }

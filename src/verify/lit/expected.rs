@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::certificate::PathStage;
+use super::certificate::LitStage;
 use super::recording::PathState;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
@@ -12,16 +12,16 @@ const WIDE: f64 = 0.1;
 
 /// A result of a device that is not legal.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mismatch {
-    pub(super) stage: PathStage,
-    pub(super) what: &'static str,
-    pub(super) answer: Answer,
+pub(in crate::verify) struct Mismatch {
+    pub(in crate::verify) stage: LitStage,
+    pub(in crate::verify) what: &'static str,
+    pub(in crate::verify) answer: Answer,
     /// The number of comparisons that succeeded before.
-    pub(super) after: u32,
+    pub(in crate::verify) after: u32,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Answer {
+pub(in crate::verify) enum Answer {
     Number { found: f32, legal: Interval },
     Bits { found: u32, legal: u32 },
     Words(String),
@@ -40,21 +40,21 @@ impl fmt::Display for Mismatch {
 
 /// Compares results with legal ones, and records whether a bound is too wide to say anything.
 #[derive(Debug, Default)]
-pub(super) struct Expected {
+pub(in crate::verify) struct Expected {
     passed: u32,
     /// Whether some bound was too wide to say anything.
-    pub(super) is_wide: bool,
+    pub(in crate::verify) is_wide: bool,
 }
 
 impl Expected {
-    fn mismatch(&self, stage: PathStage, what: &'static str, answer: Answer) -> Mismatch {
+    fn mismatch(&self, stage: LitStage, what: &'static str, answer: Answer) -> Mismatch {
         Mismatch { stage, what, answer, after: self.passed }
     }
 
     /// Compares integers.
-    pub(super) fn bits(
+    pub(in crate::verify) fn bits(
         &mut self,
-        (stage, what): (PathStage, &'static str),
+        (stage, what): (LitStage, &'static str),
         found: u32,
         legal: u32,
     ) -> Result<(), Mismatch> {
@@ -68,7 +68,7 @@ impl Expected {
     /// Compares a number; its bound is narrow or wide relative to `scale`.
     fn within(
         &mut self,
-        (stage, what): (PathStage, &'static str),
+        (stage, what): (LitStage, &'static str),
         found: f32,
         legal: Interval,
         scale: f64,
@@ -81,20 +81,31 @@ impl Expected {
         Ok(())
     }
 
-    pub(super) fn number(
+    pub(in crate::verify) fn number(
         &mut self,
-        name: (PathStage, &'static str),
+        name: (LitStage, &'static str),
         found: f32,
         legal: Number,
     ) -> Result<(), Mismatch> {
+        self.number_of(name, found, legal, 0.0)
+    }
+
+    /// Compares a number; its bound is narrow or wide relative to `size` or to itself.
+    pub(in crate::verify) fn number_of(
+        &mut self,
+        name: (LitStage, &'static str),
+        found: f32,
+        legal: Number,
+        size: f64,
+    ) -> Result<(), Mismatch> {
         let legal = legal.interval();
-        self.within(name, found, legal, legal.high.abs().max(legal.low.abs()))
+        self.within(name, found, legal, legal.high.abs().max(legal.low.abs()).max(size))
     }
 
     /// Compares a vector; its bounds are narrow or wide relative to its largest component.
-    pub(super) fn vector(
+    pub(in crate::verify) fn vector(
         &mut self,
-        name: (PathStage, &'static str),
+        name: (LitStage, &'static str),
         found: [f32; 3],
         legal: Vector,
     ) -> Result<(), Mismatch> {
@@ -102,9 +113,9 @@ impl Expected {
     }
 
     /// Compares a vector; its bounds are narrow or wide relative to `size` or its largest component.
-    pub(super) fn vector_of(
+    pub(in crate::verify) fn vector_of(
         &mut self,
-        name: (PathStage, &'static str),
+        name: (LitStage, &'static str),
         found: [f32; 3],
         legal: Vector,
         size: f64,
@@ -119,9 +130,9 @@ impl Expected {
     }
 
     /// Checks that a slot has not changed.
-    pub(super) fn same(
+    pub(in crate::verify) fn same(
         &mut self,
-        name: (PathStage, &'static str),
+        name: (LitStage, &'static str),
         [before, after]: [&PathState; 2],
         slot: usize,
     ) -> Result<(), Mismatch> {
@@ -129,7 +140,12 @@ impl Expected {
         pairs.into_iter().try_for_each(|(found, legal)| self.bits(name, found, legal))
     }
 
-    pub(super) fn fail(&self, stage: PathStage, what: &'static str, words: String) -> Mismatch {
+    pub(in crate::verify) fn fail(
+        &self,
+        stage: LitStage,
+        what: &'static str,
+        words: String,
+    ) -> Mismatch {
         self.mismatch(stage, what, Answer::Words(words))
     }
 }

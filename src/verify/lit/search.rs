@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec4};
 
-use super::certificate::PathStage;
+use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
 use super::kernel::Hit;
 use super::recording::{PathState, flag, slot};
@@ -18,14 +18,14 @@ use crate::verify::recording::NO_HIT;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::Slack;
 
-const STAGE: PathStage = PathStage::Extend;
+const STAGE: LitStage = LitStage::Extend;
 
 /// The data in which searches are made.
 #[derive(Clone, Copy)]
-pub(super) struct Searched<'a> {
-    pub(super) model: &'a CameraModel,
-    pub(super) scene: &'a Scene,
-    pub(super) candidates: &'a Candidates,
+pub(in crate::verify) struct Searched<'a> {
+    pub(in crate::verify) model: &'a CameraModel,
+    pub(in crate::verify) scene: &'a Scene,
+    pub(in crate::verify) candidates: &'a Candidates,
 }
 
 /// A ray of a path, starting where it enters the scene's box.
@@ -73,7 +73,7 @@ impl Entry {
 
 /// Whether a sphere equals one that a ray leaves or ends on. Compared by value, because the sign of a zero does not
 /// matter.
-fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
+pub(in crate::verify) fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
     Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
 }
 
@@ -82,7 +82,7 @@ fn four(state: &PathState, which: usize) -> [f32; 4] {
 }
 
 /// Judges the nearest hit of a ray; returns whether several answers are legal. `last` is the previous hit of the path.
-pub(super) fn check_hit(
+pub(in crate::verify) fn check_hit(
     Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
     last: Option<Hit>,
@@ -143,14 +143,14 @@ pub(super) fn check_hit(
 
 /// Judges the occlusion of a light; returns whether both answers are legal. `sphere_of_light` is the emitter, if the
 /// light is one.
-pub(super) fn check_open(
+pub(in crate::verify) fn check_open(
     Searched { model, scene, candidates }: Searched<'_>,
     state: &PathState,
     sphere_of_light: Option<[f32; 4]>,
     open: f32,
     expected: &mut Expected,
 ) -> Result<bool, Mismatch> {
-    const OPEN: (PathStage, &str) = (PathStage::Occlude, "the visibility of the light");
+    const OPEN: (LitStage, &str) = (LitStage::Occlude, "the visibility of the light");
     let before = state.number(slot::PENDING);
     let [x, y, z, distance] = four(state, slot::SHADOW);
     let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
@@ -185,7 +185,7 @@ pub(super) fn check_open(
         } else {
             "visible, but a surface is in between"
         };
-        return Err(expected.fail(PathStage::Occlude, OPEN.1, words.to_owned()));
+        return Err(expected.fail(LitStage::Occlude, OPEN.1, words.to_owned()));
     }
     if !is_hidden {
         expected.bits(OPEN, open.to_bits(), before.to_bits())?;

@@ -1,14 +1,14 @@
-//! The certificate of paths: the results of the checker.
+//! The certificate of lit pictures: the results of the checker.
 
 use std::fmt;
 
-use super::upload::PathUploadError;
+use super::upload::LitUploadError;
 use crate::verify::outcome::Outcome;
 
-/// A stage of a path: a kernel, or a part of its work.
+/// A stage of a sample, along a path or in a studio: a kernel, or a part of its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum PathStage {
+pub enum LitStage {
     /// The camera ray of a sample.
     Start,
     /// The nearest hit of a ray.
@@ -23,11 +23,21 @@ pub enum PathStage {
     Scatter,
     /// Whether a surface occludes the sampled light.
     Occlude,
-    /// The contribution of the sample to the picture.
+    /// The surface that a ray of a studio hits: its colour and lobe, and the light that needs no search.
+    Surface,
+    /// Whether a light is hidden from a surface of a studio.
+    Shadow,
+    /// The light that lights add to a surface of a studio.
+    Illuminate,
+    /// Whether something is near in a direction of ambient light.
+    Ambient,
+    /// The ambient light that directions add to a surface of a studio.
+    Gather,
+    /// The sums of the samples of a pixel.
     Accumulate,
 }
 
-impl PathStage {
+impl LitStage {
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -39,6 +49,11 @@ impl PathStage {
             Self::Light => "light",
             Self::Scatter => "scatter",
             Self::Occlude => "occlude",
+            Self::Surface => "surface",
+            Self::Shadow => "shadow",
+            Self::Illuminate => "illuminate",
+            Self::Ambient => "ambient",
+            Self::Gather => "gather",
             Self::Accumulate => "accumulate",
         }
     }
@@ -47,20 +62,20 @@ impl PathStage {
 /// A result that is not legal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct PathViolation {
+pub struct LitViolation {
     /// Column and row in the film, from the top left.
     pub pixel: [u32; 2],
     /// Index of the sample in its pixel.
     pub sample: u32,
-    /// Index of the surface on the path, from 0.
+    /// Index of the surface along the ray or the path, from 0.
     pub surface: u32,
     /// The stage with the illegal result.
-    pub stage: PathStage,
+    pub stage: LitStage,
     /// The result that was found, and the legal ones.
     pub message: String,
 }
 
-impl fmt::Display for PathViolation {
+impl fmt::Display for LitViolation {
     /// Writes the violation on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixel: [i, j], sample, surface, stage, message } = self;
@@ -69,7 +84,8 @@ impl fmt::Display for PathViolation {
     }
 }
 
-/// The number of stages that were judged, by verdict. A stage counts once for each path that passes through it.
+/// The number of stages that were judged, by verdict. A stage counts once for each sample
+/// that passes through it; in a studio, a search counts once for each light and each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StageCounts {
@@ -84,37 +100,70 @@ pub struct StageCounts {
     pub undecided: u64,
 }
 
-/// Whether a device followed paths as a conforming WGSL implementation may.
+/// Whether a device took samples of a lit picture as a conforming WGSL implementation may.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct PathCertificate {
-    /// The number of paths, which are samples of pixels.
+pub struct LitCertificate {
+    /// The number of samples of pixels; each is a path, or a ray of a studio with all surfaces that it passes.
     pub paths: u64,
     /// Camera rays of samples.
     pub start: StageCounts,
     /// Nearest hits of rays.
     pub extend: StageCounts,
-    /// Shading at surfaces, and of rays that hit nothing.
+    /// Along paths: shading at surfaces, and of rays that hit nothing.
     pub scatter: StageCounts,
-    /// Searches for surfaces that occlude a light.
+    /// Along paths: searches for surfaces that occlude a light.
     pub occlude: StageCounts,
-    /// Contributions of samples to the picture.
+    /// In studios: surfaces, and rays that hit nothing.
+    pub surface: StageCounts,
+    /// In studios: lights that may be hidden.
+    pub shadow: StageCounts,
+    /// In studios: light of the lights on a surface.
+    pub illuminate: StageCounts,
+    /// In studios: directions of ambient light in which something may be near.
+    pub ambient: StageCounts,
+    /// In studios: ambient light on a surface.
+    pub gather: StageCounts,
+    /// Sums of the samples of a pixel.
     pub accumulate: StageCounts,
     /// The number of stages with an illegal result.
     pub violation_count: u64,
     /// The first violations, in the order of samples, surfaces and pixels.
-    pub violations: Vec<PathViolation>,
-    /// A mismatch between the data on the device and the requested data. If there is one, no path is judged.
-    pub upload: Option<PathUploadError>,
+    pub violations: Vec<LitViolation>,
+    /// A mismatch between the data on the device and the requested data. If there is one, nothing is judged.
+    pub upload: Option<LitUploadError>,
+    /// Whether the picture is that of a studio.
+    pub is_studio: bool,
 }
 
-impl PathCertificate {
+impl LitCertificate {
     /// The sum of the counts of all stages.
     #[must_use]
     pub fn stages(&self) -> StageCounts {
-        [self.start, self.extend, self.scatter, self.occlude, self.accumulate]
+        self.named()
             .into_iter()
+            .map(|(_, counts)| counts)
             .fold(StageCounts::default(), StageCounts::plus)
+    }
+
+    /// The counts of the stages of a path, or of those of a studio, with their names, in order.
+    #[must_use]
+    pub fn named(&self) -> Vec<(&'static str, StageCounts)> {
+        let shading: &[_] = if self.is_studio {
+            &[
+                (LitStage::Surface, self.surface),
+                (LitStage::Shadow, self.shadow),
+                (LitStage::Illuminate, self.illuminate),
+                (LitStage::Ambient, self.ambient),
+                (LitStage::Gather, self.gather),
+            ]
+        } else {
+            &[(LitStage::Scatter, self.scatter), (LitStage::Occlude, self.occlude)]
+        };
+        let first = [(LitStage::Start, self.start), (LitStage::Extend, self.extend)];
+        let last = [(LitStage::Accumulate, self.accumulate)];
+        let all = first.iter().chain(shading).chain(&last);
+        all.map(|(stage, counts)| (stage.name(), *counts)).collect()
     }
 
     /// The outcome: violated if the uploaded data are wrong or a stage is not legal, and undecided if too much is
@@ -122,9 +171,9 @@ impl PathCertificate {
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         let is_violated = self.upload.is_some() || self.violation_count > 0;
-        let stages = [self.start, self.extend, self.scatter, self.occlude, self.accumulate];
         let of = |counts: StageCounts| Outcome::of(is_violated, counts.undecided, counts.checked);
-        let used = stages.into_iter().filter(|counts| counts.checked > 0).map(of).max();
+        let stages = self.named().into_iter().map(|(_, counts)| counts);
+        let used = stages.filter(|counts| counts.checked > 0).map(of).max();
         used.unwrap_or(Outcome::of(is_violated, 0, 0))
     }
 
@@ -137,7 +186,7 @@ impl PathCertificate {
 }
 
 impl StageCounts {
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(in crate::verify) fn plus(self, other: Self) -> Self {
         Self {
             checked: self.checked + other.checked,
             decided: self.decided + other.decided,
@@ -147,15 +196,16 @@ impl StageCounts {
     }
 }
 
-impl fmt::Display for PathCertificate {
+impl fmt::Display for LitCertificate {
     /// Writes a summary on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let StageCounts { checked, decided, open, undecided } = self.stages();
         let percent = |count: u64| 100.0 * count as f64 / checked.max(1) as f64;
         write!(
             f,
-            "{} paths, {checked} stages: {:.4} % decided, {:.4} % open, {:.4} % undecided, {} violations",
+            "{} {}, {checked} stages: {:.4} % decided, {:.4} % open, {:.4} % undecided, {} violations",
             self.paths,
+            if self.is_studio { "samples" } else { "paths" },
             percent(decided),
             percent(open),
             percent(undecided),

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::certificate::PathStage;
+use super::certificate::LitStage;
 use super::expected::Mismatch;
 use super::kernel::Kernel;
 use super::recording::{flag, slot};
@@ -18,48 +18,41 @@ use crate::verify::sphere::{Slack, SphereTest};
 
 /// A surface that was hit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex {
-    pub(super) position: Vector,
+pub(in crate::verify) struct Vertex {
+    pub(in crate::verify) position: Vector,
     /// Unit normal on the visible side.
-    pub(super) normal: Vector,
+    pub(in crate::verify) normal: Vector,
     /// Whether the visible side is the inside of a sphere.
-    pub(super) is_back: bool,
+    pub(in crate::verify) is_back: bool,
     /// Distance along the ray.
-    pub(super) distance: Number,
+    pub(in crate::verify) distance: Number,
     /// Centre and radius of the sphere; the radius is 0 for the ground.
-    pub(super) sphere: [f32; 4],
-    pub(super) color: [f32; 3],
+    pub(in crate::verify) sphere: [f32; 4],
+    pub(in crate::verify) color: [f32; 3],
     /// Index of the material; the ground has the first.
-    pub(super) material_index: u32,
-    /// Whether the path passes through the surface as if it were not there.
-    pub(super) is_passed: bool,
+    pub(in crate::verify) material_index: u32,
+    /// The opacities of the material and of the colour, which the kernel multiplies.
+    pub(in crate::verify) opacities: [f32; 2],
 }
 
 impl Vertex {
-    pub(super) fn is_sphere(&self) -> bool {
+    pub(in crate::verify) fn is_sphere(&self) -> bool {
         self.sphere[3] > 0.0
     }
 
     /// The distance from a point of a sphere through its inside to the far side; 0 if the direction points outwards.
-    pub(super) fn exit_distance(&self, direction: Vector) -> Number {
+    pub(in crate::verify) fn exit_distance(&self, direction: Vector) -> Number {
         let [x, y, z, _] = self.sphere;
         let to_center = Vector::recorded([x, y, z]) - self.position;
         (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
     }
 }
 
-/// The properties of a surface that do not depend on the point.
-struct SurfaceColor {
-    color: [f32; 3],
-    material_index: u32,
-    is_passed: bool,
-}
-
-const POSITION: (PathStage, &str) = (PathStage::Vertex, "the point that was hit");
+const POSITION: (LitStage, &str) = (LitStage::Vertex, "the point that was hit");
 
 impl Kernel<'_> {
     /// The surface that the ray hits; `None` for a miss.
-    pub(super) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
+    pub(in crate::verify) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
         let (before, hit) = (self.before, self.hit);
         let origin = Vector::recorded(before.vector(slot::ORIGIN));
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
@@ -89,7 +82,7 @@ impl Kernel<'_> {
     }
 
     /// The distance at which a ray hits the ground from above. It may be negative, down to −`behind`.
-    pub(super) fn ground_distance(
+    pub(in crate::verify) fn ground_distance(
         &mut self,
         origin: Vector,
         direction: Vector,
@@ -110,24 +103,6 @@ impl Kernel<'_> {
         self.choices.decide((-behind).is_less(t)).then_some(t)
     }
 
-    /// `opacities` are those of the material and of the colour, which the kernel multiplies.
-    fn surface_color(
-        &mut self,
-        color: [f32; 3],
-        material_index: u32,
-        opacities: [f32; 2],
-    ) -> SurfaceColor {
-        let [_, pass] = self.pair(3).map(crate::camera::sampling::unit);
-        let [material, alpha] = opacities.map(f64::from);
-        // The product in f64 is exact, because both numbers have 24 bits.
-        let opacity = material * alpha;
-        let is_exact = f64::from(opacity as f32).to_bits() == opacity.to_bits();
-        let error = if is_exact { 0.0 } else { U * opacity + FLUSH };
-        let is_open = (pass - opacity).abs() <= error && !is_exact;
-        let is_passed = self.choices.decide((!is_open).then_some(pass >= opacity));
-        SurfaceColor { color, material_index, is_passed }
-    }
-
     /// Compares the recorded point, and returns it as an exact value.
     fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         let found = self.after.vector(slot::ORIGIN);
@@ -142,24 +117,21 @@ impl Kernel<'_> {
         distance: Number,
     ) -> Result<Vertex, Mismatch> {
         let lighting = self.lighting();
-        let surface_color = self.surface_color(lighting.ground_color, 0, [1.0; 2]);
         let normal = Vector::recorded(lighting.ground_normal);
         let on_ray = origin + direction * distance;
         let above = (on_ray - Vector::recorded(lighting.ground_point)).dot(normal);
         let position = (on_ray - normal * above).fence();
         let size = distance.interval().high;
         let position = self.compared(position, size)?;
-        let SurfaceColor { color, material_index, is_passed } = surface_color;
-        let sphere = [0.0; 4];
         Ok(Vertex {
             position,
             normal,
             is_back: false,
             distance,
-            sphere,
-            color,
-            material_index,
-            is_passed,
+            sphere: [0.0; 4],
+            color: lighting.ground_color,
+            material_index: 0,
+            opacities: [1.0; 2],
         })
     }
 
@@ -168,7 +140,7 @@ impl Kernel<'_> {
         let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied()
         else {
             let words = format!("there is no sphere {}", hit.id);
-            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
         };
         let (appearance, material_index) = (
             self.scene.checked_appearance(),
@@ -176,15 +148,14 @@ impl Kernel<'_> {
         );
         let surface = appearance.surfaces()[appearance.surface_index(hit.id) as usize];
         let color = self.scene.color(hit.id).to_array();
-        let surface_color =
-            self.surface_color(color, material_index, [surface.opacity, appearance.alpha(hit.id)]);
+        let opacities = [surface.opacity, appearance.alpha(hit.id)];
 
         let entered =
             Entered::new(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
         let Entered { line, origin, slack } = &entered;
         let Some(test) = SphereTest::new(line, sphere, *slack) else {
             let words = format!("sphere {} cannot be hit", hit.id);
-            return Err(self.expected.fail(PathStage::Vertex, "the hit", words));
+            return Err(self.expected.fail(LitStage::Vertex, "the hit", words));
         };
         let center = Vector::recorded([x, y, z]);
         let direction = Vector::recorded(before.vector(slot::DIRECTION));
@@ -215,9 +186,8 @@ impl Kernel<'_> {
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
         let normal = if is_back { -outward } else { outward };
-        let SurfaceColor { color, material_index, is_passed } = surface_color;
         let sphere = [x, y, z, radius];
-        Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, is_passed })
+        Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, opacities })
     }
 }
 

@@ -1,0 +1,183 @@
+//! `pinhole verify` of a scene with light: checks some samples of every pixel, stage by stage.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::verify_report::LISTED;
+use pinhole::verify::{LitCertificate, LitViolation, StageCounts};
+
+/// The object `paths` or `studio` of the JSON document.
+#[derive(Serialize)]
+pub(super) struct LightReport {
+    /// Number of paths, or of samples of a studio.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) paths: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) samples: Option<u64>,
+    pub(super) stages: BTreeMap<&'static str, Counts>,
+    pub(super) upload: Option<String>,
+    pub(super) violation_count: u64,
+    pub(super) violations: Vec<Listed>,
+    pub(super) outcome: &'static str,
+    pub(super) legal: bool,
+    /// The certificate as one line of text.
+    #[serde(skip)]
+    pub(super) line: String,
+    /// The stages in the order in which a sample passes through them.
+    #[serde(skip)]
+    pub(super) order: Vec<&'static str>,
+}
+
+impl LightReport {
+    pub(super) fn is_studio(&self) -> bool {
+        self.samples.is_some()
+    }
+}
+
+#[derive(Serialize)]
+pub(super) struct Counts {
+    pub(super) checked: u64,
+    pub(super) decided: u64,
+    pub(super) open: u64,
+    pub(super) undecided: u64,
+}
+
+#[derive(Serialize)]
+pub(super) struct Listed {
+    pixel: [u32; 2],
+    sample: u32,
+    surface: u32,
+    stage: &'static str,
+    message: String,
+}
+
+impl From<StageCounts> for Counts {
+    fn from(StageCounts { checked, decided, open, undecided, .. }: StageCounts) -> Self {
+        Self { checked, decided, open, undecided }
+    }
+}
+
+impl From<&LitViolation> for Listed {
+    fn from(violation: &LitViolation) -> Self {
+        let LitViolation { pixel, sample, surface, stage, message, .. } = violation;
+        let (stage, message) = (stage.name(), message.clone());
+        Self { pixel: *pixel, sample: *sample, surface: *surface, stage, message }
+    }
+}
+
+impl From<&LitCertificate> for LightReport {
+    fn from(certificate: &LitCertificate) -> Self {
+        let LitCertificate { paths, is_studio, .. } = *certificate;
+        let stages = certificate.named();
+        Self {
+            paths: (!is_studio).then_some(paths),
+            samples: is_studio.then_some(paths),
+            order: stages.iter().map(|(name, _)| *name).collect(),
+            stages: stages.into_iter().map(|(name, counts)| (name, counts.into())).collect(),
+            upload: certificate.upload.as_ref().map(ToString::to_string),
+            violation_count: certificate.violation_count,
+            violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
+            outcome: certificate.outcome().name(),
+            legal: certificate.is_legal(),
+            line: certificate.to_string(),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+pub(super) use recorded::certify;
+
+#[cfg(feature = "gpu")]
+mod recorded {
+    use std::collections::BTreeSet;
+
+    use anyhow::Context;
+
+    use super::*;
+    use crate::device::explained_alone;
+    use crate::failure::Failure;
+    use crate::input::Input;
+    use crate::views::Views;
+    use crate::with_scene::{upload, with_structures};
+    use crate::{interrupt, progress, render};
+    use pinhole::accel::AccelChoice;
+    use pinhole::gpu::Headless;
+    use pinhole::image::LayerSet;
+    use pinhole::verify::{Checker, LitRecording};
+
+    /// Records this number of samples on an adapter, one after the other, and checks them.
+    pub(crate) fn certify(
+        headless: &Headless,
+        input: &Input,
+        count: u32,
+        choice: AccelChoice,
+    ) -> Result<LitCertificate, Failure> {
+        let Input { scene, settings, .. } = input;
+        let (view, views) = (input.view(), Views::of(input));
+        let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
+        let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+        let done = with_structures(headless, choice, plan, |plan| {
+            let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
+            let buffers = match uploaded {
+                Ok(buffers) => buffers,
+                Err(error) => return Ok(Err(error)),
+            };
+            let checker = Checker::new(scene).context("the checker cannot be prepared")?;
+            let mut certificate = LitCertificate::default();
+            let recording = "recording light";
+            progress::stage(recording);
+            let recorded = interrupt::on_device(|| {
+                let each = &mut |recorded: LitRecording<'_>| {
+                    interrupt::driver_rests(true);
+                    progress::stage("checking light");
+                    certificate.join(checker.certify_lit(recorded));
+                    progress::stage(recording);
+                    interrupt::driver_rests(false);
+                };
+                let watch = &mut |_: &_| interrupt::decide();
+                headless.record_lit(&buffers, &view, settings, &samples, (each, watch))
+            })?;
+            Ok(recorded.map(|()| certificate))
+        })?;
+        let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
+        Ok(certificate)
+    }
+
+    /// The indices of the samples that are checked: `count` of those of a picture, among them the last and, if there are
+    /// several, the first; the others are chosen at random. More than the picture has are the first ones.
+    fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
+        let all = all.max(1);
+        if count >= all {
+            return (0..count).collect();
+        }
+        let mut chosen = BTreeSet::from([all - 1]);
+        if count > 1 {
+            chosen.insert(0);
+        }
+        let mut random = seed;
+        while chosen.len() < count as usize {
+            // A linear congruential generator, of which the upper bits are used (Numerical Recipes, section 7.1).
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            chosen.insert((u64::from(random) * u64::from(all) >> 32) as u32);
+        }
+        chosen.into_iter().collect()
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::chosen;
+
+        #[test]
+        fn the_last_sample_is_among_those_that_are_checked() {
+            assert_eq!(chosen(64, 1, 7), [63]);
+            assert_eq!(chosen(64, 2, 7), [0, 63]);
+            assert_eq!(chosen(2, 5, 7), [0, 1, 2, 3, 4]);
+            let some = chosen(1000, 20, 7);
+            assert!(some.len() == 20 && some[0] == 0 && some[19] == 999, "{some:?}");
+            assert!(some[1] > 1, "{some:?}");
+            assert_ne!(some, chosen(1000, 20, 8));
+            assert_eq!(chosen(9, 8, 3).len(), 8);
+        }
+    }
+}

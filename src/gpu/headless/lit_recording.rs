@@ -1,0 +1,152 @@
+//! Recording lit pictures for the checker: the state of every path after every pass, and the sums of pixels before and
+//! after a sample.
+
+use std::cell::Cell;
+
+use crate::camera::View;
+use crate::camera::film::Film;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::lit_flow::Flow;
+use crate::gpu::headless::lit_inputs::inputs;
+use crate::gpu::headless::lit_states::{Keep, LONGEST_SIDE, Reader};
+use crate::gpu::headless::path_recording::PathKeeper;
+use crate::gpu::headless::progress::{Decision, Progress, Watch};
+use crate::gpu::headless::studio_recording::{StudioKeeper, longest_side};
+use crate::gpu::passes::frame::iteration_limit;
+use crate::gpu::passes::lit::{
+    AT_ONCE, LightingData, LitFrame, LitKey, LitPasses, LitScene, LitSizes, Moment, RecordedBy,
+    Round,
+};
+use crate::gpu::passes::tiles::Tile;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::render::RenderSettings;
+use crate::verify::{LitRecording, RecordedFilm};
+
+/// Callback with the recording of each sample.
+pub type EachSample<'a> = dyn FnMut(LitRecording<'_>) + 'a;
+
+/// The inputs of a recording.
+struct Work<'a> {
+    headless: &'a Headless,
+    passes: &'a LitPasses,
+    scenes: LitScene<'a>,
+    view: &'a View<'a>,
+    settings: &'a RenderSettings,
+    lighting: &'a LightingData,
+    tile: Tile,
+}
+
+impl Headless {
+    /// Records lit pictures like [`Headless::record_lit`], without blocking the thread.
+    ///
+    /// # Errors
+    /// The same as for [`Headless::record_lit`].
+    pub async fn record_lit_async(
+        &self,
+        scene: &SceneBuffers,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        samples: &[u32],
+        (each, watch): (&mut EachSample<'_>, &mut Watch<'_>),
+    ) -> Result<(), GpuError> {
+        if settings.integrator.is_primary() {
+            return Err(GpuError::NotLit);
+        }
+        settings.check_with(scene.appearance())?;
+        let lighting = LightingData::new(settings, scene.summary(), view.camera);
+        let scenes = LitScene { all: scene, occluders: scene.occluders(settings)? };
+        let side = if lighting.mode.is_studio() { longest_side(&lighting) } else { LONGEST_SIDE };
+        let tile = middle_of(&view.film, side);
+        let spaces = [scenes.all, scenes.occluders].map(SceneBuffers::space);
+        let given = inputs(spaces, view, settings, &lighting, tile);
+        let mut keep: Box<dyn Keep> = if lighting.mode.is_studio() {
+            Box::new(StudioKeeper::new(given))
+        } else {
+            Box::new(PathKeeper::new(given))
+        };
+        // What is recorded lies between the passes.
+        let key = LitKey { one_pass: None, ..scenes.key(view, &lighting, &self.device().limits()) };
+        self.with_lit_passes(key, async |passes: &LitPasses| {
+            let (headless, lighting) = (self, &lighting);
+            let work = Work { headless, passes, scenes, view, settings, lighting, tile };
+            let is_first = Cell::new(true);
+            let each = &mut |recording: LitRecording<'_>| {
+                is_first.set(false);
+                each(recording);
+            };
+            match work.record(samples, AT_ONCE, &mut *keep, each, watch).await {
+                // Several directions of ambient light in one invocation need more steps than one direction.
+                Err(GpuError::Steps)
+                    if is_first.get() && lighting.parameters.occlusion_samples > 1 =>
+                {
+                    work.record(samples, 1, &mut *keep, each, watch).await
+                }
+                done => done,
+            }
+        })
+        .await
+    }
+}
+
+impl Work<'_> {
+    async fn record(
+        &self,
+        samples: &[u32],
+        at_once: u32,
+        keep: &mut dyn Keep,
+        each: &mut EachSample<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), GpuError> {
+        let Self { headless, passes, scenes, view, settings, lighting, tile } = *self;
+        let device = headless.device();
+        let (region, limit) = (scenes.visible_region(view, settings), iteration_limit(device));
+        let tiles = std::iter::once((tile, scenes.frames(view, region, tile, limit)));
+        let sizes = LitSizes::of_one_sample(tile.size, lighting.mode);
+        let (devices, by) = ((device, headless.queue()), RecordedBy::Headless);
+        let frame = &LitFrame::new(devices, passes, sizes, lighting, by, tiles).await?;
+        let LitScene { all, occluders } = scenes;
+        let room = sizes.room();
+        let round = Round { passes, lighting, scene: all, occluders, room, at_once };
+        let reader = Reader::new(device, frame, room, lighting.mode);
+        let total = samples.len() as u32;
+        let mut flow = Flow::new(headless, frame, passes, all);
+        frame.record_clear_film(flow.encoder(), 0);
+        let mut before = reader.film(&mut flow).await?;
+        for (done, &sample) in (0..).zip(samples) {
+            let part = f64::from(done) / f64::from(total);
+            let progress = Progress { samples: done, total, part, noise: None };
+            let mut after = || match watch(&progress) {
+                Decision::GoOn | Decision::MeasureNoise => Ok(()),
+                Decision::Finish | Decision::Stop => Err(GpuError::Stopped),
+            };
+            keep.begin(sample);
+            flow.begin(0);
+            for step in round.steps(sample..sample.saturating_add(1))? {
+                flow.step(&step, &mut after).await?;
+                match step.moment {
+                    Some(Moment::Accumulated) => {
+                        let sums = reader.film(&mut flow).await?;
+                        let before = std::mem::replace(&mut before, sums.clone());
+                        keep.end(RecordedFilm { before, after: sums });
+                    }
+                    Some(moment) if keep.wants(moment) => {
+                        keep.keep(moment, reader.states(&mut flow).await?);
+                        after()?;
+                    }
+                    _ => {}
+                }
+            }
+            each(keep.recording());
+        }
+        Ok(())
+    }
+}
+
+/// The rectangle in the middle of a film that is recorded.
+fn middle_of(film: &Film, longest_side: u32) -> Tile {
+    let film = [film.width(), film.height()];
+    let size = film.map(|side| side.min(longest_side));
+    let origin = [0, 1].map(|axis| (film[axis] - size[axis]) / 2);
+    Tile { origin, size, in_target: [0, 0] }
+}

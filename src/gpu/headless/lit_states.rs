@@ -1,0 +1,114 @@
+//! Reading the states of paths and the sums of pixels between two dispatches.
+
+use wgpu::Device;
+
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::lit_flow::Flow;
+use crate::gpu::headless::readback::ReadableBuffer;
+use crate::gpu::passes::lit::{LitFrame, Mode, Moment};
+use crate::verify::{LitRecording, PathState, PixelSums, RecordedFilm};
+
+/// Maximum side in pixels of the rectangle that is recorded. A sample of a path of eight surfaces then takes 130 MB of
+/// host memory.
+pub(super) const LONGEST_SIDE: u32 = 256;
+
+/// The states and hits of all paths between two dispatches.
+pub(super) struct States {
+    pub(super) states: Vec<PathState>,
+    pub(super) hits: Vec<[u32; 4]>,
+}
+
+/// Keeps what is recorded of a sample.
+pub(super) trait Keep {
+    /// Begins the sample with this index.
+    fn begin(&mut self, sample: u32);
+
+    /// Whether the states after a pass are needed.
+    fn wants(&mut self, moment: Moment) -> bool;
+
+    /// Keeps the states after a pass.
+    fn keep(&mut self, moment: Moment, states: States);
+
+    /// Keeps the sums of the pixels, and ends the sample.
+    fn end(&mut self, film: RecordedFilm);
+
+    /// The recording of the sample.
+    fn recording(&self) -> LitRecording<'_>;
+}
+
+/// Index of the slot of the hit, `HIT` in `shaders/path/state.wgsl`.
+const HIT: usize = 6;
+
+/// The source of a slot of a [`PathState`].
+#[derive(Clone, Copy, Debug)]
+enum SlotSource {
+    /// A slot on the device, by its index.
+    Device(usize),
+    /// A constant, because the pictures need no such slot on the device.
+    Constant([u32; 4]),
+}
+
+/// The sources of all slots, in the order of [`PathState`].
+fn slot_sources(mode: Mode) -> [SlotSource; PathState::SLOTS] {
+    let zero = SlotSource::Constant([0; 4]);
+    let no_direction = SlotSource::Constant([0, 0, 1.0_f32.to_bits(), 0]);
+    let others = match mode {
+        Mode::Studio => [7, 8, 9].map(SlotSource::Device),
+        Mode::Path(..) => {
+            let [shadow, pending] = if mode.samples_light() {
+                [7, 8].map(SlotSource::Device)
+            } else {
+                [no_direction, zero]
+            };
+            [shadow, pending, if mode.has_medium() { SlotSource::Device(9) } else { zero }]
+        }
+    };
+    std::array::from_fn(|slot| match slot {
+        0..HIT => SlotSource::Device(slot),
+        _ => others[slot - HIT],
+    })
+}
+
+/// Reads what passes have changed.
+pub(super) struct Reader<'a> {
+    frame: &'a LitFrame,
+    paths: ReadableBuffer,
+    pixels: usize,
+    slots: [SlotSource; PathState::SLOTS],
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of the states and sums of a frame with this number of pixels.
+    pub(super) fn new(device: &Device, frame: &'a LitFrame, pixels: u32, mode: Mode) -> Self {
+        let paths = ReadableBuffer::new(device, "pinhole paths read-back", frame.paths.size());
+        Self { frame, paths, pixels: pixels as usize, slots: slot_sources(mode) }
+    }
+
+    pub(super) async fn film(&self, flow: &mut Flow<'_>) -> Result<Vec<PixelSums>, GpuError> {
+        let frame = self.frame;
+        frame.record_copy_film(flow.encoder(), 0);
+        frame.record_copy_spent(flow.encoder());
+        flow.finish(&[frame.film_back.buffer(), frame.spent_back.buffer()]).await?;
+        frame.read_spent()?;
+        frame.film_back.read(|sums: &[PixelSums]| sums[..self.pixels].to_vec())
+    }
+
+    pub(super) async fn states(&self, flow: &mut Flow<'_>) -> Result<States, GpuError> {
+        self.paths.record_copy(flow.encoder(), &self.frame.paths);
+        flow.finish(&[self.paths.buffer()]).await?;
+        let pixels = self.pixels;
+        self.paths.read(|vectors: &[[u32; 4]]| {
+            let slot = |which: usize, index: usize| vectors[which * pixels + index];
+            let state = |index| PathState {
+                slots: self.slots.map(|source| match source {
+                    SlotSource::Device(which) => slot(which, index),
+                    SlotSource::Constant(bits) => bits,
+                }),
+            };
+            States {
+                states: (0..pixels).map(state).collect(),
+                hits: (0..pixels).map(|index| slot(HIT, index)).collect(),
+            }
+        })
+    }
+}

@@ -1,0 +1,95 @@
+//! The verdict about a stage, and how it is found and counted.
+
+use super::certificate::{LitCertificate, LitViolation, StageCounts};
+use super::expected::{Expected, Mismatch};
+use super::kernel::Address;
+use crate::verify::certificate::KEPT;
+use crate::verify::choices::Choices;
+
+/// The verdict about a stage.
+pub(in crate::verify) enum StageOutcome {
+    Decided,
+    Open,
+    Undecided,
+}
+
+impl LitCertificate {
+    /// Adds the results for other samples.
+    pub fn join(&mut self, part: Self) {
+        self.paths += part.paths;
+        self.start = self.start.plus(part.start);
+        self.extend = self.extend.plus(part.extend);
+        self.scatter = self.scatter.plus(part.scatter);
+        self.occlude = self.occlude.plus(part.occlude);
+        self.surface = self.surface.plus(part.surface);
+        self.shadow = self.shadow.plus(part.shadow);
+        self.illuminate = self.illuminate.plus(part.illuminate);
+        self.ambient = self.ambient.plus(part.ambient);
+        self.gather = self.gather.plus(part.gather);
+        self.accumulate = self.accumulate.plus(part.accumulate);
+        self.is_studio |= part.is_studio;
+        self.violation_count += part.violation_count;
+        self.upload = self.upload.take().or(part.upload);
+        let room = KEPT.saturating_sub(self.violations.len());
+        self.violations.extend(part.violations.into_iter().take(room));
+    }
+}
+
+impl StageCounts {
+    fn count(&mut self, verdict: &StageOutcome) {
+        self.checked += 1;
+        match verdict {
+            StageOutcome::Decided => self.decided += 1,
+            StageOutcome::Open => self.open += 1,
+            StageOutcome::Undecided => self.undecided += 1,
+        }
+    }
+}
+
+/// Records the verdict about a stage.
+pub(in crate::verify) fn note(
+    counts: &mut StageCounts,
+    violations: &mut Vec<LitViolation>,
+    Address { pixel, sample, surface }: Address,
+    result: Result<StageOutcome, Mismatch>,
+) {
+    match result {
+        Ok(verdict) => counts.count(&verdict),
+        Err(mismatch) => {
+            counts.checked += 1;
+            let (stage, message) = (mismatch.stage, mismatch.to_string());
+            violations.push(LitViolation { pixel, sample, surface, stage, message });
+        }
+    }
+}
+
+/// Evaluates a stage for every combination of open decisions, until one leads to the device's result.
+pub(in crate::verify) fn along_choices(
+    mut follow: impl FnMut(&mut Choices) -> Result<Expected, Mismatch>,
+) -> Result<StageOutcome, Mismatch> {
+    let mut choices = Choices::default();
+    let mut nearest: Option<Mismatch> = None;
+    loop {
+        match follow(&mut choices) {
+            Ok(expected) if expected.is_wide => return Ok(StageOutcome::Undecided),
+            Ok(_) if choices.were_open() => return Ok(StageOutcome::Open),
+            Ok(_) => return Ok(StageOutcome::Decided),
+            Err(mismatch) => {
+                if nearest.as_ref().is_none_or(|best| mismatch.after > best.after) {
+                    nearest = Some(mismatch);
+                }
+            }
+        }
+        if !choices.advance() {
+            break;
+        }
+    }
+    match nearest {
+        Some(mismatch) if !choices.were_too_many() => Err(mismatch),
+        _ => Ok(StageOutcome::Undecided),
+    }
+}
+
+pub(in crate::verify) fn simple(is_open: bool) -> StageOutcome {
+    if is_open { StageOutcome::Open } else { StageOutcome::Decided }
+}

@@ -1,0 +1,27 @@
+//! What the checks of light paths and of studios share: what is recorded of both, the verdicts, and the checks of the
+//! kernels' common parts.
+//!
+//! A recording contains the state of every path between two dispatches; a ray of a studio is a path that passes through
+//! surfaces. Each dispatch is judged separately, from the very numbers that the device had before it, so that errors do
+//! not accumulate. Searches are judged like those of pictures with a single ray for each pixel (`verify/hit.rs`).
+//! Kernels that shade are evaluated with intervals, number by number (`verify/number`), once for every combination of
+//! decisions that the intervals leave open, such as which side of a sphere is hit, or which point of a light is chosen.
+
+pub(super) mod certificate;
+pub(super) mod expected;
+pub(super) mod film;
+pub(super) mod judge;
+pub(super) mod kernel;
+pub(super) mod lamp;
+pub(super) mod material;
+pub(super) mod recording;
+pub(super) mod search;
+pub(super) mod start;
+mod tables;
+pub(super) mod upload;
+pub(super) mod vertex;
+pub(super) mod warp;
+
+pub use certificate::{LitCertificate, LitStage, LitViolation, StageCounts};
+pub use recording::{LitInputs, PathState, PixelSums, RecordedFilm, UploadedLighting, UploadedSky};
+pub use upload::LitUploadError;

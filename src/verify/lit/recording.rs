@@ -1,0 +1,225 @@
+//! What recordings of lit pictures have in common: the numbers that the device was given, and the states of paths.
+
+use crate::camera::film::Film;
+use crate::render::RenderSettings;
+use crate::verify::recording::{RequestedCamera, UploadedView};
+
+/// The view and the settings of a lit picture, and the numbers that a device was given for a rectangle of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LitInputs {
+    /// The requested camera.
+    pub camera: RequestedCamera,
+    /// The numbers of the view on the device.
+    pub uploaded: UploadedView,
+    /// The corners of the box to which the origins of shadow rays of a studio are moved: that of the opaque spheres.
+    pub occluders: [[f32; 3]; 2],
+    /// The size of the picture.
+    pub film: Film,
+    /// First column and row of the rectangle.
+    pub origin: [u32; 2],
+    /// Width and height of the rectangle in pixels.
+    pub size: [u32; 2],
+    /// The requested settings.
+    pub settings: RenderSettings,
+    /// The largest number of surfaces: those that a path is scattered at, or those that are seen behind each other in a
+    /// studio.
+    pub max_surfaces: u32,
+    /// The parameters of the lighting on the device.
+    pub lighting: UploadedLighting,
+    /// The tables of lights, materials and energies, as bits.
+    pub tables: Vec<[u32; 4]>,
+    /// The table of emitters, as bits: three entries for each.
+    pub emitters: Vec<[u32; 4]>,
+    /// The image of the sky, if it has one.
+    pub sky: Option<UploadedSky>,
+}
+
+impl LitInputs {
+    /// The pixel of the film with an index in the rectangle.
+    pub(in crate::verify) fn pixel(&self, index: usize) -> [u32; 2] {
+        let width = self.size[0].max(1) as usize;
+        // The sides of a film are u32.
+        [self.origin[0] + (index % width) as u32, self.origin[1] + (index / width) as u32]
+    }
+
+    /// The number of pixels in the rectangle.
+    pub(in crate::verify) fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
+
+/// The sums of a pixel on the device, as bits: the vectors of `shaders/path/film_sums.wgsl`.
+pub type PixelSums = [[u32; 4]; 3];
+
+/// The sums of every pixel before and after a sample was added. Lists are row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordedFilm {
+    /// The sums before the sample.
+    pub before: Vec<PixelSums>,
+    /// The sums after it.
+    pub after: Vec<PixelSums>,
+}
+
+impl RecordedFilm {
+    /// Whether there are sums of so many pixels.
+    pub(in crate::verify) fn has(&self, pixels: u64) -> bool {
+        [&self.before, &self.after].into_iter().all(|sums| sums.len() as u64 == pixels)
+    }
+}
+
+/// The state of a path between two dispatches, as bits: the slots of `shaders/path/state.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PathState {
+    /// The slots, in order.
+    pub slots: [[u32; 4]; Self::SLOTS],
+}
+
+impl PathState {
+    /// The number of slots. The last three are those of the sampled light and of the medium, or in a studio those of the
+    /// surface: its normal, its colour, and its specular lobe.
+    pub const SLOTS: usize = 9;
+
+    /// The slot of the radiance so far, whose last number is the opacity.
+    pub const RADIANCE: usize = 4;
+
+    /// The slot of the pending light, whose last number is its visibility.
+    pub const PENDING: usize = 7;
+
+    /// In a studio, the slot of the normal, whose last word has a bit for each hidden light.
+    pub const NORMAL: usize = 6;
+
+    pub(in crate::verify) fn vector(&self, slot: usize) -> [f32; 3] {
+        let [x, y, z, _] = self.slots[slot];
+        [x, y, z].map(f32::from_bits)
+    }
+
+    pub(in crate::verify) fn number(&self, slot: usize) -> f32 {
+        f32::from_bits(self.slots[slot][3])
+    }
+
+    pub(in crate::verify) fn bits(&self, slot: usize) -> u32 {
+        self.slots[slot][3]
+    }
+
+    /// The surface that the path leaves.
+    pub(in crate::verify) fn departure(&self) -> Departure {
+        let [id, shape_index, exit_distance, emitter] = self.slots[slot::DEPARTURE];
+        Departure { id, shape_index, exit_distance: f32::from_bits(exit_distance), emitter }
+    }
+
+    pub(in crate::verify) fn flags(&self) -> u32 {
+        self.bits(slot::ORIGIN)
+    }
+
+    pub(in crate::verify) fn has(&self, flag: u32) -> bool {
+        self.flags() & flag != 0
+    }
+}
+
+/// The surface that a path leaves: `shaders/path/departure.wgsl`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::verify) struct Departure {
+    /// Id of the sphere; [`NO_ID`](crate::image::NO_ID) for none.
+    pub(in crate::verify) id: u32,
+    /// Index of the sphere on the device.
+    pub(in crate::verify) shape_index: u32,
+    /// Exit distance of the sphere if the path goes inside; else 0.
+    pub(in crate::verify) exit_distance: f32,
+    /// Index of the sampled emitter, or [`NO_EMITTER`].
+    pub(in crate::verify) emitter: u32,
+}
+
+/// The value of [`Departure::emitter`] without an emitter.
+pub(in crate::verify) const NO_EMITTER: u32 = u32::MAX;
+
+/// The indices of the slots.
+pub(in crate::verify) mod slot {
+    pub(in crate::verify) const ORIGIN: usize = 0;
+    pub(in crate::verify) const DIRECTION: usize = 1;
+    pub(in crate::verify) const DEPARTURE: usize = 2;
+    pub(in crate::verify) const THROUGHPUT: usize = 3;
+    pub(in crate::verify) const RADIANCE: usize = super::PathState::RADIANCE;
+    pub(in crate::verify) const FIRST: usize = 5;
+    pub(in crate::verify) const SHADOW: usize = 6;
+    pub(in crate::verify) const PENDING: usize = super::PathState::PENDING;
+    pub(in crate::verify) const MEDIUM: usize = 8;
+    pub(in crate::verify) const NORMAL: usize = super::PathState::NORMAL;
+    pub(in crate::verify) const ALBEDO: usize = 7;
+    pub(in crate::verify) const LOBE: usize = 8;
+}
+
+/// Flags of the state of a path, and flags of the lighting.
+pub(in crate::verify) mod flag {
+    pub(in crate::verify) use crate::light::codes::lighting::{
+        CATCHER, GROUND, SHADOWS, SKY_SEEN, TRANSPARENT,
+    };
+    pub(in crate::verify) use crate::light::codes::path::{
+        ALIVE, BACK, FULL, INSIDE, ON_GROUND, SCATTERED,
+    };
+}
+
+/// The parameters of the lighting on the device: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UploadedLighting {
+    /// Colour where a ray hits nothing.
+    pub background: [f32; 3],
+    /// Sum of the `LIGHTING_` constants that apply.
+    pub flags: u32,
+    /// Number of lights in the tables.
+    pub light_count: u32,
+    /// Radiance of the sky straight up.
+    pub zenith: [f32; 3],
+    /// Radiance of the sky at the horizon.
+    pub horizon: [f32; 3],
+    /// Radiance of the sky straight down.
+    pub nadir: [f32; 3],
+    /// First surface at which paths may end by Russian roulette.
+    pub roulette_from: u32,
+    /// Number of light sources that can be sampled.
+    pub source_count: u32,
+    /// Method of light sampling: 0 for scattered rays only, 1 for direct sampling only, 2 for both.
+    pub light_sampling: u32,
+    /// Unit normal of the ground.
+    pub ground_normal: [f32; 3],
+    /// A point of the ground, in the scene's frame.
+    pub ground_point: [f32; 3],
+    /// Colour of the ground.
+    pub ground_color: [f32; 3],
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Number of emitters.
+    pub emitter_count: u32,
+    /// Index of the first material in the tables.
+    pub material_first: u32,
+    /// Columns and rows of the sky's image.
+    pub environment_size: [u32; 2],
+    /// Cosine and sine of the rotation of the sky's image.
+    pub environment_rotation: [f32; 2],
+    /// Factor of the radiance of the sky's image.
+    pub environment_strength: f32,
+    /// Ambient light of a studio.
+    pub ambient: [f32; 3],
+    /// Colour to which depth cueing fades.
+    pub cue_color: [f32; 3],
+    /// Distance at which depth cueing begins.
+    pub cue_near: f32,
+    /// Reciprocal of the depth over which colours fade; 0 if they do not.
+    pub cue_scale: f32,
+    /// Largest distance at which a sphere occludes ambient light.
+    pub occlusion_radius: f32,
+    /// Number of directions of ambient light for each sample.
+    pub occlusion_samples: u32,
+    /// Number of light sources that are not spheres of the scene and not the sky.
+    pub lamp_sources: u32,
+    /// Offsets of samples, for each 256th of the filter's distribution.
+    pub filter_table: Vec<f32>,
+}
+
+/// The image of a sky, as kernels read it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UploadedSky {
+    /// Radiance, row by row.
+    pub texels: Vec<[f32; 3]>,
+    /// Cumulative tables for sampling: that of the rows, and those of the columns of each row.
+    pub shares: Vec<f32>,
+}

@@ -1,0 +1,106 @@
+//! The check of light that is added to a surface. The WGSL twins are `shaders/studio/illuminate.wgsl`, `gather.wgsl` and
+//! `reflected.wgsl`.
+
+use crate::light::codes::lamp::HEAD;
+use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::material::mirrors_brdf;
+use crate::verify::lit::recording::slot;
+use crate::verify::lit::warp::pi;
+use crate::verify::number::{Number, Vector};
+
+/// A change of radiance and opacity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub(super) radiance: Vector,
+    pub(super) opacity: Number,
+}
+
+impl Change {
+    pub(super) const NONE: Self = Self { radiance: Vector::ZERO, opacity: Number::ZERO };
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { radiance: self.radiance + other.radiance, opacity: self.opacity + other.opacity }
+    }
+
+    /// The changes between both.
+    pub(super) fn union(self, other: Self) -> Self {
+        Self {
+            radiance: self.radiance.zip(other.radiance, Number::union),
+            opacity: self.opacity.union(other.opacity),
+        }
+    }
+}
+
+impl Kernel<'_> {
+    /// What a light adds. `total` is the luminance of all lights on a shadow catcher.
+    pub(super) fn light_added(&mut self, light: u32, is_hidden: bool, total: Number) -> Change {
+        if self.is_caught() {
+            if !is_hidden {
+                return Change::NONE;
+            }
+            let share = self.central_light(light) / total;
+            let (radiance, opacity) = self.caught(share);
+            return Change { radiance, opacity };
+        }
+        if is_hidden {
+            return Change::NONE;
+        }
+        let out = -Vector::recorded(self.before.vector(slot::DIRECTION));
+        let at = light.saturating_mul(3);
+        let (toward, strength) = if self.table(at)[3] == HEAD {
+            let [r, g, b, _] = self.table_numbers(at.saturating_add(1));
+            (out, Vector::recorded([r, g, b]))
+        } else {
+            let lamp = self.lamp_of_surface(light);
+            (lamp.direction, lamp.strength)
+        };
+        let radiance = strength.times(self.reflected(out, toward));
+        Change { radiance, opacity: Number::ZERO }
+    }
+
+    /// What directions of ambient light add, of which some are hidden.
+    pub(super) fn ambient_added(&mut self, count: u32, hidden: u32, total: Number) -> Change {
+        let lighting = self.lighting();
+        let share = Number::ONE / Number::known(lighting.occlusion_samples.max(1).into());
+        let hidden_count = Number::known(hidden.into());
+        if self.is_caught() {
+            let share = share * hidden_count * self.ambient_luminance() / total;
+            let (radiance, opacity) = self.caught(share);
+            return Change { radiance, opacity };
+        }
+        let albedo = Vector::recorded(self.before.vector(slot::ALBEDO));
+        // Both are whole numbers.
+        let open = Number::known(f64::from(count) - f64::from(hidden));
+        let ambient = Vector::recorded(lighting.ambient);
+        Change { radiance: albedo.times(ambient) * (share * open), opacity: Number::ZERO }
+    }
+
+    /// The light that the surface reflects, for a light of strength 1.
+    fn reflected(&mut self, out: Vector, toward: Vector) -> Vector {
+        let [share, alpha, energies, _] = self.before.slots[slot::LOBE];
+        let [share, alpha] = [share, alpha].map(|bits| Number::recorded(f32::from_bits(bits)));
+        let normal = Vector::recorded(self.before.vector(slot::NORMAL));
+        let albedo = Vector::recorded(self.before.vector(slot::ALBEDO));
+        let along = normal.dot(toward);
+        let cosine = along.max(Number::ZERO);
+        let seen = albedo * ((Number::ONE - share) * cosine);
+        if share.is_zero() || !self.choices.decide(along.is_above_zero()) {
+            return seen;
+        }
+        let weight = Number::recorded(self.before.vector(slot::THROUGHPUT)[1]);
+        let half = (out + toward).normalized();
+        let least = Number::constant(1e-6);
+        let [o, i] = [normal.dot(out).max(least), cosine.max(least)];
+        let upright = |z: Number| Vector([Number::ZERO, Number::ZERO, z]);
+        let beside = cross(half, normal).fence().squared().sqrt();
+        let half = Vector([beside, Number::ZERO, half.dot(normal)]);
+        let mirrors = mirrors_brdf(alpha, upright(o), upright(i), half);
+        let lobe = share * pi() * mirrors / self.energy(energies, o);
+        let shine = weight * lobe;
+        seen.map(|c| c + shine)
+    }
+}
+
+fn cross(Vector([a, b, c]): Vector, Vector([x, y, z]): Vector) -> Vector {
+    Vector([b * z - c * y, c * x - a * z, a * y - b * x])
+}

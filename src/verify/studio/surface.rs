@@ -1,0 +1,172 @@
+//! The check of what is seen of a surface before any light is searched for. The WGSL twin is
+//! `shaders/studio/surface.wgsl`.
+
+use crate::image::NO_ID;
+use crate::verify::lit::certificate::LitStage;
+use crate::verify::lit::expected::Mismatch;
+use crate::verify::lit::kernel::Kernel;
+use crate::verify::lit::material::Material;
+use crate::verify::lit::recording::{flag, slot};
+use crate::verify::lit::vertex::Vertex;
+use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+/// The stage and the name of a number, for reports.
+type Name = (LitStage, &'static str);
+
+const FLAGS: Name = (LitStage::Surface, "the ray's flags");
+const ORIGIN: Name = (LitStage::Surface, "the origin of a ray that has ended");
+const DEPARTURE: Name = (LitStage::Surface, "the sphere that the ray passes");
+const EXIT_DISTANCE: Name = (LitStage::Surface, "the distance to the far side of the sphere");
+const REST: Name = (LitStage::Surface, "the weight that remains behind the surface");
+const WEIGHT: Name = (LitStage::Surface, "the weight of the surface");
+const RADIANCE: Name = (LitStage::Surface, "the radiance so far");
+const ALPHA: Name = (LitStage::Surface, "the opacity so far");
+const FIRST: Name = (LitStage::Surface, "the first surface's color");
+const LENGTH: Name = (LitStage::Surface, "the distance from the camera");
+const NORMAL: Name = (LitStage::Surface, "the normal");
+const ALBEDO: Name = (LitStage::Surface, "the color times its weight");
+const LOBE: Name = (LitStage::Surface, "the specular lobe");
+const KEPT: Name = (LitStage::Surface, "an unchanged part of the ray's state");
+
+/// What a ray has met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Met {
+    Nothing,
+    /// A surface that shines and is not lit.
+    Emitter,
+    /// A surface that lights are added to.
+    Surface,
+}
+
+impl Kernel<'_> {
+    /// Follows the kernel, and compares its output.
+    pub(super) fn follow_surface(&mut self, is_last: bool) -> Result<Met, Mismatch> {
+        let (before, after, lighting) = (self.before, self.after, self.lighting());
+        let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
+        let shown = Vector::recorded(if is_transparent { [0.0; 3] } else { lighting.background });
+        let left_over = Number::recorded(before.vector(slot::THROUGHPUT)[0]);
+        self.unchanged(slot::DIRECTION)?;
+        let Some(vertex) = self.vertex()? else {
+            self.added(shown * left_over, Number::ZERO)?;
+            self.expected.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
+            self.expected.bits(FLAGS, after.flags(), 0)?;
+            let others = [slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST];
+            let of_surface = [slot::NORMAL, slot::ALBEDO, slot::LOBE];
+            others.into_iter().chain(of_surface).try_for_each(|slot| self.unchanged(slot))?;
+            return Ok(Met::Nothing);
+        };
+        let material = self.material_of(&vertex);
+        let is_caught = !vertex.is_sphere() && lighting.flags & flag::CATCHER != 0;
+        let is_emitter = material.is_emissive();
+
+        let far = Number::recorded(before.number(slot::FIRST)) + vertex.distance;
+        let fade = self.faded(far);
+        let [of_material, alpha] = vertex.opacities.map(Number::recorded);
+        let opacity = alpha * of_material;
+        let weight = left_over * opacity;
+        // Behind an opaque surface nothing remains: a number minus itself is zero.
+        let is_opaque =
+            vertex.opacities.iter().all(|opacity| opacity.to_bits() == 1.0_f32.to_bits());
+        let rest = if is_opaque { Number::ZERO } else { left_over - weight };
+        let Interval { low, .. } = fade.interval();
+        // The fraction is at most one, and one minus one is exactly zero.
+        let clear = if low >= 1.0 { Number::ZERO } else { Number::ONE - fade };
+        let lit = weight * clear;
+        let color = Vector::recorded(vertex.color);
+        let has_occlusion = lighting.occlusion_samples > 0;
+        let own = match (is_emitter, has_occlusion) {
+            (true, _) => Vector([material.parameter; 3]),
+            (false, true) => Vector::ZERO,
+            (false, false) => Vector::recorded(lighting.ambient),
+        };
+        let through = if is_last { shown * rest } else { Vector::ZERO };
+        if is_caught {
+            self.added(shown * left_over, Number::ZERO)?;
+        } else {
+            let faded = Vector::recorded(lighting.cue_color) * (weight * fade);
+            self.added(faded + (color * lit).times(own) + through, weight)?;
+        }
+
+        let is_first = self.address.surface == 0 && !is_caught;
+        let first = if is_first {
+            color.map(|c| c.min(Number::ONE))
+        } else {
+            Vector::recorded(before.vector(slot::FIRST))
+        };
+        self.expected.vector(FIRST, after.vector(slot::FIRST), first)?;
+        self.expected.number(LENGTH, after.number(slot::FIRST), far)?;
+        self.compare_passed(&vertex)?;
+        let [found_rest, found_lit, zero, one_more] =
+            after.slots[slot::THROUGHPUT].map(f32::from_bits);
+        let size = left_over.interval().high;
+        self.expected.number_of(REST, found_rest, rest, size)?;
+        self.expected.number_of(WEIGHT, found_lit, lit, size)?;
+        for nothing in [zero, one_more] {
+            self.expected.number(WEIGHT, nothing, Number::ZERO)?;
+        }
+        self.expected.vector(NORMAL, after.vector(slot::NORMAL), vertex.normal)?;
+        self.expected.bits(NORMAL, after.bits(slot::NORMAL), 0)?;
+        self.expected.vector_of(ALBEDO, after.vector(slot::ALBEDO), color * lit, size)?;
+        let caught = if is_caught { left_over } else { Number::ZERO };
+        self.expected.number(ALBEDO, after.number(slot::ALBEDO), caught)?;
+        self.compare_lobe(&material)?;
+
+        let ends = is_last || is_caught || !self.choices.decide(rest.is_more(Number::ZERO));
+        let is_closed = vertex.is_back && !self.choices.decide(opacity.is_less(Number::ONE));
+        let flags = [
+            (!ends, flag::ALIVE),
+            (vertex.is_sphere() && !vertex.is_back, flag::INSIDE),
+            (is_closed, flag::BACK),
+            (!vertex.is_sphere(), flag::ON_GROUND),
+        ];
+        let flags = flags.into_iter().filter(|(is_set, _)| *is_set).map(|(_, flag)| flag).sum();
+        self.expected.bits(FLAGS, after.flags(), flags)?;
+        Ok(if is_emitter { Met::Emitter } else { Met::Surface })
+    }
+
+    /// The fraction of the colour that depth cueing replaces at a distance: `shaders/studio/faded.wgsl`.
+    fn faded(&self, distance: Number) -> Number {
+        let lighting = self.lighting();
+        let beyond = distance - Number::recorded(lighting.cue_near);
+        (beyond * Number::recorded(lighting.cue_scale)).clamp(0.0, 1.0)
+    }
+
+    fn unchanged(&mut self, slot: usize) -> Result<(), Mismatch> {
+        self.expected.same(KEPT, [self.before, self.after], slot)
+    }
+
+    /// Compares radiance and opacity with those before and what is added to them.
+    fn added(&mut self, radiance: Vector, opacity: Number) -> Result<(), Mismatch> {
+        let (before, after) = (self.before, self.after);
+        let sum = Vector::recorded(before.vector(slot::RADIANCE)) + radiance;
+        self.expected.vector(RADIANCE, after.vector(slot::RADIANCE), sum)?;
+        let alpha = Number::recorded(before.number(slot::RADIANCE)) + opacity;
+        self.expected.number(ALPHA, after.number(slot::RADIANCE), alpha)
+    }
+
+    /// Compares the sphere that the ray passes, its radius, and how far its far side is.
+    fn compare_passed(&mut self, vertex: &Vertex) -> Result<(), Mismatch> {
+        let departure = self.after.departure();
+        let is_sphere = vertex.is_sphere();
+        let (id, index) = if is_sphere { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
+        self.expected.bits(DEPARTURE, departure.id, id)?;
+        self.expected.bits(DEPARTURE, departure.shape_index, index)?;
+        let radius = Number::recorded(vertex.sphere[3]);
+        self.expected.number(DEPARTURE, f32::from_bits(departure.emitter), radius)?;
+        let direction = Vector::recorded(self.before.vector(slot::DIRECTION));
+        let exit = vertex.exit_distance(direction);
+        let size = f64::from(vertex.sphere[3]);
+        self.expected.number_of(EXIT_DISTANCE, departure.exit_distance, exit, size)
+    }
+
+    /// Compares the share of the lobe, the square of its roughness, and the index of its energies.
+    fn compare_lobe(&mut self, material: &Material) -> Result<(), Mismatch> {
+        let [share, alpha, energies, nothing] = self.after.slots[slot::LOBE];
+        let expected = if material.is_lambert() { material.parameter } else { Number::ZERO };
+        self.expected.number(LOBE, f32::from_bits(share), expected)?;
+        self.expected.number(LOBE, f32::from_bits(alpha), material.alpha)?;
+        self.expected.bits(LOBE, energies, material.energies)?;
+        self.expected.bits(LOBE, nothing, 0)
+    }
+}

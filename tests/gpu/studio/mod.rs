@@ -1,0 +1,176 @@
+//! Tests that the checker accepts the studios of this device, and finds faults that are inserted.
+
+mod faults;
+mod inputs;
+mod scenes;
+
+use std::path::Path;
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::LayerSet;
+use pinhole::accel::{Accel, AccelChoice, AccelPlan};
+use pinhole::gpu::{Decision, Headless, HeadlessOptions, SceneBuffers};
+use pinhole::internals::ShaderEdit;
+use pinhole::verify::{Checker, LitCertificate, LitRecording, StudioRecording};
+
+use crate::headless;
+use crate::light::scenes::{LitView, studios};
+use crate::support::random_light;
+use faults::Fault;
+
+/// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
+const SMALL_BINDING: u64 = 16 * 100;
+
+/// The seeds of the random scenes, with one test for each.
+const SEEDS: std::ops::Range<u64> = 0..48;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (name, view) in studios() {
+        trials.push(Trial::test(format!("studio::legal::{name}"), move || legal(&view)));
+    }
+    for (name, view) in scenes::ALL {
+        trials.push(Trial::test(format!("studio::legal::{name}"), move || legal(&view())));
+    }
+    for choice in [AccelChoice::List, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::BinaryTree]
+    {
+        let name = format!("studio::legal::in_a_{choice:?}").to_lowercase();
+        trials.push(Trial::test(name, move || legal_in(choice, 1 << 27)));
+    }
+    trials.push(Trial::test("studio::legal::in_bricks", || {
+        legal_in(AccelChoice::List, SMALL_BINDING)
+    }));
+    for seed in SEEDS {
+        trials.push(Trial::test(format!("studio::random::seed_{seed}"), move || random(seed)));
+    }
+    for fault in faults::all() {
+        let name = format!("studio::faults::{}", fault.name);
+        trials.push(Trial::test(name, move || is_found(&fault)));
+    }
+    for (name, spoil) in inputs::ALL {
+        let name = format!("studio::faults::input_{name}");
+        trials.push(Trial::test(name, move || input_fault_is_found(*spoil)));
+    }
+    trials
+}
+
+/// The samples that are recorded: the first, one in between, and the last of a picture of many.
+const SAMPLES: [u32; 3] = [0, 37, 63];
+
+fn record(headless: &Headless, view: &LitView) -> Result<StudioRecording, Failed> {
+    let (scene, layers) = (&view.scene, LayerSet::COLOR);
+    let plan = headless.plan(scene, &view.seen(), &view.settings, layers, AccelChoice::Auto, 0);
+    record_from(headless, &headless.upload(scene, &plan.build(scene))?, view)
+}
+
+fn record_in(headless: &Headless, view: &LitView, accel: Accel) -> Result<StudioRecording, Failed> {
+    record_from(headless, &headless.upload(&view.scene, &accel.into())?, view)
+}
+
+/// Records some samples.
+fn record_from(
+    headless: &Headless,
+    buffers: &SceneBuffers,
+    view: &LitView,
+) -> Result<StudioRecording, Failed> {
+    let mut all: Option<StudioRecording> = None;
+    let each = &mut |recording: LitRecording<'_>| {
+        let LitRecording::Studio(one) = recording else { panic!("not of a studio") };
+        match &mut all {
+            None => all = Some(one.clone()),
+            Some(all) => all.samples.extend(one.samples.iter().cloned()),
+        }
+    };
+    let go_on = &mut |_: &_| Decision::GoOn;
+    headless.record_lit(buffers, &view.seen(), &view.settings, &SAMPLES, (each, go_on))?;
+    Ok(all.unwrap())
+}
+
+fn certify(view: &LitView, recording: &StudioRecording) -> LitCertificate {
+    Checker::new(&view.scene).unwrap().certify_studio(recording)
+}
+
+/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
+fn is_legal(view: &LitView, recording: &StudioRecording) -> Result<(), Failed> {
+    let certificate = certify(view, recording);
+    let stages = certificate.stages();
+    let is_telling = stages.checked > 10_000
+        && stages.decided + stages.open > stages.checked / 1000 * 999
+        && stages.open < stages.checked / 20;
+    println!("{certificate}");
+    if certificate.is_legal() && is_telling {
+        Ok(())
+    } else {
+        Err(format!("{certificate}\n{:#?}\n{certificate:#?}", certificate.named()).into())
+    }
+}
+
+fn legal(view: &LitView) -> Result<(), Failed> {
+    is_legal(view, &record(headless()?, view)?)
+}
+
+/// Studios are legal with every structure.
+fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
+    let view = scenes::many();
+    let spheres = view.scene.spheres();
+    let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
+    is_legal(&view, &record_in(headless()?, &view, accel)?)
+}
+
+/// Random scenes in random studios are legal. For more scenes, run `cargo bench --bench verify -- studio-campaign 500`.
+fn random(seed: u64) -> Result<(), Failed> {
+    let random_light::RandomView { scene, camera, film, settings, name } =
+        random_light::studio(seed);
+    let view = LitView { scene, camera, film, settings };
+    let certificate = certify(&view, &record(headless()?, &view)?);
+    let stages = certificate.stages();
+    println!("seed {seed}: {name}: {certificate}");
+    if certificate.is_legal() && stages.decided + stages.open > stages.checked / 10 * 9 {
+        Ok(())
+    } else {
+        let named = certificate.named();
+        Err(format!("seed {seed}: {name}: {certificate}\n{named:#?}").into())
+    }
+}
+
+/// Every fault is found in the stage in which it was inserted.
+fn is_found(fault: &Fault) -> Result<(), Failed> {
+    let Fault { file, find, replace, stage, .. } = *fault;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("shaders")
+        .join(file.split('#').next().unwrap_or(file));
+    if !std::fs::read_to_string(path)?.contains(find) {
+        return Err(format!("{file} has no `{find}`").into());
+    }
+    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
+    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+    let view = (fault.view)();
+    let certificate = certify(&view, &record(&Headless::open(&options)?, &view)?);
+    println!("{certificate}");
+    match certificate.violations.first() {
+        None => Err(format!("the fault was not found: {certificate}").into()),
+        Some(first) if first.stage != stage => Err(format!("elsewhere: {certificate}").into()),
+        Some(_) => Ok(()),
+    }
+}
+
+/// The device was given other inputs than the requested ones, or the recording is damaged.
+fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
+    let view = inputs::view();
+    let mut given = inputs::view();
+    let mut spoilt = None;
+    match spoil {
+        inputs::Spoil::Given(change) => change(&mut given),
+        inputs::Spoil::Said(change) => spoilt = Some(change),
+    }
+    let mut recording = record(headless()?, &given)?;
+    recording.given.settings = view.settings.clone();
+    if let Some(change) = spoilt {
+        change(&mut recording);
+    }
+    let certificate = certify(&view, &recording);
+    if certificate.is_legal() {
+        return Err(format!("the fault was not found: {certificate}").into());
+    }
+    Ok(())
+}
