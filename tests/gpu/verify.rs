@@ -9,8 +9,9 @@ use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::gpu::{Decision, Headless, HeadlessOptions};
 use pinhole::image::NO_ID;
 use pinhole::internals::ShaderEdit;
+use pinhole::verify::conformance::{Answers, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
-use pinhole::{Integrator, LinearRgb, Scene, Shading, Sphere};
+use pinhole::{Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere};
 
 use crate::faults::{self, Fault, How, LIST};
 use crate::support::View;
@@ -29,6 +30,9 @@ pub(crate) fn trials() -> Vec<Trial> {
     }));
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(&view)));
+    }
+    for (name, view) in scenes::all() {
+        trials.push(Trial::test(format!("verify::certified::{name}"), move || certified(&view)));
     }
     trials.push(Trial::test("verify::faults::none_without_one", none_without_one));
     for fault in faults::all() {
@@ -56,6 +60,27 @@ fn legal(view: &View) -> Result<(), Failed> {
         return Err("what is rendered was not compared".into());
     }
     if certificate.is_legal() { Ok(()) } else { Err(certificate.to_string().into()) }
+}
+
+/// By exact rays, as the answers of any renderer are judged.
+fn certified(view: &View) -> Result<(), Failed> {
+    let View { scene, camera, film, settings } = view;
+    let view = pinhole::View::new(camera.as_ref(), *film);
+    let image = headless()?.render(scene, &view, settings, LayerSet::DATA)?;
+    let depths: Vec<f64> =
+        image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
+    let normals: Vec<[f64; 3]> =
+        image.normal().unwrap_or_default().iter().map(|normal| normal.map(f64::from)).collect();
+    let answers = Answers {
+        size: [film.width(), film.height()],
+        ids: image.id().unwrap_or_default(),
+        depths: Some(&depths),
+        normals: Some(&normals),
+        ..Answers::default()
+    };
+    let found = Checker::new(scene)?.certify_answers(&answers, Rays::View(view), None)?;
+    println!("{found}");
+    if found.outcome() == Outcome::Violated { Err(found.to_string().into()) } else { Ok(()) }
 }
 
 fn build(scene: &Scene, how: How) -> Accel {
