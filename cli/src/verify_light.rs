@@ -159,7 +159,7 @@ mod recorded {
         while chosen.len() < count as usize {
             // A linear congruential generator, of which the upper bits are used (Numerical Recipes, section 7.1).
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            chosen.insert((u64::from(random) * u64::from(all) >> 32) as u32);
+            chosen.insert(((u64::from(random) * u64::from(all)) >> 32) as u32);
         }
         chosen.into_iter().collect()
     }
