@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# What the features promise, which takes several minutes: clippy of the library with each feature alone, and the tests of
+# the library and the program built without the feature `gpu`.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+for feature in "" annotate color-by csv dcd exr gpu gromacs gsd gzip hdr lammps las mmcif npy parallel pdb ply png run-file scene-file vtk xyz; do
+    cargo clippy --locked --quiet -p pinhole --lib --no-default-features --features "$feature" -- -D warnings
+done
+# The slowest tests are left out: they are arithmetic that does not depend on the feature.
+scripts/test.sh --cpu-only --locked -- --skip accused --skip soundness --skip unbiased
