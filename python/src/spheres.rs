@@ -296,7 +296,8 @@ impl SphereData {
     ) -> PyResult<()> {
         let not_in_order = || Fault::Internal("an array is not contiguous".to_owned());
         // Copies, because other threads of Python may write into arrays while this one does not hold the GIL.
-        let (mut narrow, mut wide): (Option<Vec<[f32; 3]>>, Option<Vec<[f64; 3]>>) = (None, None);
+        let mut narrow: Option<Vec<[f32; 3]>> = None;
+        let mut wide: Option<Vec<[f64; 3]>> = None;
         match &positions {
             Some(Centers::Narrow(centers)) => {
                 let centers = centers.as_slice().map_err(|_| not_in_order())?;
