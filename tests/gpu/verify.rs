@@ -29,7 +29,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         example::this_adapter_renders_legally().map_err(Into::into)
     }));
     for (name, view) in scenes::all() {
-        trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(&view)));
+        trials.push(Trial::test(format!("verify::legal::{name}"), move || legal(name, &view)));
     }
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("verify::certified::{name}"), move || certified(&view)));
@@ -52,17 +52,21 @@ pub(crate) fn trials() -> Vec<Trial> {
     trials
 }
 
-fn legal(view: &View) -> Result<(), Failed> {
+/// Scenes in which rounding decides what many pixels show: cameras on a surface, and rays along surfaces.
+const UNDECIDED: [&str; 4] =
+    ["on_the_wall_looking_in", "on_the_wall_looking_out", "tangent_rays", "huge_radius"];
+
+fn legal(name: &str, view: &View) -> Result<(), Failed> {
     let View { scene, camera, film, settings } = view;
     let certificate =
         headless()?.verify(scene, &pinhole::View::new(camera.as_ref(), *film), settings)?;
     if certificate.rendered_otherwise.is_none() {
         return Err("what is rendered was not compared".into());
     }
-    // Some of these scenes are made of silhouettes, so that little of them is decided.
-    match certificate.outcome() {
-        Outcome::Violated => Err(certificate.to_string().into()),
-        Outcome::Proved | Outcome::Undecided => Ok(()),
+    let expected = if UNDECIDED.contains(&name) { Outcome::Undecided } else { Outcome::Proved };
+    match certificate.outcome() == expected {
+        true => Ok(()),
+        false => Err(certificate.to_string().into()),
     }
 }
 
