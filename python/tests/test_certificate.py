@@ -19,7 +19,7 @@ class Judged:
 
     def __init__(self, verdicts, violations=(), adapter="<GPU & more>"):
         self.given = np.asarray(verdicts, np.uint8)
-        undecided = np.isin(self.given, [1, 2]).mean() > 0.01
+        undecided = np.isin(self.given, [1, 2]).sum() > 0.01 * self.given.size
         self.outcome = "violated" if violations else "undecided" if undecided else "proved"
         self.is_legal = self.outcome == "proved"
         self.adapter = adapter

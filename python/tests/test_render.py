@@ -191,6 +191,7 @@ import os, signal, sys, threading, time
 import numpy as np, pinhole as ph
 spheres = ph.Spheres(np.random.default_rng(1).random((2_000_000, 3), "f4"), 0.005, (1.0, 0.0, 0.0))
 ph.Spheres([[0, 0, 0]], 1.0).render(size=(8, 8))
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sent = []
 def interrupt():
     # Long before the structure is built.
