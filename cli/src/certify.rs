@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 
-use super::args::ViewArgs;
+use super::args::{CAMERA, ViewArgs};
 use super::certify_report::Report;
 use super::failure::Failure;
 use super::input::{Input, Source, read};
@@ -16,31 +16,6 @@ use pinhole::geometry::ray::Ray;
 use pinhole::load::npy::pixels::{self, Pixels, PixelsError};
 use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays};
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
-
-/// Arguments that describe a camera; rays that are given replace it.
-const CAMERA: [&str; 21] = [
-    "size",
-    "camera",
-    "eye",
-    "look_at",
-    "direction",
-    "view",
-    "turn",
-    "margin",
-    "zoom",
-    "up",
-    "fov",
-    "distance",
-    "half_extent",
-    "aperture_radius",
-    "f_stop",
-    "focal_length",
-    "focus_distance",
-    "focus_on",
-    "angle",
-    "separation",
-    "convergence",
-];
 
 #[derive(Debug, Args)]
 #[command(

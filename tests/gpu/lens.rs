@@ -4,10 +4,10 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::AccelChoice;
 use pinhole::glam::{DVec2, DVec3};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions};
-use pinhole::internals::ShaderEdit;
+use pinhole::gpu::Decision;
 use pinhole::verify::{LegalCameraRay, Recording};
 
+use crate::planted::faulty;
 use crate::verify_views as views;
 
 /// Points in all cases of the map from the square to the disk, on a seam, and on the edge.
@@ -28,13 +28,8 @@ pub(crate) fn trials() -> Vec<Trial> {
 }
 
 fn rays_are_the_references(lens: [f32; 2]) -> Result<(), Failed> {
-    let edit = ShaderEdit {
-        file: "camera/entry.wgsl".into(),
-        find: "vec2f(0.5)".into(),
-        replace: format!("vec2f({:?}, {:?})", lens[0], lens[1]),
-    };
-    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-    let headless = Headless::open(&options)?;
+    let [x, y] = lens;
+    let headless = faulty("camera/entry.wgsl", "vec2f(0.5)", &format!("vec2f({x:?}, {y:?})"))?;
     let view = views::lens();
     let accel = headless.plan_accel(&view.scene, AccelChoice::List);
     let buffers = headless.upload(&view.scene, &accel.build(view.scene.spheres()).into())?;

@@ -1,19 +1,17 @@
 //! Tests that the checker accepts the pictures of this device, and finds faults that are inserted.
 
-use std::path::Path;
-
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelPlan};
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions};
+use pinhole::gpu::{Decision, Headless};
 use pinhole::image::NO_ID;
-use pinhole::internals::ShaderEdit;
 use pinhole::verify::conformance::{Answers, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
 use pinhole::{Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere};
 
 use crate::faults::{self, Fault, How, LIST};
+use crate::planted::faulty;
 use crate::support::View;
 use crate::verify_views as views;
 use crate::{headless, scenes};
@@ -125,17 +123,9 @@ fn none_without_one() -> Result<(), Failed> {
 }
 
 fn is_found(fault: &Fault) -> Result<(), Failed> {
-    let Fault { file, find, replace, .. } = *fault;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("shaders")
-        .join(file.split('#').next().unwrap_or(file));
-    if !std::fs::read_to_string(path)?.contains(find) {
-        return Err(format!("{file} has no `{find}`").into());
-    }
-    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
     let view = (fault.view)();
-    let certificate = certify(&view, &record(&Headless::open(&options)?, &view, fault.how)?);
+    let faulty = faulty(fault.file, fault.find, fault.replace)?;
+    let certificate = certify(&view, &record(&faulty, &view, fault.how)?);
     found(&certificate).map_err(|error| {
         let structure = build(&view.scene, fault.how).structure().name();
         format!("in the structure {structure}: {error:?}").into()
@@ -175,13 +165,8 @@ const RENDER_FAULTS: &[RenderFault] = &[
 
 /// A fault that only affects pictures without a recording.
 fn fault_of_render_is_found(view: fn() -> View, replace: &str) -> Result<(), Failed> {
-    let edit = ShaderEdit {
-        file: "primary/entry.wgsl#made".into(),
-        find: "return make_entry(pixel_in_tile);".into(),
-        replace: replace.into(),
-    };
-    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-    let (faulty, view) = (Headless::open(&options)?, view());
+    let faulty = faulty("primary/entry.wgsl#made", "return make_entry(pixel_in_tile);", replace)?;
+    let view = view();
     let alone = certify(&view, &record(&faulty, &view, LIST)?);
     if !alone.is_legal() || alone.rendered_otherwise.is_some() {
         return Err(format!("the recording has the fault as well:\n{alone}").into());

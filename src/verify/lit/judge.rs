@@ -1,10 +1,16 @@
 //! The verdict about a stage, and how it is found and counted.
 
-use super::certificate::{LitCertificate, LitViolation, StageCounts};
+use super::certificate::{LitCertificate, LitStage, LitViolation, StageCounts};
 use super::expected::{Expected, Mismatch};
 use super::kernel::Address;
+use super::recording::PathState;
+use crate::parallel::{map_parts, ranges};
 use crate::verify::certificate::KEPT;
 use crate::verify::choices::Choices;
+use crate::verify::hit::LegalHits;
+
+/// The number of pixels that a thread takes at a time.
+const CHUNK: usize = 256;
 
 /// The verdict about a stage.
 pub(in crate::verify) enum StageOutcome {
@@ -88,6 +94,36 @@ pub(in crate::verify) fn along_choices(
         Some(mismatch) if !choices.were_too_many() => Err(mismatch),
         _ => Ok(StageOutcome::Undecided),
     }
+}
+
+/// Judges the samples of all pixels, on all cores with the feature `parallel`. `judge` is called with the index of a pixel.
+pub(in crate::verify) fn judge_pixels(
+    count: usize,
+    judge: impl Fn(usize, &mut LitCertificate, &mut LegalHits) + Sync,
+) -> LitCertificate {
+    let parts = map_parts(ranges(count, CHUNK), |range| {
+        let mut part = LitCertificate::default();
+        let mut legal = LegalHits::default();
+        for index in range {
+            part.paths += 1;
+            judge(index, &mut part, &mut legal);
+        }
+        part.violation_count = part.violations.len() as u64;
+        part.violations.truncate(KEPT);
+        part
+    });
+    let mut all = LitCertificate::default();
+    parts.into_iter().for_each(|part| all.join(part));
+    all
+}
+
+/// Checks that the state of a ray that has ended does not change.
+pub(in crate::verify) fn unchanged(
+    name: (LitStage, &'static str),
+    [before, after]: [&PathState; 2],
+) -> Result<(), Mismatch> {
+    let mut expected = Expected::default();
+    (0..PathState::SLOTS).try_for_each(|slot| expected.same(name, [before, after], slot))
 }
 
 pub(in crate::verify) fn simple(is_open: bool) -> StageOutcome {

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::certificate::LitStage;
 use super::expected::{Expected, Mismatch};
+use super::judge::{StageOutcome, along_choices};
 use super::kernel::Address;
 use super::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::camera::film::{Film, YAxis};
@@ -20,8 +21,22 @@ const DISTANCE: (LitStage, &str) = (LitStage::Start, "the ray's distance from th
 const FLAGS: (LitStage, &str) = (LitStage::Start, "the path's flags");
 const NOTHING: (LitStage, &str) = (LitStage::Start, "the initial state");
 
+/// Judges the state of a path before anything is traced.
+pub(in crate::verify) fn judge(
+    inputs: &LitInputs,
+    model: &CameraModel,
+    address: Address,
+    found: &PathState,
+) -> Result<StageOutcome, Mismatch> {
+    along_choices(|choices| {
+        let mut expected = Expected::default();
+        check(inputs, model, address, found, &mut expected, choices)?;
+        Ok(expected)
+    })
+}
+
 /// Compares the state of a path before anything is traced.
-pub(in crate::verify) fn check(
+fn check(
     inputs: &LitInputs,
     model: &CameraModel,
     Address { pixel, sample, .. }: Address,

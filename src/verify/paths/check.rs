@@ -2,23 +2,22 @@
 
 use super::kernel::radiance_so_far;
 use super::recording::{PathRecording, RecordedSample};
-use crate::parallel::{map_parts, ranges};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::camera::CameraModel;
-use crate::verify::certificate::KEPT;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
 use crate::verify::lit::film;
-use crate::verify::lit::judge::{StageOutcome, along_choices, note, simple};
+use crate::verify::lit::judge::{
+    StageOutcome, along_choices, judge_pixels, note, simple, unchanged,
+};
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, NO_EMITTER, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
 use crate::verify::lit::{start, upload};
 
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 256;
+const ENDED: (LitStage, &str) = (LitStage::Scatter, "a path that has ended");
 
 /// The data with which paths are judged.
 struct PathCheck<'a> {
@@ -52,28 +51,15 @@ impl Checker<'_> {
             is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
         };
         for sample in &recording.samples {
-            let pixels = ranges(sample.start.len(), CHUNK);
-            for part in map_parts(pixels, |range| check.judge(sample, range)) {
-                certificate.join(part);
-            }
+            certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
+                check.judge_path(sample, index, part, legal);
+            }));
         }
         certificate
     }
 }
 
 impl PathCheck<'_> {
-    fn judge(&self, sample: &RecordedSample, range: std::ops::Range<usize>) -> LitCertificate {
-        let mut part = LitCertificate::default();
-        let mut legal = LegalHits::default();
-        for index in range {
-            part.paths += 1;
-            self.judge_path(sample, index, &mut part, &mut legal);
-        }
-        part.violation_count = part.violations.len() as u64;
-        part.violations.truncate(KEPT);
-        part
-    }
-
     fn judge_path(
         &self,
         recorded: &RecordedSample,
@@ -84,8 +70,10 @@ impl PathCheck<'_> {
         let pixel = self.inputs.pixel(index);
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
-        let LitCertificate { violations, start, extend, scatter, occlude, accumulate, .. } = part;
-        note(start, violations, address, self.start(address, &state));
+        let LitCertificate {
+            violations, start: started, extend, scatter, occlude, accumulate, ..
+        } = part;
+        note(started, violations, address, start::judge(self.inputs, &self.model, address, &state));
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -95,16 +83,8 @@ impl PathCheck<'_> {
                 note(extend, violations, address, self.extend(&state, last, hit, legal));
                 note(scatter, violations, address, self.scatter(address, &state, hit, &after));
                 last = Some(hit);
-            } else {
-                // The state of a path that has ended does not change.
-                let mut expected = Expected::default();
-                let same = (0..PathState::SLOTS).try_for_each(|which| {
-                    let name = (LitStage::Scatter, "a path that has ended");
-                    expected.same(name, [&state, &after], which)
-                });
-                if let Err(mismatch) = same {
-                    note(scatter, violations, address, Err(mismatch));
-                }
+            } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
+                note(scatter, violations, address, Err(mismatch));
             }
             let open = f32::from_bits(stage.open[index]);
             let is_searched = surface < self.inputs.max_surfaces
@@ -139,14 +119,6 @@ impl PathCheck<'_> {
             address,
             film::check(radiance_so_far(&state), &state, &recorded.film, index),
         );
-    }
-
-    fn start(&self, address: Address, state: &PathState) -> Result<StageOutcome, Mismatch> {
-        along_choices(|choices| {
-            let mut expected = Expected::default();
-            start::check(self.inputs, &self.model, address, state, &mut expected, choices)?;
-            Ok(expected)
-        })
     }
 
     fn searched(&self) -> Searched<'_> {

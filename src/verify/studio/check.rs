@@ -4,23 +4,22 @@ use super::light::Change;
 use super::recording::{BITS, StudioLight, StudioRecording, StudioSample};
 use super::search::Hidden;
 use super::surface::Met;
-use crate::parallel::{map_parts, ranges};
 use crate::verify::camera::CameraModel;
-use crate::verify::certificate::KEPT;
 use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::{LitCertificate, LitStage};
 use crate::verify::lit::expected::{Expected, Mismatch};
-use crate::verify::lit::judge::{StageOutcome, along_choices, note, simple};
+use crate::verify::lit::judge::{
+    StageOutcome, along_choices, judge_pixels, note, simple, unchanged,
+};
 use crate::verify::lit::kernel::{Address, Hit, Kernel};
 use crate::verify::lit::recording::{LitInputs, PathState, flag, slot};
 use crate::verify::lit::search::{self, Searched};
 use crate::verify::lit::{film, start, upload};
 use crate::verify::number::{Number, Vector};
 
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 256;
+const ENDED: (LitStage, &str) = (LitStage::Surface, "a ray that has ended");
 
 /// The data with which samples are judged.
 struct StudioCheck<'a> {
@@ -52,28 +51,15 @@ impl Checker<'_> {
         let model = CameraModel::new(given.camera.kind, &given.uploaded, &given.film);
         let check = StudioCheck { checker: self, inputs: given, model };
         for sample in &recording.samples {
-            let pixels = ranges(sample.start.len(), CHUNK);
-            for part in map_parts(pixels, |range| check.judge(sample, range)) {
-                certificate.join(part);
-            }
+            certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
+                check.judge_sample(sample, index, part, legal);
+            }));
         }
         certificate
     }
 }
 
 impl StudioCheck<'_> {
-    fn judge(&self, sample: &StudioSample, range: std::ops::Range<usize>) -> LitCertificate {
-        let mut part = LitCertificate::default();
-        let mut legal = LegalHits::default();
-        for index in range {
-            part.paths += 1;
-            self.judge_sample(sample, index, &mut part, &mut legal);
-        }
-        part.violation_count = part.violations.len() as u64;
-        part.violations.truncate(KEPT);
-        part
-    }
-
     fn judge_sample(
         &self,
         recorded: &StudioSample,
@@ -84,7 +70,8 @@ impl StudioCheck<'_> {
         let pixel = self.inputs.pixel(index);
         let mut address = Address { pixel, sample: recorded.sample, surface: 0 };
         let mut state = recorded.start[index];
-        note(&mut part.start, &mut part.violations, address, self.start(address, &state));
+        let started = start::judge(self.inputs, &self.model, address, &state);
+        note(&mut part.start, &mut part.violations, address, started);
         let mut last = None;
         for (surface, stage) in (0..).zip(&recorded.surfaces) {
             address.surface = surface;
@@ -97,7 +84,7 @@ impl StudioCheck<'_> {
                 let (result, found) = self.surface(address, &state, hit, &after);
                 note(&mut part.surface, &mut part.violations, address, result);
                 (met, last) = (found, Some(hit));
-            } else if let Err(mismatch) = unchanged(&state, &after) {
+            } else if let Err(mismatch) = unchanged(ENDED, [&state, &after]) {
                 note(&mut part.surface, &mut part.violations, address, Err(mismatch));
             }
             for (kind, lights) in [(Kind::Lights, &stage.lights), (Kind::Ambient, &stage.ambient)] {
@@ -118,14 +105,6 @@ impl StudioCheck<'_> {
         let color = Vector::recorded(state.vector(slot::RADIANCE));
         let sums = film::check(color, &state, &recorded.film, index);
         note(&mut part.accumulate, &mut part.violations, address, sums);
-    }
-
-    fn start(&self, address: Address, state: &PathState) -> Result<StageOutcome, Mismatch> {
-        along_choices(|choices| {
-            let mut expected = Expected::default();
-            start::check(self.inputs, &self.model, address, state, &mut expected, choices)?;
-            Ok(expected)
-        })
     }
 
     fn extend(
@@ -368,11 +347,4 @@ impl Light<'_> {
             .zip(state.slots[slot::RADIANCE])
             .try_for_each(|(found, legal)| expected.bits(KEPT, found, legal))
     }
-}
-
-/// Checks that the state of a ray that has ended does not change.
-fn unchanged(before: &PathState, after: &PathState) -> Result<(), Mismatch> {
-    const ENDED: (LitStage, &str) = (LitStage::Surface, "a ray that has ended");
-    let mut expected = Expected::default();
-    (0..PathState::SLOTS).try_for_each(|slot| expected.same(ENDED, [before, after], slot))
 }

@@ -4,12 +4,13 @@ use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
 use pinhole::gpu::{Decision, EachSample, GpuError, Headless, HeadlessOptions, Progress, Watch};
 use pinhole::image::Layer;
-use pinhole::internals::{RecordedFilm, ShaderEdit};
+use pinhole::internals::RecordedFilm;
 use pinhole::render::{Integrator, Occlusion};
 use pinhole::verify::LitRecording;
 use pinhole::{Film, LayerSet, LinearRgb, Scene};
 
 use super::scenes::{self, LitView};
+use crate::planted::faulty;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -124,9 +125,7 @@ fn faults(headless: &'static Headless) {
     ] {
         let mut view = named(scene);
         view.settings.sampling.samples = 6;
-        let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-        let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-        let faulty = Headless::open(&options).unwrap();
+        let faulty = faulty(file, find, replace).unwrap();
         let [right, wrong] = [headless, &faulty].map(|device| {
             device.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap()
         });

@@ -1,35 +1,19 @@
 //! Faults of the kernels of paths that the checker must find, with the stage in which it must find them.
 
-use pinhole::verify::LitStage;
 use pinhole::verify::LitStage::{
     Accumulate, Extend, Light, Occlude, Radiance, Scatter, Start, Vertex,
 };
 
-use super::scenes::{self, LitView};
-
-/// A shader edit that is a fault, with a view in which it is visible.
-pub(crate) struct Fault {
-    pub(crate) name: &'static str,
-    pub(crate) stage: LitStage,
-    pub(crate) view: fn() -> LitView,
-    pub(crate) file: &'static str,
-    pub(crate) find: &'static str,
-    pub(crate) replace: &'static str,
-}
-
-type Row = (&'static str, LitStage, fn() -> LitView, &'static str, &'static str, &'static str);
+use super::scenes;
+use crate::lit::{Fault, Row, faults};
 
 pub(crate) fn all() -> impl Iterator<Item = Fault> {
-    [RAYS, SURFACES, COLORS, GLASS, LOBES, LIGHTS, CHANCE, ENDS].into_iter().flatten().map(fault)
+    faults(&[RAYS, SURFACES, COLORS, GLASS, LOBES, LIGHTS, CHANCE, ENDS])
 }
 
 /// Faults of kernels that exclude spheres by their ids, because equal spheres are in several bricks.
 pub(crate) fn of_ids() -> impl Iterator<Item = Fault> {
-    IDS.iter().map(fault)
-}
-
-fn fault(&(name, stage, view, file, find, replace): &Row) -> Fault {
-    Fault { name, stage, view, file, find, replace }
+    faults(&[IDS])
 }
 
 const IDS: &[Row] = &[

@@ -6,7 +6,8 @@ use pinhole::scene::material::Material;
 use pinhole::verify::PathRecording;
 use pinhole::{LinearRgb, Scene, Sphere};
 
-use super::scenes::{self, LitView};
+use super::scenes;
+use crate::light::scenes::LitView;
 
 /// The time at which an input is changed.
 #[derive(Clone, Copy)]

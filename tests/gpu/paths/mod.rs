@@ -5,19 +5,16 @@ mod inputs;
 mod random;
 mod scenes;
 
-use std::path::Path;
-
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick};
 use pinhole::camera::OrthographicCamera;
-use pinhole::gpu::{Decision, GpuError, Headless, HeadlessOptions, SceneBuffers};
-use pinhole::internals::ShaderEdit;
-use pinhole::verify::{Checker, LitCertificate, LitRecording, Outcome, PathRecording};
+use pinhole::gpu::{Decision, GpuError, Headless, SceneBuffers};
+use pinhole::verify::{Checker, LitCertificate, LitRecording, PathRecording};
 use pinhole::{Film, View};
 
+use crate::light::scenes::LitView;
+use crate::lit::{is_found, is_legal, is_violated};
 use crate::{headless, trial};
-use faults::Fault;
-use scenes::LitView;
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
@@ -40,19 +37,23 @@ pub(crate) fn trials() -> Vec<Trial> {
         let name = format!("paths::legal::equal_spheres_in_bricks_{choice:?}").to_lowercase();
         trials.push(Trial::test(name, move || {
             let view = scenes::thrice();
-            is_legal(&view, &record_in(headless()?, &view, in_bricks(&view, choice))?)
+            let accel = in_bricks(&view, choice);
+            is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
         }));
     }
     for fault in faults::all() {
         let name = format!("paths::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || is_found(&fault, record)));
+        trials.push(Trial::test(name, move || {
+            is_found(&fault, |device, view| Ok(certify(view, &record(device, view)?)))
+        }));
     }
     for fault in faults::of_ids() {
         let name = format!("paths::faults::{}", fault.name);
-        let record = |device: &Headless, view: &LitView| {
-            record_in(device, view, in_bricks(view, AccelChoice::Tree))
+        let found_in_bricks = |device: &Headless, view: &LitView| {
+            let accel = in_bricks(view, AccelChoice::Tree);
+            Ok(certify(view, &record_in(device, view, accel)?))
         };
-        trials.push(Trial::test(name, move || is_found(&fault, record)));
+        trials.push(Trial::test(name, move || is_found(&fault, found_in_bricks)));
     }
     for (name, spoil) in inputs::ALL {
         let name = format!("paths::faults::input_{name}");
@@ -99,22 +100,8 @@ fn certify(view: &LitView, recording: &PathRecording) -> LitCertificate {
     Checker::new(&view.scene).unwrap().certify_paths(recording)
 }
 
-/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
-fn is_legal(view: &LitView, recording: &PathRecording) -> Result<(), Failed> {
-    let certificate = certify(view, recording);
-    let stages = certificate.stages();
-    let is_telling = stages.checked > 10_000
-        && stages.decided + stages.open > stages.checked / 1000 * 999
-        && stages.open < stages.checked / 20;
-    if certificate.is_legal() && is_telling {
-        Ok(())
-    } else {
-        Err(format!("{certificate}\n{certificate:#?}").into())
-    }
-}
-
 fn legal(view: &LitView) -> Result<(), Failed> {
-    is_legal(view, &record(headless()?, view)?)
+    is_legal(&certify(view, &record(headless()?, view)?))
 }
 
 /// Paths are legal with every structure.
@@ -122,7 +109,7 @@ fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
     let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
-    is_legal(&view, &record_in(headless()?, &view, accel)?)
+    is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 
 /// Paths are legal in several bricks between which equal spheres are divided.
@@ -135,29 +122,6 @@ fn in_bricks(view: &LitView, choice: AccelChoice) -> Accel {
     };
     assert!(spheres.iter().any(|sphere| brick_of(sphere) > 1), "none is in several");
     accel
-}
-
-/// Every fault is found in the stage in which it was inserted.
-fn is_found(
-    fault: &Fault,
-    record: impl Fn(&Headless, &LitView) -> Result<PathRecording, Failed>,
-) -> Result<(), Failed> {
-    let Fault { file, find, replace, stage, .. } = *fault;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("shaders")
-        .join(file.split('#').next().unwrap_or(file));
-    if !std::fs::read_to_string(path)?.contains(find) {
-        return Err(format!("{file} has no `{find}`").into());
-    }
-    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-    let view = (fault.view)();
-    let certificate = certify(&view, &record(&Headless::open(&options)?, &view)?);
-    match certificate.violations.first() {
-        None => Err(format!("the fault was not found: {certificate}").into()),
-        Some(first) if first.stage != stage => Err(format!("elsewhere: {certificate}").into()),
-        Some(_) => Ok(()),
-    }
 }
 
 /// The device was given other inputs than the requested ones.
@@ -174,11 +138,7 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
     if let Some(change) = spoilt {
         change(&mut recording);
     }
-    let certificate = certify(&view, &recording);
-    if certificate.outcome() != Outcome::Violated {
-        return Err(format!("the fault was not found: {certificate}").into());
-    }
-    Ok(())
+    is_violated(&certify(&view, &recording))
 }
 
 /// For a large film the rectangle in the middle is recorded. Its paths are not legal for another rectangle.
@@ -191,12 +151,9 @@ fn part_of_a_large_film() -> Result<(), Failed> {
     if recording.given.origin != [22, 7] || recording.given.size != [256, 256] {
         return Err(format!("{:?}, {:?}", recording.given.origin, recording.given.size).into());
     }
-    is_legal(&view, &recording)?;
+    is_legal(&certify(&view, &recording))?;
     recording.given.origin[0] += 1;
-    match certify(&view, &recording).outcome() {
-        Outcome::Violated => Ok(()),
-        _ => Err("of another place".into()),
-    }
+    is_violated(&certify(&view, &recording))
 }
 
 fn stops_when_told(headless: &'static Headless) {

@@ -4,9 +4,9 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::verify::Outcome;
 
-use super::scenes::LitView;
 use super::{certify, record};
 use crate::headless;
+use crate::light::scenes::LitView;
 use crate::support::random_light;
 
 /// The seeds of the scenes, with one test for each scene.

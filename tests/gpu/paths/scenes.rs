@@ -2,28 +2,15 @@
 
 use std::sync::Arc;
 
-use pinhole::camera::{Camera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
+use pinhole::camera::{PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{Integrator, LightSampling, PathTracing, RenderSettings, Sampling};
 use pinhole::scene::material::Material;
-use pinhole::{Appearance, Film, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties, View};
+use pinhole::{Appearance, Film, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties};
 
-/// A scene with its render settings and its view.
-pub(crate) struct LitView {
-    pub(crate) scene: Scene,
-    pub(crate) camera: Box<dyn Camera>,
-    pub(crate) film: Film,
-    pub(crate) settings: RenderSettings,
-}
-
-impl LitView {
-    /// The camera and the film.
-    pub(crate) fn seen(&self) -> View<'_> {
-        View::new(self.camera.as_ref(), self.film)
-    }
-}
+use crate::light::scenes::LitView;
 
 type Named = (&'static str, fn() -> LitView);
 

@@ -1,36 +1,14 @@
 //! Faults of the kernels of studios that the checker must find, with the stage in which it must find them.
 
-use pinhole::verify::LitStage;
 use pinhole::verify::LitStage::{
     Accumulate, Ambient, Extend, Gather, Illuminate, Shadow, Start, Surface, Vertex,
 };
 
 use super::scenes;
-use crate::light::scenes::LitView;
-
-/// A shader edit that is a fault, with a view in which it is visible.
-pub(crate) struct Fault {
-    pub(crate) name: &'static str,
-    pub(crate) stage: LitStage,
-    pub(crate) view: fn() -> LitView,
-    pub(crate) file: &'static str,
-    pub(crate) find: &'static str,
-    pub(crate) replace: &'static str,
-}
-
-type Row = (&'static str, LitStage, fn() -> LitView, &'static str, &'static str, &'static str);
+use crate::lit::{Fault, Row, faults};
 
 pub(crate) fn all() -> impl Iterator<Item = Fault> {
-    [RAYS, SURFACES, SHADOWS, LIGHTS, AMBIENT, CATCHERS, SUMS].into_iter().flatten().map(
-        |&(name, stage, view, file, find, replace)| Fault {
-            name,
-            stage,
-            view,
-            file,
-            find,
-            replace,
-        },
-    )
+    faults(&[RAYS, SURFACES, SHADOWS, LIGHTS, AMBIENT, CATCHERS, SUMS])
 }
 
 const RAYS: &[Row] = &[

@@ -4,19 +4,16 @@ mod faults;
 mod inputs;
 mod scenes;
 
-use std::path::Path;
-
 use libtest_mimic::{Failed, Trial};
 use pinhole::LayerSet;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan};
-use pinhole::gpu::{Decision, Headless, HeadlessOptions, SceneBuffers};
-use pinhole::internals::ShaderEdit;
+use pinhole::gpu::{Decision, Headless, SceneBuffers};
 use pinhole::verify::{Checker, LitCertificate, LitRecording, StudioRecording};
 
 use crate::headless;
 use crate::light::scenes::{LitView, studios};
+use crate::lit::{is_found, is_legal, is_violated};
 use crate::support::random_light;
-use faults::Fault;
 
 /// Maximum size of a binding in bytes for which a scene of 300 spheres has four bricks.
 const SMALL_BINDING: u64 = 16 * 100;
@@ -45,7 +42,9 @@ pub(crate) fn trials() -> Vec<Trial> {
     }
     for fault in faults::all() {
         let name = format!("studio::faults::{}", fault.name);
-        trials.push(Trial::test(name, move || is_found(&fault)));
+        trials.push(Trial::test(name, move || {
+            is_found(&fault, |device, view| Ok(certify(view, &record(device, view)?)))
+        }));
     }
     for (name, spoil) in inputs::ALL {
         let name = format!("studio::faults::input_{name}");
@@ -90,23 +89,8 @@ fn certify(view: &LitView, recording: &StudioRecording) -> LitCertificate {
     Checker::new(&view.scene).unwrap().certify_studio(recording)
 }
 
-/// Asserts that a recording is legal, and that the check is meaningful: most stages have a single legal result.
-fn is_legal(view: &LitView, recording: &StudioRecording) -> Result<(), Failed> {
-    let certificate = certify(view, recording);
-    let stages = certificate.stages();
-    let is_telling = stages.checked > 10_000
-        && stages.decided + stages.open > stages.checked / 1000 * 999
-        && stages.open < stages.checked / 20;
-    println!("{certificate}");
-    if certificate.is_legal() && is_telling {
-        Ok(())
-    } else {
-        Err(format!("{certificate}\n{:#?}\n{certificate:#?}", certificate.named()).into())
-    }
-}
-
 fn legal(view: &LitView) -> Result<(), Failed> {
-    is_legal(view, &record(headless()?, view)?)
+    is_legal(&certify(view, &record(headless()?, view)?))
 }
 
 /// Studios are legal with every structure.
@@ -114,7 +98,7 @@ fn legal_in(choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
     let view = scenes::many();
     let spheres = view.scene.spheres();
     let accel = AccelPlan::for_rays(spheres, choice, binding_bytes, u64::MAX).build(spheres);
-    is_legal(&view, &record_in(headless()?, &view, accel)?)
+    is_legal(&certify(&view, &record_in(headless()?, &view, accel)?))
 }
 
 /// Random scenes in random studios are legal. For more scenes, run `cargo bench --bench verify -- studio-campaign 500`.
@@ -133,27 +117,6 @@ fn random(seed: u64) -> Result<(), Failed> {
     }
 }
 
-/// Every fault is found in the stage in which it was inserted.
-fn is_found(fault: &Fault) -> Result<(), Failed> {
-    let Fault { file, find, replace, stage, .. } = *fault;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("shaders")
-        .join(file.split('#').next().unwrap_or(file));
-    if !std::fs::read_to_string(path)?.contains(find) {
-        return Err(format!("{file} has no `{find}`").into());
-    }
-    let edit = ShaderEdit { file: file.into(), find: find.into(), replace: replace.into() };
-    let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
-    let view = (fault.view)();
-    let certificate = certify(&view, &record(&Headless::open(&options)?, &view)?);
-    println!("{certificate}");
-    match certificate.violations.first() {
-        None => Err(format!("the fault was not found: {certificate}").into()),
-        Some(first) if first.stage != stage => Err(format!("elsewhere: {certificate}").into()),
-        Some(_) => Ok(()),
-    }
-}
-
 /// The device was given other inputs than the requested ones, or the recording is damaged.
 fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
     let view = inputs::view();
@@ -168,9 +131,5 @@ fn input_fault_is_found(spoil: inputs::Spoil) -> Result<(), Failed> {
     if let Some(change) = spoilt {
         change(&mut recording);
     }
-    let certificate = certify(&view, &recording);
-    if certificate.is_legal() {
-        return Err(format!("the fault was not found: {certificate}").into());
-    }
-    Ok(())
+    is_violated(&certify(&view, &recording))
 }
