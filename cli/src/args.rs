@@ -84,6 +84,11 @@ pub(super) struct RenderArgs {
     /// How the two pictures of a stereo camera are written [default: side-by-side]
     #[arg(long, value_enum)]
     pub(super) stereo: Option<Stereo>,
+    /// Judge the samples of the picture before they are written, and write the certificate into the file, for
+    /// `pinhole verify PICTURE --scene SCENE`. Pictures with light are compared with the CPU reference's, which takes as
+    /// long as that takes
+    #[arg(long, conflicts_with_all = ["print_scene", "stereo"])]
+    pub(super) certify: bool,
     #[cfg(feature = "gpu")]
     #[command(flatten)]
     pub(super) profile: super::profile::ProfileArgs,
@@ -215,6 +220,11 @@ impl From<Structure> for AccelChoice {
     }
 }
 
+/// Arguments of `verify` that say nothing about a picture that was written.
+fn not_of_pictures() -> impl IntoIterator<Item = &'static str> {
+    RENDERING.into_iter().chain(CAMERA).filter(|id| *id != "path").chain(["report"])
+}
+
 /// Arguments that describe the camera and the size of the picture.
 pub(super) const CAMERA: [&str; 21] = [
     "size",
@@ -260,13 +270,18 @@ const RENDERING: [&str; 12] = [
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
     wrong), `violations` (the first hundred: pixel, stage, message), `paths` (only with the integrator `path`: paths, \
     stages, upload, violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
-     stages and so on), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
+     stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
+     outcome), `outcome` (proved, undecided, violated), `legal`, `command`. `version` and `command` are those \
     of the program that rendered. New versions may add keys, but do not change these."
 )]
 pub(super) struct VerifyArgs {
-    /// File to check: a scene file or a data file, as for `render`
+    /// File to check: a scene file or a data file, as for `render`; or with --scene a picture
     #[arg(value_name = "SCENE_OR_DATA", required_unless_present = "replay")]
     pub(super) path: Option<PathBuf>,
+    /// The scene file or data file of a picture that `render --certify` wrote: check the picture's samples and its
+    /// certificate, which says the other arguments of `render`. This needs no adapter
+    #[arg(long, value_name = "SCENE_OR_DATA", conflicts_with_all = not_of_pictures())]
+    pub(super) scene: Option<PathBuf>,
     #[command(flatten)]
     pub(super) view: ViewArgs,
     #[command(flatten)]
@@ -288,7 +303,7 @@ pub(super) struct VerifyArgs {
     #[arg(long, value_name = "RUN")]
     pub(super) save: Option<PathBuf>,
     /// Check a saved recording again; this needs no adapter
-    #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING.into_iter().chain(CAMERA))]
+    #[arg(long, value_name = "RUN", conflicts_with_all = RENDERING.into_iter().chain(CAMERA).chain(["scene"]))]
     pub(super) replay: Option<PathBuf>,
 }
 
@@ -416,7 +431,7 @@ mod tests {
     fn replay_excludes_all_arguments_that_describe_the_picture() {
         let arguments = Arguments::command();
         let verify = arguments.find_subcommand("verify").unwrap();
-        let others = ["json", "report", "replay", "help"];
+        let others = ["json", "report", "replay", "scene", "help"];
         let ids = verify.get_arguments().map(|argument| argument.get_id().as_str());
         let rendering: Vec<_> = ids.filter(|id| !others.contains(id)).collect();
         let excluded: Vec<_> = RENDERING.into_iter().chain(CAMERA).collect();

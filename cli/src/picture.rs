@@ -37,6 +37,8 @@ pub(super) struct Outputs {
     layers: Vec<(Layer, PathBuf)>,
     /// What is drawn over a PNG.
     annotations: Annotations,
+    /// The certificate that the picture carries.
+    certificate: Option<String>,
 }
 
 impl Outputs {
@@ -50,6 +52,7 @@ impl Outputs {
             inside: LayerSet::COLOR,
             layers: Vec::new(),
             annotations: Annotations::default(),
+            certificate: None,
         };
         for text in layers {
             match parse_layer(text)? {
@@ -69,8 +72,25 @@ impl Outputs {
         Ok(outputs)
     }
 
+    /// A picture of this format that is not written.
+    pub(super) fn unwritten(format: PictureFormat) -> Self {
+        Self {
+            format,
+            picture: None,
+            inside: LayerSet::COLOR,
+            layers: Vec::new(),
+            annotations: Annotations::default(),
+            certificate: None,
+        }
+    }
+
     pub(super) fn format(&self) -> PictureFormat {
         self.format
+    }
+
+    /// What is drawn over a PNG.
+    pub(super) fn annotations(&self) -> &Annotations {
+        &self.annotations
     }
 
     /// Returns these outputs with annotations that are drawn over a PNG.
@@ -78,9 +98,19 @@ impl Outputs {
         Self { annotations, ..self }
     }
 
-    /// Encodes the picture as PNG, with its annotations.
+    /// Returns these outputs with a certificate that the picture carries; a PNG then has no annotations.
+    pub(super) fn with_certificate(self, certificate: String) -> Self {
+        Self { certificate: Some(certificate), ..self }
+    }
+
+    /// Encodes the picture as PNG, with its annotations or its certificate.
     fn png(&self, image: &Image, encoding: &Encoding) -> Result<Vec<u8>, png::PngError> {
         let _phase = profile::phase("encode");
+        if let Some(certificate) = &self.certificate {
+            let size = [image.width(), image.height()];
+            let samples = png::samples(image, encoding)?;
+            return png::encode_certified(size, encoding, &samples, certificate);
+        }
         png::encode_annotated(image, encoding, &self.annotations)
     }
 
@@ -92,6 +122,7 @@ impl Outputs {
             inside: self.inside,
             layers: self.layers.iter().map(|(layer, path)| (*layer, name(path))).collect(),
             annotations: self.annotations.clone(),
+            certificate: self.certificate.clone(),
         }
     }
 
@@ -161,7 +192,9 @@ impl Outputs {
             (Some(path), PictureFormat::Exr) => {
                 let file = unnamed_with(path, |file| {
                     let sink = std::io::BufWriter::new(file);
-                    match exr::write(image, self.inside, encoding, adapter, sink) {
+                    let certificate = self.certificate.as_deref();
+                    let remarks = exr::Remarks { adapter, certificate };
+                    match exr::write(image, self.inside, encoding, remarks, sink) {
                         Err(exr::ExrError::Sink(error)) => Err(error),
                         written => written.map_err(std::io::Error::other),
                     }

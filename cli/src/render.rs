@@ -9,6 +9,7 @@ use anyhow::Context;
 
 use super::annotation::AnnotationFlags;
 use super::args::{RenderArgs, Stereo};
+use super::certified;
 use super::color_flags::ColorFlags;
 #[cfg(feature = "gpu")]
 use super::device::explained;
@@ -39,7 +40,7 @@ use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, RenderPlan, UploadWatch};
 use pinhole::image::encoding::Encoding;
-use pinhole::image::{Image, LayerSet};
+use pinhole::image::{Image, Layer, LayerSet};
 use pinhole::render::Picture;
 #[cfg(feature = "gpu")]
 use pinhole::render::Watch;
@@ -57,7 +58,10 @@ pub(super) struct Job {
 
 impl Job {
     pub(super) fn new(args: &RenderArgs, output: &Path) -> Result<Self, Failure> {
-        let outputs = Outputs::new(output, &args.layers)?;
+        Self::with_outputs(args, Outputs::new(output, &args.layers)?)
+    }
+
+    pub(super) fn with_outputs(args: &RenderArgs, outputs: Outputs) -> Result<Self, Failure> {
         let stop_rule = StopRule::new(&args.stop_rule)?;
         let light = LightFlags::new(&args.light)?.with_open_end(stop_rule.open_end());
         let color = ColorFlags::new(&args.color)?;
@@ -107,6 +111,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
 
 fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(wanted) = frames::Wanted::new(args)? {
+        if args.certify {
+            return Err(Failure::usage(
+                "--certify: only single pictures are certified; render the frames one by one",
+            ));
+        }
         return frames::run(args, &wanted, Job::new(args, wanted.picture())?);
     }
     let started = Instant::now();
@@ -153,6 +162,16 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
         Outputs::write_both(&outputs, images.as_slice(), &encoding, adapter)?;
         said(quiet, &input, started);
         return Ok(());
+    }
+    if args.certify {
+        certified::check(&input, !outputs.annotations().is_empty())?;
+        // Means are of as many samples as were taken.
+        let layers = layers.with(Layer::Samples);
+        let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
+        let certified = certified::of_render(&mut input, &outputs, &image, &encoding, adapter)?;
+        outputs.with_certificate(certified.text).write(&image, &encoding, adapter, None)?;
+        said(quiet, &input, started);
+        return certified.verdict;
     }
     let image = render_joined(&input, &job.stop_rule, &views, layers, &opened)?;
     outputs.write(&image, &encoding, adapter, None)?;

@@ -11,15 +11,19 @@ use super::speak::answer;
 use super::verify_lit::LitPicture;
 use super::verify_output::VerifyOutputs;
 use super::verify_report::Report;
-use super::{progress, threads};
+use super::{progress, threads, verify_picture};
+use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{self, Run};
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
 
 pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    let Recorded { run, outputs, light, lit } = match (&args.replay, &args.path) {
+    if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
+        return verify_picture::run(args, picture, scene);
+    }
+    let Recorded { run, outputs, light, denoiser, lit } = match (&args.replay, &args.path) {
         (Some(path), _) => {
             let (run, outputs) = replayed(path, args)?;
-            Recorded { run, outputs, light: None, lit: None }
+            Recorded { run, outputs, light: None, denoiser: None, lit: None }
         }
         (None, Some(path)) => recorded::recorded(path, args)?,
         (None, None) => return Err(Failure::usage("name a scene or data file, or --replay RUN")),
@@ -28,15 +32,20 @@ pub(super) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
     drop(checker);
-    let report = Report::new(&run, &certificate, light.as_ref());
+    let report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
     progress::clear();
     answer(report.table().as_bytes()).context("standard output: cannot be written")?;
     outputs.write(&run, &certificate, &report, lit.as_ref())?;
     let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
-    match (verdict(&certificate), of_light) {
-        // A violation says more than what is undecided.
+    let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
+    worse(worse(verdict(&certificate), of_light), of_denoiser)
+}
+
+/// The first failure, but a violation says more than what is undecided.
+fn worse(first: Result<(), Failure>, second: Result<(), Failure>) -> Result<(), Failure> {
+    match (first, second) {
         (Err(Failure::Undecided(_)), Err(worse @ Failure::CheckFailed(_))) => Err(worse),
-        (of_picture, of_light) => of_picture.and(of_light),
+        (first, second) => first.and(second),
     }
 }
 
@@ -97,12 +106,28 @@ fn verdict_of_light(certificate: &LitCertificate) -> Result<(), Failure> {
     }
 }
 
+fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> {
+    let DenoiseCertificate { pixels, undecided: vague, violation_count, .. } = *certificate;
+    if certificate.outcome() == Outcome::Undecided {
+        let what = format!("the bounds of {vague} of {pixels} denoised pixels say little");
+        return Err(undecided(&what));
+    }
+    match certificate.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::CheckFailed(anyhow!(
+            "the denoised picture is not legal: {violation_count} of {pixels} pixels; the first is {first}"
+        ))),
+    }
+}
+
 /// What is to be checked and written.
 struct Recorded {
     run: Run,
     outputs: VerifyOutputs,
     /// The certificate of the light, if it was checked.
     light: Option<LitCertificate>,
+    /// The certificate of the denoiser, if the scene asks for it.
+    denoiser: Option<DenoiseCertificate>,
     /// The picture with light, for the page.
     lit: Option<LitPicture>,
 }
@@ -128,7 +153,9 @@ mod recorded {
     use crate::speak::tell;
     use crate::verify_report::command_line;
     use crate::with_scene::{upload, with_structures};
-    use crate::{interrupt, memory, prices, progress, self_test, verify_light, verify_lit};
+    use crate::{
+        interrupt, memory, prices, progress, self_test, verify_denoiser, verify_light, verify_lit,
+    };
     use pinhole::accel::Structure;
     use pinhole::gpu::{Headless, Progress};
     use pinhole::verify::run_file::Provenance;
@@ -186,12 +213,17 @@ mod recorded {
         let samples = args.paths.unwrap_or(1);
         let certify = || verify_light::certify(&headless, &input, samples, choice);
         let light = is_lit.then(certify).transpose()?;
+        let denoiser = input
+            .settings
+            .is_denoised
+            .then(|| verify_denoiser::certify(&headless, &input, choice))
+            .transpose()?;
         let lit = (is_lit && outputs.has_page())
             .then(|| verify_lit::render(&headless, &input, choice))
             .transpose()?;
         let run =
             Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-        Ok(Recorded { run, outputs, light, lit })
+        Ok(Recorded { run, outputs, light, denoiser, lit })
     }
 
     fn provenance(headless: &Headless, structure: Structure) -> Provenance {

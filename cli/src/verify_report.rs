@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::adapter::AdapterReport;
+use super::verify_denoiser::DenoiserReport;
 use super::verify_light::LightReport;
 use pinhole::internals::text::one_line;
+use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{Certificate, LitCertificate, Outcome, Verdict, Violation};
 
@@ -34,6 +36,9 @@ pub(super) struct Report {
     /// The check of the light of a studio, for a scene with the integrator `studio`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) studio: Option<LightReport>,
+    /// The check of the denoiser, for a scene whose picture is denoised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) denoiser: Option<DenoiserReport>,
     pub(super) outcome: &'static str,
     pub(super) legal: bool,
     pub(super) command: String,
@@ -84,11 +89,13 @@ impl Report {
         run: &Run,
         certificate: &Certificate,
         light: Option<&LitCertificate>,
+        denoiser: Option<&DenoiseCertificate>,
     ) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
         let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);
-        let outcome = certificate.outcome().max(of_light);
+        let of_denoiser = denoiser.map_or(Outcome::Proved, DenoiseCertificate::outcome);
+        let outcome = certificate.outcome().max(of_light).max(of_denoiser);
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter {
@@ -113,6 +120,7 @@ impl Report {
             violations: certificate.violations.iter().take(LISTED).map(Listed::from).collect(),
             paths: light.filter(|light| !light.is_studio).map(LightReport::from),
             studio: light.filter(|light| light.is_studio).map(LightReport::from),
+            denoiser: denoiser.map(DenoiserReport::from),
             outcome: outcome.name(),
             legal: outcome == Outcome::Proved,
             command: one_line(&provenance.command),
@@ -146,6 +154,12 @@ impl Report {
             (false, Some(_), _) => {
                 "NOT legal: the data on the device are not those of this scene and view".to_owned()
             }
+            (false, None, 0)
+                if self.light().is_none_or(|light| light.violation_count == 0)
+                    && self.denoiser.is_some() =>
+            {
+                "NOT legal: violations in the denoised picture".to_owned()
+            }
             (false, None, 0) if self.studio.is_some() => {
                 "NOT legal: violations in the light of the studio".to_owned()
             }
@@ -164,11 +178,13 @@ impl Report {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
         let adapter = one_line(&self.adapter.adapter.line());
-        let light = self.light().map_or(String::new(), |light| format!("{}\n", light.line));
+        let line = |line: String| line + "\n";
+        let light = self.light().map_or(String::new(), |light| line(light.line.clone()));
+        let denoiser = self.denoiser.as_ref().map_or(String::new(), |found| line(found.line()));
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
-             structure: {structure}\n{}\n{light}{}\n",
+             structure: {structure}\n{}\n{light}{denoiser}{}\n",
             16 * spheres,
             self.table,
             self.verdict()

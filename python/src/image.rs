@@ -140,8 +140,8 @@ pub(crate) fn png_of<'py>(
 impl Picture {
     fn exr_bytes(&self) -> Outcome<Vec<u8>> {
         let mut sink = Cursor::new(Vec::new());
-        let adapter = self.adapter.as_deref();
-        exr::write(&self.image, self.layers, &self.encoding, adapter, &mut sink)
+        let remarks = exr::Remarks { adapter: self.adapter.as_deref(), ..exr::Remarks::default() };
+        exr::write(&self.image, self.layers, &self.encoding, remarks, &mut sink)
             .map_err(Fault::input)?;
         Ok(sink.into_inner())
     }

@@ -14,13 +14,13 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 // provides: entry_of
 // needs: Entry, hit_index, make_entry
 
-// Rays with two vectors for each pixel: origin and distance; direction, and 1 if the ray misses the scene's box or 2 if
-// it hits the box.
+// Rays with four vectors for each pixel, of which the first two are of this ray: origin and distance; direction, and 1
+// if the ray misses the scene's box or 2 if it hits the box.
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
     let entry = make_entry(pixel_in_tile);
-    let first = 2u * hit_index(pixel_in_tile);
+    let first = 4u * hit_index(pixel_in_tile);
     rays[first] = vec4f(entry.ray.origin, entry.distance);
     rays[first + 1u] = vec4f(entry.ray.direction, select(1.0, 2.0, entry.is_inside));
     return entry;
@@ -36,7 +36,7 @@ fn entry_of(pixel_in_tile: vec2u) -> Entry {
 @group(0) @binding(3) var<storage, read_write> rays: array<vec4f>;
 
 fn entry_of(pixel_in_tile: vec2u) -> Entry {
-    let first = 2u * hit_index(pixel_in_tile);
+    let first = 4u * hit_index(pixel_in_tile);
     let origin = rays[first];
     let direction = rays[first + 1u];
     let inverse = inverse_direction(direction.xyz);

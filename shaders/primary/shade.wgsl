@@ -2,8 +2,8 @@
 // brick, and that of the first brick also the misses. Twin: src/cpu/shade.rs.
 // dispatched: for each band and each brick, with 8x8 pixels for each workgroup.
 // provides: shade
-// needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit, make_entry,
-//   shape_normal, shapes, sphere_color, start_fences, surface_color, write_layers, write_with_alpha
+// needs: Hit, NO_HIT, NO_ID, SHADING_TRANSPARENT, WORKGROUP_SIDE, brick, frame, hit_index, load_hit,
+//   shade_entry, shape_normal, shapes, sphere_color, start_fences, surface_color, write_layers, write_with_alpha
 
 @compute @workgroup_size(WORKGROUP_SIDE, WORKGROUP_SIDE)
 fn shade(@builtin(global_invocation_id) invocation: vec3u) {
@@ -29,7 +29,7 @@ fn shade(@builtin(global_invocation_id) invocation: vec3u) {
     // The depth is NO_HIT for a miss, or the result of `occluded`, which records no ids.
     var depth = hit.t;
     if (is_here) {
-        let entry = make_entry(invocation.xy);
+        let entry = shade_entry(invocation.xy);
         normal = shape_normal(entry.ray, shapes[shape_index]);
         color = surface_color(sphere_color(shape_index).rgb, normal, entry.ray);
         // `hit.distance` belongs to this `t`. The ray of another kernel may enter the box at a slightly different

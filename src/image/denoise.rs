@@ -7,6 +7,9 @@ use crate::image::{Image, Layer, LayerSet};
 /// The number of passes of the filter; each reaches twice as far as the one before.
 pub(crate) const PASSES: u32 = 5;
 
+/// How many pixels away light may be that the filter mixes into a pixel, along each axis.
+pub const REACH: u32 = 2 * ((1 << PASSES) - 1);
+
 /// A picture lacks a layer that denoising needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(

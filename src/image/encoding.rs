@@ -197,6 +197,12 @@ impl Encoding {
         let gain = self.exposure.exp2();
         self.tone.apply(linear.map(|x| x * gain))
     }
+
+    /// The least and the greatest light of a display for light of the scene between the ends of a range.
+    pub(crate) fn display_range(&self, ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+        let gain = self.exposure.exp2();
+        self.tone.range(ends.map(|linear| linear.map(|x| x * gain)))
+    }
 }
 
 #[cfg(test)]

@@ -40,6 +40,19 @@ impl ToneCurve {
             Self::Agx => agx(linear.map(bounded)),
         }
     }
+
+    /// The least and the greatest light of a display for light of the scene between the ends of a range.
+    pub(crate) fn range(self, ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+        match self {
+            Self::None => ends,
+            Self::Filmic => {
+                let [low, high] = ends.map(|linear| linear.map(|x| filmic(bounded(x))));
+                // Mathematically the curve rises; each of its roundings is at most half an ULP.
+                [low.map(|x| x * (1.0 - 1e-6)), high.map(|x| (x * (1.0 + 1e-6)).min(1.0))]
+            }
+            Self::Agx => agx_range(ends.map(|linear| linear.map(bounded))),
+        }
+    }
 }
 
 /// The value at which inputs are clamped: everything brighter is white, and squares stay finite.
@@ -56,26 +69,50 @@ fn filmic(x: f32) -> f32 {
     (x * (a * x + b) / (x * (c * x + d) + e)).min(1.0)
 }
 
+/// The first and the last matrix of AgX.
+const INSET: [[f32; 3]; 3] = [
+    [0.842_479_06, 0.078_433_6, 0.079_223_745],
+    [0.042_328_242, 0.878_468_64, 0.079_166_13],
+    [0.042_375_655, 0.078_433_6, 0.879_143],
+];
+const OUTSET: [[f32; 3]; 3] = [
+    [1.196_879, -0.098_020_88, -0.099_029_74],
+    [-0.052_896_85, 1.151_903_1, -0.098_961_18],
+    [-0.052_971_636, -0.098_043_45, 1.151_073_7],
+];
+
 /// Wrensch's steps: inset, logarithm, sigmoid, outset, and a power of 2.2 that makes light linear again.
 fn agx(linear: [f32; 3]) -> [f32; 3] {
-    const INSET: [[f32; 3]; 3] = [
-        [0.842_479_06, 0.078_433_6, 0.079_223_745],
-        [0.042_328_242, 0.878_468_64, 0.079_166_13],
-        [0.042_375_655, 0.078_433_6, 0.879_143],
-    ];
-    const OUTSET: [[f32; 3]; 3] = [
-        [1.196_879, -0.098_020_88, -0.099_029_74],
-        [-0.052_896_85, 1.151_903_1, -0.098_961_18],
-        [-0.052_971_636, -0.098_043_45, 1.151_073_7],
-    ];
+    product(&OUTSET, agx_encoded(linear)).map(decoded)
+}
+
+/// The steps before the outset, each of which rises.
+fn agx_encoded(linear: [f32; 3]) -> [f32; 3] {
     const MIN_EV: f32 = -12.473_93;
     const MAX_EV: f32 = 4.026_069;
-    let encoded = product(&INSET, linear).map(|x| {
+    product(&INSET, linear).map(|x| {
         // The logarithm of 0 is −∞, which is clamped to the range.
         let ev = x.log2().clamp(MIN_EV, MAX_EV);
         sigmoid((ev - MIN_EV) / (MAX_EV - MIN_EV))
-    });
-    product(&OUTSET, encoded).map(|x| x.clamp(0.0, 1.0).powf(2.2))
+    })
+}
+
+fn decoded(x: f32) -> f32 {
+    x.clamp(0.0, 1.0).powf(2.2)
+}
+
+/// The range of [`agx`]: the outset has negative numbers, so that the greatest of one channel needs the least of others.
+fn agx_range(ends: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+    /// More than the rounding errors of the polynomial, whose coefficients add up to 95, and of the outset.
+    const ERROR: f32 = 95.0 * 16.0 * f32::EPSILON;
+    let [low, high] = ends.map(agx_encoded);
+    let end = |a: [f32; 3], b: [f32; 3], error: f32| {
+        OUTSET.map(|row| {
+            let terms = (0..3).map(|i| row[i] * if row[i] > 0.0 { a[i] } else { b[i] });
+            decoded(terms.sum::<f32>() + error)
+        })
+    };
+    [end(low, high, -ERROR), end(high, low, ERROR)]
 }
 
 /// The contrast curve of AgX, as a polynomial.
@@ -127,6 +164,31 @@ mod tests {
                 assert!(g >= before - 1e-6 && g <= 1.0, "{curve:?} {x}: {g} after {before}");
                 assert!((r - g).abs() < 1e-3 && (b - g).abs() < 1e-3, "{curve:?} {x}: {r} {g} {b}");
                 before = g;
+            }
+        }
+    }
+
+    #[test]
+    fn a_range_holds_what_is_between_its_ends() {
+        for curve in ToneCurve::ALL {
+            for step in 0..20_000_u32 {
+                let at = |salt: u32| (step.wrapping_mul(salt) >> 8) as f32 / (1 << 24) as f32;
+                let low = [2_654_435_761, 2_246_822_519, 3_266_489_917]
+                    .map(|salt| (14.0 * at(salt) - 10.0).exp2());
+                let width = (-20.0 * at(668_265_263)).exp2();
+                let high = low.map(|x| x * (1.0 + width));
+                let between = [374_761_393, 2_869_860_233, 1_181_783_497].map(at);
+                let color = std::array::from_fn(|i| {
+                    (low[i] + between[i] * (high[i] - low[i])).clamp(low[i], high[i])
+                });
+                let [least, most] = curve.range([low, high]);
+                for ((found, least), most) in curve.apply(color).into_iter().zip(least).zip(most) {
+                    assert!(
+                        least <= found && found <= most,
+                        "{curve:?} {color:?} {low:?} {high:?}"
+                    );
+                    assert!(width > 1e-4 || most - least < 2e-3, "{curve:?}: {least} {most}");
+                }
             }
         }
     }

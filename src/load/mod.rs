@@ -57,6 +57,8 @@ mod numbers;
 mod open;
 #[cfg(feature = "pdb")]
 pub mod pdb;
+#[cfg(any(feature = "png", feature = "exr"))]
+pub mod picture;
 #[cfg(feature = "ply")]
 mod ply;
 pub mod raw;

@@ -42,13 +42,17 @@ mod certificate;
 mod checker;
 mod choices;
 pub mod conformance;
+pub mod denoised;
 mod hit;
 mod line;
 pub(crate) mod lit;
 mod lit_recording;
+pub mod means;
 mod number;
 mod outcome;
 pub(crate) mod paths;
+#[cfg(feature = "run-file")]
+pub mod picture_certificate;
 mod pixel;
 mod recording;
 mod rendered;
@@ -60,6 +64,7 @@ mod sphere;
 pub(crate) mod studio;
 mod upload;
 mod violation;
+pub mod written;
 
 pub use camera::LegalCameraRay;
 pub use certificate::{Certificate, Verdict};

@@ -58,7 +58,7 @@ impl PixelCheck<'_> {
         pixel: [u32; 2],
         legal: &mut LegalHits,
     ) -> Result<Judged, ViolationKind> {
-        let TracedPixel { ray, t, id } = self.recording.pixels[index];
+        let TracedPixel { ray, t, id, shading_ray } = self.recording.pixels[index];
         let layers = Layers::of(&self.recording.image, index);
         let camera_ray = self.model.ray(pixel);
         let Some(ray) = ray else {
@@ -101,7 +101,19 @@ impl PixelCheck<'_> {
         let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
-        let normal = self.check_hit(&layers, &entered, &line, depths, id)?;
+        let normal = match shading_ray {
+            // Shading is known only as well as the ray that it must have had.
+            None => {
+                let shading = (&line, entered.slack(), entered.direction);
+                self.check_hit(&layers, depths, id, shading)?
+            }
+            Some(ray) => {
+                let line = Line::new(ray.origin, ray.direction);
+                check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
+                let direction = ray.direction.map(exactly);
+                self.check_hit(&layers, depths, id, (&line, Slack::default(), direction))?
+            }
+        };
         Ok(Judged { verdict, depth, normal })
     }
 
@@ -132,10 +144,9 @@ impl PixelCheck<'_> {
     fn check_hit(
         &self,
         layers: &Layers,
-        entered: &EnteredRay,
-        line: &Line,
         depths: Interval,
         id: u32,
+        (line, slack, direction): (&Line, Slack, [Interval; 3]),
     ) -> Result<f64, ViolationKind> {
         if layers.id != id {
             return Err(ViolationKind::Id { found: layers.id, traced: id });
@@ -143,7 +154,7 @@ impl PixelCheck<'_> {
         if !depths.contains(layers.depth.into()) {
             return Err(ViolationKind::Depth { found: layers.depth, legal: depths });
         }
-        self.check_shading(layers, line, entered.slack(), entered.direction)
+        self.check_shading(layers, line, slack, direction)
     }
 
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact one, relative to its

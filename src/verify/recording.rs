@@ -1,9 +1,15 @@
 //! Recordings: the data that a device was given, and its results.
 
+use glam::{DVec3, Vec3};
+
 use crate::camera::film::Film;
 use crate::camera::{Camera, CameraKind, CameraVectors};
+use crate::geometry::bounds::Bounds;
 use crate::image::Image;
 use crate::render::PrimarySettings;
+
+/// The margin of the box that is expected, relative to its diagonal; a device may have a larger or a smaller one.
+const BOX_MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
 /// A recording: a picture as a device rendered it, the rays and hits that led to it, and the numbers that the device
 /// was given. The checker needs only this and the scene.
@@ -84,6 +90,37 @@ pub struct UploadedView {
     pub scene_max: [f32; 3],
 }
 
+impl UploadedView {
+    /// The numbers that a device is given for a camera, if the spheres lie between two corners: rays start where the nearest corner of the scene's box lies, if
+    /// the camera has a plane.
+    pub(super) fn expected(
+        camera: &RequestedCamera,
+        scene_origin: DVec3,
+        (min, max): (Vec3, Vec3),
+    ) -> Self {
+        let narrow = |v: DVec3| v.as_vec3().to_array();
+        let margin = Vec3::splat(BOX_MARGIN * (max - min).length());
+        let (min, max) = (min - margin, max + margin);
+        let CameraVectors { origin, right, up, forward, numbers } = camera.vectors;
+        let origin = origin - scene_origin;
+        let across = right.cross(up);
+        let ahead = |corner: DVec3| (corner - origin).dot(across) / forward.dot(across);
+        let corners = Bounds::between(min.as_dvec3(), max.as_dvec3()).corners();
+        let nearest = corners.into_iter().map(ahead).fold(f64::INFINITY, f64::min);
+        let advance = if camera.kind.is_linear() { nearest.max(0.0) as f32 } else { 0.0 };
+        Self {
+            origin: narrow(origin + f64::from(advance) * forward),
+            advance,
+            right: narrow(right),
+            up: narrow(up),
+            forward: narrow(forward),
+            numbers: numbers.map(|number| number as f32),
+            scene_min: min.to_array(),
+            scene_max: max.to_array(),
+        }
+    }
+}
+
 /// The distance of a miss, because kernels have no infinity.
 pub const NO_HIT: f32 = 1e30;
 
@@ -96,6 +133,8 @@ pub struct TracedPixel {
     pub t: f32,
     /// Index of that sphere in input order; [`NO_ID`](crate::image::NO_ID) for a miss.
     pub id: u32,
+    /// The ray with which the hit was shaded, which another kernel made; `None` for a miss, and where it was not recorded.
+    pub shading_ray: Option<TracedRay>,
 }
 
 /// A ray that a device traced, in the scene's frame, starting where it enters the scene's box.

@@ -94,6 +94,16 @@ pub(super) fn legal_color(
     normal: DVec3,
     direction: [Interval; 3],
 ) -> [Interval; 3] {
+    legal_color_near(shading, color, (normal, 0.0), direction)
+}
+
+/// The legal colours for a normal that is at most `off` from this one.
+pub(super) fn legal_color_near(
+    shading: Shading,
+    color: [f32; 3],
+    (normal, off): (DVec3, f64),
+    direction: [Interval; 3],
+) -> [Interval; 3] {
     let Shading::Headlight = shading else {
         return color.map(exactly);
     };
@@ -101,7 +111,8 @@ pub(super) fn legal_color(
     let half = DVec3::from(direction.map(|axis| 0.5 * (axis.high - axis.low)));
     let terms = normal.abs().dot(middle.abs() + half);
     let cosine = normal.dot(middle).abs();
-    let error = PAD * (normal.abs().dot(half) + gamma(3) * terms) + 4.0 * FLUSH;
+    let turned = off * (middle.length() + half.length());
+    let error = PAD * (normal.abs().dot(half) + gamma(3) * (terms + turned) + turned) + 4.0 * FLUSH;
     color.map(|c| {
         let c = f64::from(c);
         Interval {

@@ -14,7 +14,8 @@
 //! | `samples` | u32 | samples |
 //! | `variance` | f32 | variance |
 //!
-//! The attributes are `software`, and `adapter` if the adapter that rendered is known.
+//! The attributes are `software`, and `adapter` if the adapter that rendered is known. A picture that was certified has its
+//! certificate as [`CERTIFICATE`].
 
 use std::io::{self, Seek, Write};
 
@@ -32,8 +33,19 @@ use ::exr::prelude::{Compression, SmallVec};
 use crate::image::encoding::Encoding;
 use crate::image::{Image, Layer, LayerSet};
 
+/// The name of the attribute that holds a picture's certificate.
+pub const CERTIFICATE: &str = "pinhole-certificate";
+
+/// What a file says beside its picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Remarks<'a> {
+    /// Name of the adapter that rendered, if it is known.
+    pub adapter: Option<&'a str>,
+    /// The text of the picture's certificate, if it has one.
+    pub certificate: Option<&'a str>,
+}
+
 /// Writes a picture with colour, alpha and the `layers`. This format uses only the transparency of the encoding.
-/// `adapter` is the name of the adapter that rendered, if it is known.
 ///
 /// The picture is not copied: a few rows at a time go to the sink.
 ///
@@ -44,7 +56,7 @@ pub fn write(
     picture: &Image,
     layers: LayerSet,
     encoding: &Encoding,
-    adapter: Option<&str>,
+    remarks: Remarks<'_>,
     mut sink: impl Write + Seek,
 ) -> Result<(), ExrError> {
     let size = Vec2(picture.width() as usize, picture.height() as usize);
@@ -52,9 +64,11 @@ pub fn write(
         software_name: Text::new_or_none(concat!("pinhole ", env!("CARGO_PKG_VERSION"))),
         ..LayerAttributes::default()
     };
-    if let Some(adapter) = adapter {
-        let value = AttributeValue::Text(latin(adapter));
-        attributes.other.insert(latin("adapter"), value);
+    let texts = [("adapter", remarks.adapter), (CERTIFICATE, remarks.certificate)];
+    for (name, text) in texts {
+        if let Some(text) = text {
+            attributes.other.insert(latin(name), AttributeValue::Text(latin(text)));
+        }
     }
     let storage = Storage {
         compression: Compression::ZIP16,

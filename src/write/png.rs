@@ -9,6 +9,9 @@ use crate::image::encoding::{Bits, Encoding};
 use crate::image::{Image, Layer};
 use crate::parallel::for_each;
 
+/// The keyword of the text that holds a picture's certificate.
+pub const CERTIFICATE: &str = "pinhole-certificate";
+
 /// Number of pixels that a thread converts at a time.
 const CHUNK: usize = 1 << 14;
 
@@ -43,6 +46,15 @@ pub fn encode_annotated(
     })
 }
 
+/// The samples of a picture that [`encode`] would compress: RGB or, if the encoding is transparent, RGBA, row by row from
+/// the top, each of one byte or of two with the higher first.
+///
+/// # Errors
+/// If the picture lacks one of [the layers that the encoding needs](Encoding::layers).
+pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError> {
+    Ok(samples_of(picture, encoding)?.1)
+}
+
 /// The samples of a picture that [`encode_annotated`] would compress: RGB or, if the encoding is transparent, RGBA, row
 /// by row from the top, each of one byte or of two with the higher first. Movies are made of them.
 ///
@@ -74,7 +86,25 @@ fn encode_with(
     let color_type = color_type(encoding);
     let size = [picture.width(), picture.height()];
     draw(size, color_type.samples(), &mut samples);
-    write(size, color_type, depth, encoding.dots_per_inch(), &samples)
+    write(size, (color_type, depth), encoding.dots_per_inch(), None, &samples)
+}
+
+/// Encodes samples that [`samples`] returned for the same encoding as a PNG file, which carries a certificate as a text.
+///
+/// # Errors
+/// If the samples are not those of a picture of this size, or if the certificate is not ASCII.
+pub fn encode_certified(
+    size: [u32; 2],
+    encoding: &Encoding,
+    samples: &[u8],
+    certificate: &str,
+) -> Result<Vec<u8>, PngError> {
+    let depth = match encoding.bits() {
+        Bits::Eight => BitDepth::Eight,
+        Bits::Sixteen => BitDepth::Sixteen,
+    };
+    let kind = (color_type(encoding), depth);
+    write(size, kind, encoding.dots_per_inch(), Some(certificate), samples)
 }
 
 fn color_type(encoding: &Encoding) -> ColorType {
@@ -110,7 +140,7 @@ fn samples_of(picture: &Image, encoding: &Encoding) -> Result<(BitDepth, Vec<u8>
 /// # Errors
 /// If `rgb` does not have three bytes per pixel.
 pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
-    write(size, ColorType::Rgb, BitDepth::Eight, None, rgb)
+    write(size, (ColorType::Rgb, BitDepth::Eight), None, None, rgb)
 }
 
 /// Encodes sRGB bytes with alpha as a PNG file. `size` is the width and height; `rgba` has four bytes per pixel, row by
@@ -119,14 +149,14 @@ pub fn encode_rgb8(size: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, PngError> {
 /// # Errors
 /// If `rgba` does not have four bytes per pixel.
 pub fn encode_rgba8(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, PngError> {
-    write(size, ColorType::Rgba, BitDepth::Eight, None, rgba)
+    write(size, (ColorType::Rgba, BitDepth::Eight), None, None, rgba)
 }
 
 fn write(
     [width, height]: [u32; 2],
-    color: ColorType,
-    depth: BitDepth,
+    (color, depth): (ColorType, BitDepth),
     dots_per_inch: Option<f32>,
+    certificate: Option<&str>,
     samples: &[u8],
 ) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
@@ -142,6 +172,9 @@ fn write(
         PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }
     }));
     let failed = |error: png::EncodingError| PngError::Encoder { message: error.to_string() };
+    if let Some(certificate) = certificate {
+        encoder.add_text_chunk(CERTIFICATE.into(), certificate.into()).map_err(failed)?;
+    }
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(samples).map_err(failed)?;
     writer.finish().map_err(failed)?;

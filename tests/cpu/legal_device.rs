@@ -233,12 +233,13 @@ impl LegalDevice {
                         }
                     }
                 }
-                pixels.push(TracedPixel { ray: Some(ray), t, id });
+                let mut shading_ray = None;
                 layers.push(if id == NO_ID {
                     Pixel::miss(primary.background.to_array())
                 } else {
                     // Another kernel makes the ray anew.
                     let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
+                    shading_ray = Some(again);
                     let normal = self.normal(&again, scene.spheres()[id as usize]);
                     let d = again.direction;
                     let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
@@ -246,6 +247,7 @@ impl LegalDevice {
                     let depth = self.add(ray.distance, t);
                     Pixel { color, depth, normal, id, ..Pixel::miss(color) }
                 });
+                pixels.push(TracedPixel { ray: Some(ray), t, id, shading_ray });
             }
         }
         let image = image_of(film, &layers);

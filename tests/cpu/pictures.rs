@@ -119,7 +119,8 @@ fn written(
     adapter: Option<&str>,
 ) -> Result<Exr, ExrError> {
     let mut file = Vec::new();
-    exr_file::write(image, layers, &encoding, adapter, Cursor::new(&mut file))?;
+    let remarks = exr_file::Remarks { adapter, ..exr_file::Remarks::default() };
+    exr_file::write(image, layers, &encoding, remarks, Cursor::new(&mut file))?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -279,7 +280,8 @@ fn a_sink_that_fails_is_an_error() {
     let image = picture();
     let encoding = Encoding::default();
     let mut whole = Cursor::new(Vec::new());
-    exr_file::write(&image, LayerSet::ALL, &encoding, None, &mut whole).unwrap();
+    exr_file::write(&image, LayerSet::ALL, &encoding, exr_file::Remarks::default(), &mut whole)
+        .unwrap();
     let size = whole.into_inner().len();
     for room in [0, 3, 100, size / 2, size - 1] {
         for buffered in [false, true] {
@@ -287,9 +289,21 @@ fn a_sink_that_fails_is_an_error() {
             let written = match buffered {
                 true => {
                     let full = std::io::BufWriter::new(full);
-                    exr_file::write(&image, LayerSet::ALL, &encoding, None, full)
+                    exr_file::write(
+                        &image,
+                        LayerSet::ALL,
+                        &encoding,
+                        exr_file::Remarks::default(),
+                        full,
+                    )
                 }
-                false => exr_file::write(&image, LayerSet::ALL, &encoding, None, full),
+                false => exr_file::write(
+                    &image,
+                    LayerSet::ALL,
+                    &encoding,
+                    exr_file::Remarks::default(),
+                    full,
+                ),
             };
             let kind = match written {
                 Err(ExrError::Sink(error)) => error.kind(),

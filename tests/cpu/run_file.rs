@@ -22,7 +22,8 @@ pub(crate) fn made(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording 
         let direction = [-0.0, f32::from_bits(1), -1.0];
         let ray = TracedRay { origin: [1.0, f32::NAN, *depth], direction, distance: 0.1 };
         let ray = (*id != NO_ID).then_some(ray);
-        TracedPixel { ray, t: 0.3 * depth, id: *id }
+        let shading_ray = ray.map(|ray| TracedRay { distance: 0.2, ..ray });
+        TracedPixel { ray, t: 0.3 * depth, id: *id, shading_ray }
     });
     let vectors = camera.vectors();
     Recording {
@@ -198,16 +199,31 @@ fn every_byte_that_is_another_is_noticed() {
     assert_eq!(run_file::read(&altered).unwrap_err(), RunFileError::Altered);
 }
 
+/// Files of version 2 have no rays of shading.
+#[test]
+fn files_of_the_version_before_are_read() {
+    let bytes = small();
+    let older = with_header(&bytes, "\"pinhole_run\":\"3\"", "\"pinhole_run\":\"2\"");
+    let older = with_header(&older, "\"shaded\":", "\"seldom\":");
+    let [new, old] = [&bytes, &older].map(|bytes| run_file::read(bytes).unwrap().recording);
+    assert!(new.pixels.iter().any(|pixel| pixel.shading_ray.is_some()));
+    assert_eq!(new.pixels.len(), old.pixels.len());
+    for (new, old) in new.pixels.into_iter().zip(old.pixels) {
+        let without = TracedPixel { shading_ray: None, ..new };
+        assert_eq!(format!("{without:?}"), format!("{old:?}"));
+    }
+}
+
 #[test]
 fn other_files_and_other_versions() {
     for other in [&b""[..], b"PK\x03\x04", b"{}", &[0; 100], b"\x02\0\0\0\0\0\0\0{}"] {
         assert_eq!(run_file::read(other).unwrap_err(), RunFileError::NotRun);
     }
     let bytes = small();
-    let other = with_header(&bytes, "\"pinhole_run\":\"2\"", "\"pinhole_run\":\"3\"");
+    let other = with_header(&bytes, "\"pinhole_run\":\"3\"", "\"pinhole_run\":\"4\"");
     let error = run_file::read(&other).unwrap_err();
-    assert_eq!(error, RunFileError::Version { found: "3".to_owned() });
-    assert!(error.to_string().contains("of version 3"), "{error}");
+    assert_eq!(error, RunFileError::Version { found: "4".to_owned() });
+    assert!(error.to_string().contains("of version 4"), "{error}");
     let foreign = with_header(&bytes, "pinhole_run", "pinhole_fun");
     assert_eq!(run_file::read(&foreign).unwrap_err(), RunFileError::NotRun);
 }

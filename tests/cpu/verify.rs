@@ -16,10 +16,11 @@ use pinhole::verify::{
     Certificate, Checker, Outcome, Recording, Rendered, RequestedCamera, TracedPixel, UploadError,
     UploadedView, Verdict, ViolationKind,
 };
-use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View};
 
 use crate::legal_device::{Habit, LegalDevice};
 use crate::support::spheres;
+use crate::written::assert_is_not_accused;
 
 /// What a device is given; it has made nothing of it yet.
 pub(crate) fn given(scene: &Scene, camera: &dyn Camera, film: Film) -> Recording {
@@ -121,7 +122,7 @@ fn scenes() -> Vec<Scene> {
     .into()
 }
 
-fn certify(scene: &Scene, recording: &Recording) -> Certificate {
+pub(crate) fn certify(scene: &Scene, recording: &Recording) -> Certificate {
     Checker::new(scene).unwrap().certify(recording)
 }
 
@@ -150,6 +151,8 @@ fn assert_never_accused(name: &str, scene: &Scene, camera: &dyn Camera, film: Fi
             "{name}, {camera:?}, {habit:?}:\n{certificate}"
         );
         otherwise += certificate.rendered_otherwise.unwrap();
+        let view = View::new(camera, film);
+        assert_is_not_accused(name, scene, &view, &recording.image);
     }
     // Which says something only if habits differ.
     let is_seen = made[0].pixels.iter().any(|pixel| pixel.id != NO_ID);
@@ -205,7 +208,7 @@ fn the_smallest_lengths_are_not_accused() {
 }
 
 /// A recording of a device that rounds to the nearest.
-fn legal_recording() -> (Scene, Recording) {
+pub(crate) fn legal_recording() -> (Scene, Recording) {
     let scene = scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()));
     let camera = cameras(&scene).pop().unwrap();
     let film = Film::new(61, 47).unwrap();
@@ -265,7 +268,7 @@ fn a_miss_has_no_distance() {
     let (scene, recording) = legal_recording();
     let untraced = |index: usize, t, id| {
         let mut recording = recording.clone();
-        recording.pixels[index] = TracedPixel { ray: None, t, id };
+        recording.pixels[index] = TracedPixel { ray: None, t, id, shading_ray: None };
         let certificate = certify(&scene, &recording);
         certificate.violations.first().map(|violation| violation.kind.stage())
     };

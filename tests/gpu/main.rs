@@ -14,6 +14,7 @@ mod appearance;
 mod async_forms;
 mod bricks;
 mod compute;
+mod denoised;
 mod device;
 mod device_shape;
 mod embedding;
@@ -36,6 +37,7 @@ mod twin;
 mod update;
 mod verify;
 mod verify_views;
+mod written;
 
 use harness::{headless, trial};
 
@@ -53,6 +55,7 @@ fn main() {
             paths::trials(),
             embedding::trials(),
             host::trials(),
+            denoised::trials(),
             device::trials(),
             device_shape::trials(),
             structures::trials(),
@@ -63,6 +66,7 @@ fn main() {
             twin::trials(),
             update::trials(),
             verify::trials(),
+            written::trials(),
         ];
         groups.into_iter().flatten().collect()
     });

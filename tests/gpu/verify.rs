@@ -140,10 +140,10 @@ fn found(certificate: &Certificate) -> Result<(), Failed> {
 }
 
 /// A fault: its name, a view in which it is visible, and the replacement of a statement.
-type RenderFault = (&'static str, fn() -> View, &'static str);
+pub(crate) type RenderFault = (&'static str, fn() -> View, &'static str);
 
 /// Faults that replace the statement `return make_entry(pixel_in_tile);` in kernels that keep no rays.
-const RENDER_FAULTS: &[RenderFault] = &[
+pub(crate) const RENDER_FAULTS: &[RenderFault] = &[
     ("shifted_by_a_pixel", views::balls, "return make_entry(pixel_in_tile + vec2u(1u, 0u));"),
     (
         "origin_off_by_a_hundred_thousandth",

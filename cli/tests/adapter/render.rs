@@ -6,6 +6,7 @@ use libtest_mimic::Trial;
 use pinhole::gpu::Headless;
 use pinhole::image::color;
 use pinhole::scene_file::SceneFile;
+use pinhole::write::exr::Remarks;
 use pinhole::{Encoding, LayerSet, write};
 
 use crate::program::{command, command_on, succeed};
@@ -73,7 +74,8 @@ fn exr(headless: &'static Headless) {
     let image = headless.render(&view.scene, &view.seen(), &view.settings, LayerSet::ALL).unwrap();
     let mut expected = Cursor::new(Vec::new());
     let encoding = Encoding::default();
-    write::exr::write(&image, LayerSet::ALL, &encoding, Some(adapter), &mut expected).unwrap();
+    let remarks = Remarks { adapter: Some(adapter), ..Remarks::default() };
+    write::exr::write(&image, LayerSet::ALL, &encoding, remarks, &mut expected).unwrap();
     let found = std::fs::read(folder.path().join("out.exr")).unwrap();
     assert!(found == expected.into_inner(), "the file is not the library's");
 }

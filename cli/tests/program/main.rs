@@ -9,6 +9,7 @@ mod npy_files;
 mod arrays;
 mod bad_input;
 mod camera_path;
+mod certified;
 mod certify;
 mod colors;
 mod file_info;

@@ -31,7 +31,10 @@ fn nothing([width, height]: [u32; 2]) -> Run {
         },
         film,
         primary: settings.primary().unwrap(),
-        pixels: vec![TracedPixel { ray: None, t: 1e30, id: u32::MAX }; (width * height) as usize],
+        pixels: vec![
+            TracedPixel { ray: None, t: 1e30, id: u32::MAX, shading_ray: None };
+            (width * height) as usize
+        ],
         image: cpu::render(&scene, &View::new(&camera, film), &settings, LayerSet::DATA).unwrap(),
         rendered: Rendered::None,
     };

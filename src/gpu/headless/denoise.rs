@@ -12,7 +12,7 @@ use crate::gpu::shader::layouts::{layout_of, storage, uniform};
 use crate::gpu::shader::pipeline;
 use crate::gpu::shader::{Kernel, part};
 use crate::image::Image;
-use crate::image::denoise::{Guided, PASSES};
+use crate::image::denoise::{Guided, PASSES, REACH};
 
 /// Uniform record of one pass of the denoiser.
 #[repr(C)]
@@ -22,9 +22,6 @@ pub(in crate::gpu) struct Denoise {
     pub(in crate::gpu) step: u32,
     pub(in crate::gpu) zero: u32,
 }
-
-/// Maximum distance in pixels, along a row or column, at which one pixel can influence another.
-const REACH: u32 = 2 * ((1 << PASSES) - 1);
 
 /// Maximum number of pixels of a strip, which is filtered at once.
 const MAX_STRIP_PIXELS: u64 = 1 << 21;

@@ -54,10 +54,11 @@ impl ReadableTrace {
             .take(height)
             .map(|row| &mut row[x..x + width])
             .collect();
-        self.rays.read(|rays: &[records::TracedRay]| {
+        self.rays.read(|rays: &[records::RecordedRays]| {
             for (row, rays) in rows.iter_mut().zip(rays.chunks(width)) {
-                for (pixel, ray) in row.iter_mut().zip(rays) {
-                    pixel.ray = traced_ray(*ray);
+                for (pixel, rays) in row.iter_mut().zip(rays) {
+                    let [traced, shaded] = [0, 1].map(|which| recorded_ray(&rays[8 * which..]));
+                    (pixel.ray, pixel.shading_ray) = (traced, shaded);
                 }
             }
         })?;
@@ -73,10 +74,9 @@ impl ReadableTrace {
     }
 }
 
-/// The ray of a pixel; `None` if it was not traced and its memory is still cleared.
-fn traced_ray(
-    [ox, oy, oz, distance, dx, dy, dz, is_traced]: records::TracedRay,
-) -> Option<TracedRay> {
+/// A ray of a pixel; `None` if it was not made and its memory is still cleared.
+fn recorded_ray(ray: &[f32]) -> Option<TracedRay> {
+    let &[ox, oy, oz, distance, dx, dy, dz, is_made, ..] = ray else { return None };
     let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
-    (is_traced != 0.0).then_some(TracedRay { origin, direction, distance })
+    (is_made != 0.0).then_some(TracedRay { origin, direction, distance })
 }

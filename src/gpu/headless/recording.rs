@@ -48,7 +48,7 @@ fn new_recording(
     let (requested, uploaded) = requested_view(space, view.camera);
     let film = view.film;
     let image = Image::new(film.width(), film.height(), LayerSet::DATA)?;
-    let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID };
+    let untraced = TracedPixel { ray: None, t: NO_HIT, id: NO_ID, shading_ray: None };
     Ok(Recording {
         camera: requested,
         uploaded,

@@ -52,8 +52,8 @@ pub(in crate::gpu) fn all_kernels() -> Vec<Kernel> {
         }
         for &primitive in Primitive::ALL {
             for &color in ColorTarget::ALL {
-                for data_layers in [false, true] {
-                    kernels.push(shade_kernel(camera, primitive, color, data_layers));
+                for (data_layers, keeps_rays) in [(false, false), (true, false), (true, true)] {
+                    kernels.push(shade_kernel(camera, primitive, color, data_layers, keeps_rays));
                 }
             }
         }

@@ -11,7 +11,7 @@ use crate::gpu::scene::scene_buffers::binding_limit;
 use crate::gpu::shader::records;
 
 const HIT_BYTES: u64 = size_of::<records::Hit>() as u64;
-const RAY_BYTES: u64 = size_of::<records::TracedRay>() as u64;
+const RAY_BYTES: u64 = size_of::<records::RecordedRays>() as u64;
 
 /// Sizes in bytes of the buffers for a band of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -201,9 +201,13 @@ impl Renderer {
 
     fn kernel(&self, key: PassKey) -> Kernel {
         match (key, self.query) {
-            (PassKey::Shade(camera, primitive), _) => {
-                shader::shade_kernel(camera, primitive, self.color, self.data_layers)
-            }
+            (PassKey::Shade(camera, primitive), _) => shader::shade_kernel(
+                camera,
+                primitive,
+                self.color,
+                self.data_layers,
+                self.keeps_rays,
+            ),
             (PassKey::Trace(camera, kind, brick_pass), Query::Nearest) => {
                 shader::trace_kernel(camera, kind, brick_pass, self.keeps_rays)
             }

@@ -41,7 +41,7 @@ impl Layouts {
             storage::<records::Status>(false),
         ];
         if keeps_rays {
-            frame.push(storage::<records::TracedRay>(false));
+            frame.push(storage::<records::RecordedRays>(false));
         }
         Self {
             frame: layout("pinhole frame", &frame),

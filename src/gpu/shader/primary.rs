@@ -145,11 +145,16 @@ pub(in crate::gpu) fn shade_kernel(
     primitive: Primitive,
     color: ColorTarget,
     data_layers: bool,
+    keeps_rays: bool,
 ) -> Kernel {
     let mut parts = common_parts(camera, primitive);
     parts.extend([
         part!("scene/appearance_words.wgsl", "alone"),
         part!("scene/appearance.wgsl"),
+        match keeps_rays {
+            true => part!("primary/shade_entry.wgsl", "recorded"),
+            false => part!("primary/shade_entry.wgsl", "made"),
+        },
         part!("primary/shade.wgsl"),
         part!("primary/shading.wgsl"),
         color_target(color),

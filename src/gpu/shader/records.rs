@@ -73,9 +73,9 @@ pub(in crate::gpu) type Status = u32;
 /// A hit, which is a `vec4u`: the bits of t, the id, the shape index, and the bits of the distance to the ray's origin.
 pub(in crate::gpu) type Hit = [u32; 4];
 
-/// A recorded ray, which is two `vec4f`: origin and distance; direction, and a number that is nonzero if there is a
-/// ray.
-pub(in crate::gpu) type TracedRay = [f32; 8];
+/// The recorded rays of a pixel, each of which is two `vec4f`: origin and distance; direction, and a number that is
+/// nonzero if there is a ray. The first was traced, and with the second the hit was shaded.
+pub(in crate::gpu) type RecordedRays = [f32; 16];
 
 /// The position of a scene: the origin of its frame in world space, and its box in that frame, to which rays are moved.
 #[derive(Clone, Copy, Debug)]

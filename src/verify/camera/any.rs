@@ -1,6 +1,6 @@
 //! All rays that a device may compute for a pixel, for checking results whose ray was not recorded.
 
-use super::entered::{BoxCrossing, SMALLEST_COMPONENT};
+use super::entered::{BoxCrossing, Crossed, SMALLEST_COMPONENT};
 use super::{CameraModel, CameraRay};
 use crate::verify::line::Line;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
@@ -65,20 +65,23 @@ impl CameraModel {
             let (d, error) = (ray.line.direction[axis], ray.direction_error[axis]);
             let least = (d.abs() - error).max(SMALLEST_COMPONENT);
             let most = (d.abs() + error).max(SMALLEST_COMPONENT);
-            // The reciprocal of the component, which may have either sign if the component is small.
-            let inverses = [1.0 / least, 1.0 / most].map(|inverse| inverse.copysign(d));
-            let other = if d.abs() <= error { -inverses[0] } else { inverses[1] };
-            let plane = |plane: f64| {
-                let away = plane - ray.line.origin[axis];
-                let moved = ray.origin_error[axis] * (1.0 + 5.0 * U) + U * away.abs();
-                let error = moved / least + (DIVIDE + 3.0 * U) * away.abs() / least;
-                let ends = [inverses[0], inverses[1], other].map(|inverse| away * inverse);
-                let low = ends.into_iter().fold(f64::INFINITY, f64::min);
-                let high = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                let error = PAD * error + FLUSH / least + FLUSH;
-                Interval { low: low - error, high: high + error }
+            let crossed = |sign: f64| {
+                // The reciprocal of the component.
+                let inverses = [1.0 / least, 1.0 / most].map(|inverse| inverse.copysign(sign));
+                let plane = |plane: f64| {
+                    let away = plane - ray.line.origin[axis];
+                    let moved = ray.origin_error[axis] * (1.0 + 5.0 * U) + U * away.abs();
+                    let error = moved / least + (DIVIDE + 3.0 * U) * away.abs() / least;
+                    let [one, other] = inverses.map(|inverse| away * inverse);
+                    let error = PAD * error + FLUSH / least + FLUSH;
+                    Interval { low: one.min(other) - error, high: one.max(other) + error }
+                };
+                Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis]))
             };
-            crossing.cut(plane(self.scene_min[axis]), plane(self.scene_max[axis]));
+            // A small component may have either sign, which is the same for both planes.
+            let is_open = d.abs() <= error;
+            let found = crossed(d);
+            crossing.cut(if is_open { found.or(crossed(-d)) } else { found });
         }
         crossing
     }

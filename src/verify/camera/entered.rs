@@ -28,7 +28,8 @@ impl CameraModel {
                     + (DIVIDE + 3.0 * U) * (away * inverse).abs();
                 Interval::around(away * inverse, PAD * error + FLUSH / size + FLUSH)
             };
-            crossing.cut(plane(self.scene_min[axis]), plane(self.scene_max[axis]));
+            crossing
+                .cut(Crossed::between(plane(self.scene_min[axis]), plane(self.scene_max[axis])));
         }
         crossing
     }
@@ -51,11 +52,31 @@ impl Default for BoxCrossing {
     }
 }
 
+/// Where a ray crosses the nearer and the farther of two parallel planes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossed {
+    near: Interval,
+    far: Interval,
+}
+
+impl Crossed {
+    /// Of the crossings of two planes.
+    pub(super) fn between(a: Interval, b: Interval) -> Self {
+        Self {
+            near: Interval { low: a.low.min(b.low), high: a.high.min(b.high) },
+            far: Interval { low: a.low.max(b.low), high: a.high.max(b.high) },
+        }
+    }
+
+    /// All that either of two is.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self { near: self.near.union(other.near), far: self.far.union(other.far) }
+    }
+}
+
 impl BoxCrossing {
     /// Intersects the crossing with the slab between two parallel planes.
-    pub(super) fn cut(&mut self, a: Interval, b: Interval) {
-        let near = Interval { low: a.low.min(b.low), high: a.high.min(b.high) };
-        let far = Interval { low: a.low.max(b.low), high: a.high.max(b.high) };
+    pub(super) fn cut(&mut self, Crossed { near, far }: Crossed) {
         self.enter.low = self.enter.low.max(near.low);
         self.enter.high = self.enter.high.max(near.high);
         self.leave.low = self.leave.low.min(far.low);

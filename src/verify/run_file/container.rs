@@ -13,7 +13,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::numbers::{Array, Number, Sink};
-use super::{RunFileError, VERSION, hex};
+use super::{READ, RunFileError, VERSION, hex};
 use crate::parallel::try_map;
 use crate::text::shortened;
 
@@ -123,7 +123,7 @@ impl<'a> Container<'a> {
             .map_err(|error| contradiction(format!("its header cannot be read: {error}")))?;
         match text(&parsed, FORMAT) {
             None => return Err(RunFileError::NotRun),
-            Some(VERSION) => {}
+            Some(version) if READ.contains(&version) => {}
             Some(other) => return Err(RunFileError::Version { found: shortened(other) }),
         }
         if parsed.data_len() > arrays.len() {

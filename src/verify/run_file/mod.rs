@@ -17,6 +17,8 @@
 //! | `traced` | bool (H, W) | whether a ray was traced; if not, its numbers are zero |
 //! | `ray_origin`, `ray_direction` | f32 (H, W, 3) | `origin` and `direction` of [`TracedRay`](super::TracedRay) |
 //! | `ray_distance` | f32 (H, W) | `distance` of the same |
+//! | `shaded` | bool (H, W) | whether the ray is known with which a hit was shaded; if not, its numbers are zero |
+//! | `shading_origin`, `shading_direction`, `shading_distance` | like those of `ray` | `shading_ray` of [`TracedPixel`](super::TracedPixel) |
 //! | `hit_t` | f32 (H, W) | `t` of [`TracedPixel`](super::TracedPixel) |
 //! | `hit_id` | u32 (H, W) | `id` of the same |
 //! | `color`, `normal` | f32 (H, W, 3) | layers of the picture |
@@ -49,8 +51,11 @@ use numbers::Array;
 pub use read::read;
 pub use write::write;
 
-/// The version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: &str = "2";
+/// The version of the format that this crate writes. It also reads version 2, which has no rays of shading.
+pub const VERSION: &str = "3";
+
+/// The versions that this crate reads.
+const READ: [&str; 2] = ["2", VERSION];
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
@@ -122,7 +127,7 @@ pub enum RunFileError {
     },
     /// The file has another version of the format.
     #[error(
-        "this is a run file of version {found}, and this program reads version {VERSION}; use the program that wrote it"
+        "this is a run file of version {found}, and this program reads the versions 2 and {VERSION}; use the program that wrote it"
     )]
     Version {
         /// The version of the file.

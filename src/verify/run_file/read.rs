@@ -139,28 +139,60 @@ fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
 }
 
 fn pixels(file: &Container<'_>, shape: &[usize]) -> Result<Vec<TracedPixel>, RunFileError> {
-    let traced = file.numbers::<Flag>("traced", shape)?;
-    if let Some(index) = traced.iter().position(|traced| traced.0 > 1) {
-        return Err(contradiction(format!(
-            "the array `traced` has a value other than 0 and 1 at index {index}"
-        )));
-    }
-    let origins = file.items("ray_origin", shape)?;
-    let directions = file.items("ray_direction", shape)?;
-    let distances = file.numbers("ray_distance", shape)?;
+    let traced = Rays::read(file, shape, "traced", "ray")?;
+    // Files of version 2 have none.
+    let shaded = file.has("shaded").then(|| Rays::read(file, shape, "shaded", "shading"));
+    let shaded = shaded.transpose()?;
     let (t, ids) = (file.numbers("hit_t", shape)?, file.numbers("hit_id", shape)?);
-    let pixel = |index: usize| {
-        let ray = TracedRay {
-            origin: origins[index],
-            direction: directions[index],
-            distance: distances[index],
-        };
-        TracedPixel { ray: (traced[index].0 == 1).then_some(ray), t: t[index], id: ids[index] }
+    let pixel = |index: usize| TracedPixel {
+        ray: traced.at(index),
+        t: t[index],
+        id: ids[index],
+        shading_ray: shaded.as_ref().and_then(|shaded| shaded.at(index)),
     };
-    try_map(traced.len(), pixel).map_err(|_| RunFileError::Memory {
+    try_map(t.len(), pixel).map_err(|_| RunFileError::Memory {
         name: "pixels".to_owned(),
-        bytes: (traced.len() * size_of::<TracedPixel>()) as u64,
+        bytes: (t.len() * size_of::<TracedPixel>()) as u64,
     })
+}
+
+/// One ray for each pixel.
+struct Rays {
+    exist: Vec<Flag>,
+    origins: Vec<[f32; 3]>,
+    directions: Vec<[f32; 3]>,
+    distances: Vec<f32>,
+}
+
+impl Rays {
+    /// Reads the arrays of rays, of which `flag` says where there are any.
+    fn read(
+        file: &Container<'_>,
+        shape: &[usize],
+        flag: &str,
+        rays: &str,
+    ) -> Result<Self, RunFileError> {
+        let exist = file.numbers::<Flag>(flag, shape)?;
+        if let Some(index) = exist.iter().position(|exists| exists.0 > 1) {
+            return Err(contradiction(format!(
+                "the array `{flag}` has a value other than 0 and 1 at index {index}"
+            )));
+        }
+        Ok(Self {
+            exist,
+            origins: file.items(&format!("{rays}_origin"), shape)?,
+            directions: file.items(&format!("{rays}_direction"), shape)?,
+            distances: file.numbers(&format!("{rays}_distance"), shape)?,
+        })
+    }
+
+    fn at(&self, index: usize) -> Option<TracedRay> {
+        (self.exist[index].0 == 1).then(|| TracedRay {
+            origin: self.origins[index],
+            direction: self.directions[index],
+            distance: self.distances[index],
+        })
+    }
 }
 
 fn provenance(file: &Container<'_>) -> Result<Provenance, RunFileError> {

@@ -9,7 +9,7 @@ use super::{LIMIT, Provenance, scene_sha256};
 use crate::scene::{Colors, Scene};
 use crate::verify::{Recording, Rendered, TracedPixel};
 
-/// Writes a run file in small pieces: 69 bytes for each pixel, 101 if a different picture was rendered, and 16 or 20
+/// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 or 20
 /// for each sphere.
 ///
 /// # Errors
@@ -69,6 +69,7 @@ pub fn write(
     let (origin, advance) = ([scene.origin()], [uploaded.advance]);
     let background = [primary.background];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
+    let shading = |pixel: &TracedPixel| pixel.shading_ray.unwrap_or_default();
     let colors = scene.appearance().colors();
     let entries: Vec<u32> = match colors {
         Colors::Scalars { values, map } => values.iter().map(|v| map.index(*v) as u32).collect(),
@@ -92,6 +93,9 @@ pub fn write(
         Array::new("ray_origin", &shape, pixels, move |pixel| ray(pixel).origin),
         Array::new("ray_direction", &shape, pixels, move |pixel| ray(pixel).direction),
         Array::new("ray_distance", &shape, pixels, move |pixel| [ray(pixel).distance]),
+        Array::new("shading_origin", &shape, pixels, move |pixel| shading(pixel).origin),
+        Array::new("shading_direction", &shape, pixels, move |pixel| shading(pixel).direction),
+        Array::new("shading_distance", &shape, pixels, move |pixel| [shading(pixel).distance]),
         Array::new("hit_t", &shape, pixels, |pixel| [pixel.t]),
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
         Array::new("color", &shape, image.color(), |color| *color),
@@ -128,5 +132,7 @@ pub fn write(
     }
     let is_traced = |pixel: &TracedPixel| [Flag(pixel.ray.is_some().into())];
     arrays.push(Array::new("traced", &shape, pixels, is_traced));
+    let is_shaded = |pixel: &TracedPixel| [Flag(pixel.shading_ray.is_some().into())];
+    arrays.push(Array::new("shaded", &shape, pixels, is_shaded));
     container::write(texts, &arrays, out)
 }

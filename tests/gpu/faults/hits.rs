@@ -120,6 +120,22 @@ pub(super) const SHADE: &[Row] = &[
         "ray.direction + hit.foot_to_center",
     ),
     (
+        "normal_turned_by_a_thirty_thousandth",
+        views::balls,
+        LIST,
+        "primary/shade.wgsl",
+        "normal = shape_normal(entry.ray, shapes[shape_index]);",
+        "normal = normalize(shape_normal(entry.ray, shapes[shape_index]) + vec3f(3e-5, 0.0, 0.0));",
+    ),
+    (
+        "shaded_with_the_ray_of_a_neighbor",
+        views::balls,
+        LIST,
+        "primary/shade_entry.wgsl#recorded",
+        "make_entry(pixel_in_tile)",
+        "make_entry(pixel_in_tile + vec2u(1u, 0u))",
+    ),
+    (
         "sphere_of_the_next_index",
         views::balls,
         LIST,

@@ -1,0 +1,411 @@
+//! The certificate that a picture carries: `render --certify` makes it, and `verify PICTURE` checks it.
+
+use anyhow::{Context, Result, anyhow};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, CommandFactory};
+
+use super::args::Arguments;
+use super::device::Opened;
+use super::failure::Failure;
+use super::input::Input;
+use super::picture::{Outputs, PictureFormat};
+use super::progress;
+use super::render;
+use pinhole::image::denoise;
+use pinhole::image::encoding::{Bits, Encoding};
+use pinhole::image::{Image, LayerSet};
+use pinhole::load::picture::FileSamples;
+use pinhole::verify::means::{Estimates, Means};
+use pinhole::verify::picture_certificate::{
+    JudgedBy, PictureCertificate, samples_digest, scene_digest,
+};
+use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
+use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome, Verdict};
+use pinhole::write::png;
+
+/// Arguments of `render` that do not change the samples of the picture, or that name files and devices.
+const NOT_OF_THE_PICTURE: [&str; 15] = [
+    "path",
+    "output",
+    "certify",
+    "layers",
+    "backend",
+    "adapter",
+    "limits",
+    "accel",
+    "time",
+    "noise",
+    "keep_partial",
+    "print_scene",
+    "quiet",
+    "profile",
+    "dpi",
+];
+
+/// What is added to the seed for the reference's picture, so that its noise is another.
+const OTHER_SEED: u32 = 0x9e37_79b9;
+
+/// A picture as it stands, or will stand, in its file.
+pub(super) struct Written {
+    pub(super) size: [u32; 2],
+    pub(super) samples: FileSamples,
+    /// The number of samples of each pixel.
+    pub(super) per_pixel: u32,
+}
+
+/// What was found about a picture.
+pub(super) enum Judged {
+    Intervals(WrittenCertificate),
+    Means(Means),
+}
+
+impl Written {
+    /// The samples that a writer would store of an image.
+    pub(super) fn of(
+        image: &Image,
+        encoding: &Encoding,
+        is_png: bool,
+        per_pixel: u32,
+    ) -> Result<Self> {
+        let size = [image.width(), image.height()];
+        let samples = if is_png {
+            FileSamples::Encoded {
+                bits: if encoding.bits() == Bits::Eight { 8 } else { 16 },
+                has_alpha: encoding.transparent(),
+                bytes: png::samples(image, encoding)?,
+            }
+        } else {
+            let alpha = image.alpha().filter(|_| encoding.transparent());
+            let with_alpha = |(i, [r, g, b]): (usize, &[f32; 3])| {
+                [*r, *g, *b, alpha.map_or(1.0, |alpha| alpha[i])]
+            };
+            FileSamples::Linear(image.color().iter().enumerate().map(with_alpha).collect())
+        };
+        Ok(Self { size, samples, per_pixel })
+    }
+
+    /// The digest of the samples.
+    fn digest(&self) -> String {
+        match &self.samples {
+            FileSamples::Encoded { bytes, .. } => samples_digest(self.size, bytes),
+            FileSamples::Linear(pixels) => {
+                let bytes: Vec<u8> =
+                    pixels.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+                samples_digest(self.size, &bytes)
+            }
+        }
+    }
+
+    /// Red, green and blue of each pixel, such that white is 1.
+    fn colors(&self) -> Vec<[f64; 3]> {
+        match &self.samples {
+            FileSamples::Linear(pixels) => {
+                pixels.iter().map(|[r, g, b, _]| [r, g, b].map(|c| f64::from(*c))).collect()
+            }
+            FileSamples::Encoded { bits, has_alpha, bytes } => {
+                let channels = if *has_alpha { 4 } else { 3 };
+                let (size, white) = if *bits == 8 { (1, 255.0) } else { (2, 65535.0) };
+                let number = |sample: &[u8]| {
+                    sample.iter().fold(0.0, |sum, byte| 256.0 * sum + f64::from(*byte)) / white
+                };
+                bytes
+                    .chunks_exact(channels * size)
+                    .map(|pixel| [0, 1, 2].map(|i| number(&pixel[i * size..][..size])))
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Refuses what cannot be certified.
+pub(super) fn check(input: &Input, has_annotations: bool) -> Result<(), Failure> {
+    let refusal = if has_annotations {
+        "annotations are drawn over the picture; certify the picture without legends, scale bars and labels"
+    } else if input.eyes.is_some() {
+        "a stereo picture cannot be certified; certify one eye"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::usage(format!("--certify: {refusal}")))
+}
+
+/// Judges the samples of a picture.
+pub(super) fn judge(
+    input: &mut Input,
+    encoding: &Encoding,
+    layers: LayerSet,
+    written: &Written,
+) -> Result<Judged, Failure> {
+    progress::stage("checking");
+    let checked = |scene| Checker::new(scene).context("the checker cannot be prepared");
+    if let Some(primary) = input.settings.primary() {
+        let samples = match &written.samples {
+            FileSamples::Encoded { bytes, .. } => Samples::Encoded(bytes),
+            FileSamples::Linear(pixels) => Samples::Linear(pixels),
+        };
+        let picture = WrittenPicture { size: written.size, samples, encoding };
+        let certificate = checked(&input.scene)?
+            .certify_written(&input.view(), &primary, &picture)
+            .map_err(anyhow::Error::from)?;
+        return Ok(Judged::Intervals(certificate));
+    }
+    let ties = checked(&input.scene)?.ties(&input.view());
+    let sampling = input.settings.sampling;
+    input.settings.sampling.seed = sampling.seed.wrapping_add(OTHER_SEED);
+    input.settings.sampling.samples = written.per_pixel;
+    let reference = render::render(input, layers, &Opened::Cpu);
+    input.settings.sampling = sampling;
+    let is_png = matches!(written.samples, FileSamples::Encoded { .. });
+    let reference = Written::of(&reference?, encoding, is_png, written.per_pixel)?;
+    let (found, expected) = (written.colors(), reference.colors());
+    let estimates = Estimates {
+        size: written.size,
+        samples: written.per_pixel,
+        reach: if input.settings.is_denoised { denoise::REACH } else { 0 },
+        found: &found,
+        expected: &expected,
+        ties: &ties,
+    };
+    Ok(Judged::Means(estimates.compare()))
+}
+
+impl Judged {
+    pub(super) fn by(&self) -> JudgedBy {
+        match self {
+            Self::Intervals(_) => JudgedBy::Intervals,
+            Self::Means(_) => JudgedBy::Means,
+        }
+    }
+
+    pub(super) fn outcome(&self) -> Outcome {
+        match self {
+            Self::Intervals(certificate) => certificate.outcome(),
+            Self::Means(means) => means.outcome(),
+        }
+    }
+
+    /// The numbers of pixels, or of means, that are proved, undecided and violated.
+    pub(super) fn counts(&self) -> [u64; 3] {
+        match self {
+            Self::Intervals(certificate) => [
+                certificate.count(Verdict::Decided) as u64,
+                certificate.undecided() as u64,
+                certificate.count(Verdict::Violation) as u64,
+            ],
+            Self::Means(means) => [Outcome::Proved, Outcome::Undecided, Outcome::Violated]
+                .map(|outcome| means.count(outcome) as u64),
+        }
+    }
+
+    /// The first or the worst violation.
+    pub(super) fn violation(&self) -> Option<String> {
+        match self {
+            Self::Intervals(certificate) => certificate.violations.first().map(ToString::to_string),
+            Self::Means(means) => {
+                let worst = means.worst().filter(|worst| worst.outcome == Outcome::Violated);
+                worst.map(ToString::to_string)
+            }
+        }
+    }
+
+    /// What is counted.
+    fn unit(&self) -> &'static str {
+        match self {
+            Self::Intervals(_) => "pixels",
+            Self::Means(_) => "means of regions",
+        }
+    }
+
+    /// The table on standard output.
+    pub(super) fn table(&self) -> String {
+        let counts = self.counts();
+        let all = counts.iter().sum::<u64>().max(1) as f64;
+        let mut table = format!("{:<12}{:>12}\n", "judged by", self.by().name());
+        for (name, count) in ["proved", "undecided", "violated"].into_iter().zip(counts) {
+            let percent = 100.0 * count as f64 / all;
+            table += &format!("{name:<12}{count:>12}  {percent:8.4} %  of {}\n", self.unit());
+        }
+        if let Self::Means(means) = self {
+            let worst = means.worst().map_or(0.0, pinhole::verify::means::RegionMean::fraction);
+            table += &format!("{:<12}{worst:>12.4}  of its bound\n", "worst mean");
+            table += &format!("{:<12}{:>12.4}  of white\n", "widest bound", means.widest());
+        }
+        table
+    }
+
+    /// The failure, unless the picture is proved.
+    pub(super) fn verdict(&self) -> Result<(), Failure> {
+        let [_, undecided, violated] = self.counts();
+        let unit = self.unit();
+        match self.outcome() {
+            Outcome::Proved => Ok(()),
+            Outcome::Undecided => Err(Failure::Undecided(anyhow!(
+                "no violation was found, but {undecided} {unit} are undecided; at most {}",
+                match self {
+                    Self::Intervals(_) => format!("{} % may be", 100.0 * MOST_UNDECIDED),
+                    Self::Means(_) =>
+                        "half of them may be; more samples, a larger picture or --denoise=false decide more".to_owned(),
+                }
+            ))),
+            Outcome::Violated => Err(Failure::CheckFailed(anyhow!(
+                "the picture is not legal: {violated} {unit}; {}",
+                self.violation().unwrap_or_default()
+            ))),
+        }
+    }
+}
+
+/// The certificate of a picture that was judged.
+pub(super) fn certificate(
+    input: &Input,
+    written: &Written,
+    judged: &Judged,
+    adapter: Option<&str>,
+    arguments: Vec<String>,
+) -> PictureCertificate {
+    let [proved, undecided, _] = judged.counts();
+    PictureCertificate {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        adapter: adapter.unwrap_or("cpu").to_owned(),
+        arguments,
+        scene: scene_digest(&input.scene),
+        samples: written.digest(),
+        samples_per_pixel: written.per_pixel,
+        judged_by: judged.by(),
+        outcome: judged.outcome(),
+        counts: [proved, undecided],
+    }
+}
+
+/// Compares a certificate with the picture and the scene that it is said to be of.
+pub(super) fn compare(
+    certificate: &PictureCertificate,
+    written: &Written,
+    scene: Option<&Input>,
+) -> Result<()> {
+    if certificate.samples != written.digest() {
+        return Err(anyhow!(
+            "the certificate is of other samples; the picture was changed after it was certified"
+        ));
+    }
+    match scene {
+        Some(input) if certificate.scene != scene_digest(&input.scene) => Err(anyhow!(
+            "the certificate is of other data than {}, or the data were changed since; render the picture again",
+            input.report.path
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A picture that was judged before it is written.
+pub(super) struct Certified {
+    pub(super) text: String,
+    /// Whether too much is undecided.
+    pub(super) verdict: Result<(), Failure>,
+}
+
+/// Judges a picture that was rendered, and returns what it shall carry. A picture that is not legal is an error.
+pub(super) fn of_render(
+    input: &mut Input,
+    outputs: &Outputs,
+    image: &Image,
+    encoding: &Encoding,
+    adapter: Option<&str>,
+) -> Result<Certified, Failure> {
+    let arguments = arguments()?;
+    let per_pixel = samples_per_pixel(image)?;
+    let is_png = outputs.format() == PictureFormat::Png;
+    let written = Written::of(image, encoding, is_png, per_pixel)?;
+    let judged = judge(input, encoding, outputs.layers(encoding), &written)?;
+    let verdict = judged.verdict();
+    if let Err(failure @ Failure::CheckFailed(_)) = verdict {
+        return Err(failure);
+    }
+    let certificate = certificate(input, &written, &judged, adapter, arguments);
+    Ok(Certified { text: certificate.to_text().map_err(anyhow::Error::from)?, verdict })
+}
+
+/// The number of samples of each pixel.
+fn samples_per_pixel(image: &Image) -> Result<u32> {
+    let samples = image.samples().unwrap_or_default();
+    let first = samples.first().copied().unwrap_or(1);
+    if samples.iter().any(|count| *count != first) {
+        return Err(anyhow!(
+            "--certify: some pixels have more samples than others; let every pixel have as many, without --time"
+        ));
+    }
+    Ok(first)
+}
+
+/// The arguments of this process from which the picture follows, apart from the scene.
+pub(super) fn arguments() -> Result<Vec<String>> {
+    let command = Arguments::command();
+    let matches = command.clone().try_get_matches_from(std::env::args_os())?;
+    let of_render = matches.subcommand_matches("render");
+    of_render.map_or_else(|| Ok(Vec::new()), |matches| picture_arguments(&command, matches))
+}
+
+fn picture_arguments(command: &clap::Command, matches: &ArgMatches) -> Result<Vec<String>> {
+    let mut words = Vec::new();
+    let render = command.find_subcommand("render").map(clap::Command::get_arguments);
+    for argument in render.into_iter().flatten() {
+        let id = argument.get_id().as_str();
+        let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);
+        let Some(name) = argument.get_long().filter(|_| is_given) else { continue };
+        if NOT_OF_THE_PICTURE.contains(&id) {
+            continue;
+        }
+        for values in matches.get_raw_occurrences(id).into_iter().flatten() {
+            let values: Option<Vec<&str>> = values.map(std::ffi::OsStr::to_str).collect();
+            let values = values.ok_or_else(|| {
+                anyhow!("--{name}: a value that is not UTF-8 cannot be part of a certificate; rename the file")
+            })?;
+            let takes_values = argument.get_action().takes_values();
+            match (takes_values, argument.get_value_delimiter()) {
+                (false, _) => words.push(format!("--{name}")),
+                (true, Some(delimiter)) => {
+                    words.push(format!("--{name}={}", values.join(&delimiter.to_string())));
+                }
+                (true, None) if values.len() == 1 => words.push(format!("--{name}={}", values[0])),
+                (true, None) => {
+                    words.push(format!("--{name}"));
+                    words.extend(values.into_iter().map(str::to_owned));
+                }
+            }
+        }
+    }
+    Ok(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_exists() {
+        let command = Arguments::command();
+        let render = command.find_subcommand("render").unwrap();
+        for id in NOT_OF_THE_PICTURE {
+            assert!(render.get_arguments().any(|argument| argument.get_id() == id), "{id}");
+        }
+    }
+
+    #[test]
+    fn arguments_mean_the_same_when_they_are_given_again() {
+        let command = Arguments::command();
+        let given = "pinhole render a.csv -o b.png --eye 1,2,3 --size=30x20 --columns x,y,z --transparent \
+                     --exposure -1.5 --certify --quiet --adapter gpu";
+        let matches = command.clone().try_get_matches_from(given.split_whitespace()).unwrap();
+        let matches = matches.subcommand_matches("render").unwrap();
+        let words = picture_arguments(&command, matches).unwrap();
+        assert!(words.iter().any(|word| word == "--eye=1,2,3"), "{words:?}");
+        for absent in ["--quiet", "--adapter", "--certify", "a.csv"] {
+            assert!(!words.iter().any(|word| word.contains(absent)), "{words:?}");
+        }
+        let again = ["pinhole", "render", "a.csv", "-o", "-"].into_iter().map(str::to_owned);
+        let matches =
+            command.clone().try_get_matches_from(again.chain(words.iter().cloned())).unwrap();
+        let matches = matches.subcommand_matches("render").unwrap();
+        assert_eq!(picture_arguments(&command, matches).unwrap(), words);
+    }
+}

@@ -1,0 +1,104 @@
+//! The denoiser in `pinhole verify`: of a scene whose picture is denoised, what the device makes of a noisy picture.
+
+use serde::Serialize;
+
+use super::verify_report::LISTED;
+use pinhole::verify::denoised::DenoiseCertificate;
+
+/// The object `denoiser` of the JSON document.
+#[derive(Serialize)]
+pub(super) struct DenoiserReport {
+    pixels: u64,
+    undecided: u64,
+    violation_count: u64,
+    violations: Vec<String>,
+    outcome: &'static str,
+}
+
+impl From<&DenoiseCertificate> for DenoiserReport {
+    fn from(certificate: &DenoiseCertificate) -> Self {
+        let DenoiseCertificate { pixels, undecided, violation_count, ref violations, .. } =
+            *certificate;
+        Self {
+            pixels,
+            undecided,
+            violation_count,
+            violations: violations.iter().take(LISTED).map(ToString::to_string).collect(),
+            outcome: certificate.outcome().name(),
+        }
+    }
+}
+
+impl DenoiserReport {
+    /// The report as one line of text.
+    pub(super) fn line(&self) -> String {
+        let Self { pixels, undecided, violation_count, .. } = self;
+        let legal = pixels - undecided - violation_count;
+        format!(
+            "denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations"
+        )
+    }
+}
+
+#[cfg(feature = "gpu")]
+pub(super) use rendered::certify;
+
+#[cfg(feature = "gpu")]
+mod rendered {
+    use anyhow::Context;
+
+    use super::*;
+    use crate::device::explained_alone;
+    use crate::failure::Failure;
+    use crate::input::Input;
+    use crate::with_scene::{upload, with_structures};
+    use crate::{interrupt, progress};
+    use pinhole::accel::AccelChoice;
+    use pinhole::camera::View;
+    use pinhole::camera::film::Film;
+    use pinhole::gpu::Headless;
+    use pinhole::image::denoise::GUIDES;
+    use pinhole::render::Integrator;
+    use pinhole::verify::denoised;
+
+    /// The longer side of the picture that is denoised, and its samples: the noisier, the more there is to do.
+    const SIDE: u32 = 256;
+    const SAMPLES: u32 = 4;
+
+    /// Renders a small noisy picture, and judges what the device makes of it.
+    pub(crate) fn certify(
+        headless: &Headless,
+        input: &Input,
+        choice: AccelChoice,
+    ) -> Result<DenoiseCertificate, Failure> {
+        let mut settings = input.settings.clone();
+        settings.is_denoised = false;
+        settings.sampling.samples = settings.sampling.samples.min(SAMPLES);
+        if let Integrator::Studio(studio) = &mut settings.integrator {
+            studio.outline = None;
+        }
+        let (width, height) = (input.film.width(), input.film.height());
+        let shrink = |side: u32| {
+            let side = u64::from(side) * u64::from(SIDE) / u64::from(width.max(height).max(SIDE));
+            side.max(1) as u32
+        };
+        let film = Film::new(shrink(width), shrink(height))
+            .context("the picture is too narrow for its denoiser to be checked")?
+            .with_y_axis(input.film.y_axis());
+        let view = View::new(input.camera.as_ref(), film);
+        let plan = |choice| headless.plan(&input.scene, &view, &settings, GUIDES, choice, 0);
+        let done = with_structures(headless, choice, plan, |plan| {
+            interrupt::on_device(|| {
+                let buffers = upload(headless, &input.scene, plan)?;
+                progress::stage("checking the denoiser");
+                let watch = &mut |_: &_| interrupt::decide();
+                let noisy =
+                    headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch)?.image;
+                let quiet = headless.denoise(&noisy)?;
+                Ok((noisy, quiet))
+            })
+        })?;
+        let ((noisy, quiet), _) = done.map_err(|error| explained_alone(headless, &error))?;
+        Ok(denoised::certify(&noisy, &quiet).context("the denoiser cannot be checked")?)
+    }
+}

@@ -1,0 +1,282 @@
+//! The check of the denoiser: what its five passes may make of a picture. The WGSL twin is
+//! `shaders/primary/denoise.wgsl`.
+//!
+//! Light is known as an interval for each channel. A pass makes weighted means of 25 pixels. A weight is an interval,
+//! because it follows from lights, and from an exponential that WGSL rounds by several ULP. A mean of v with weights w is
+//!
+//! b + Σ w (v − b) / Σ w
+//!
+//! for any b, and for the light b of the pixel in the middle the differences v − b are small where weights are. So the
+//! interval of the mean grows by the uncertainty of weights times what differs, and not times the light. To this the
+//! roundings of the sums and of the quotient are added. What intervals leave open, such as whether a miss has no noise,
+//! may go either way.
+
+use super::outcome::Outcome;
+use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
+use crate::image::Image;
+use crate::image::color::LUMINANCE;
+use crate::image::denoise::{Guided, MissingGuide, PASSES};
+use crate::parallel::{map_parts, ranges};
+
+/// The number of pixels that a thread takes at a time.
+const CHUNK: usize = 1 << 10;
+
+/// The largest number of violations that are kept; all are counted.
+const KEPT: usize = 100;
+
+/// A variance of light that is no noise, `NO_NOISE` in the kernel.
+const NO_NOISE: f64 = 1e-8;
+
+/// Roundings of a sum of 25 products of weights and light, of the sum of weights, and of the quotient.
+const OF_MEANS: u32 = 60;
+
+/// The widest interval about which something is said, relative to the light, or to a hundredth of white if that is more.
+const WIDEST: f64 = 0.05;
+
+/// Red, green and blue, and the variance of their luminance.
+type Light = [Interval; 4];
+
+/// A pixel that no conforming device leads to.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DenoiseViolation {
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// Red, green or blue, from 0 on.
+    pub channel: usize,
+    /// The light of the denoised picture.
+    pub found: f32,
+    /// What is legal.
+    pub legal: Interval,
+}
+
+/// Whether a device denoised a picture as a conforming WGSL implementation may.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DenoiseCertificate {
+    /// The number of pixels.
+    pub pixels: u64,
+    /// The number of pixels whose bounds are so wide that they say little.
+    pub undecided: u64,
+    /// The number of pixels that are not legal.
+    pub violation_count: u64,
+    /// The first of them, in the order of pixels.
+    pub violations: Vec<DenoiseViolation>,
+}
+
+impl DenoiseCertificate {
+    /// The outcome of the picture.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        Outcome::of(self.violation_count > 0, self.undecided, self.pixels)
+    }
+}
+
+impl std::fmt::Display for DenoiseViolation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { pixel: [i, j], channel, found, legal: Interval { low, high } } = self;
+        let name = ["red", "green", "blue"].get(*channel).copied().unwrap_or("a channel");
+        write!(f, "pixel ({i}, {j}): {name} is {found:e}, but {low:e} to {high:e} are legal")
+    }
+}
+
+/// Judges what a device made of a noisy picture.
+///
+/// # Errors
+/// Returns an error if the noisy picture lacks one of [the layers](crate::image::denoise::GUIDES) that denoising needs.
+pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, MissingGuide> {
+    let filter =
+        Filter { guided: Guided::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
+    let exact = |x: &f32| Interval { low: f64::from(*x), high: f64::from(*x) };
+    let mut lights: Vec<Light> =
+        filter.guided.lights.iter().map(|light| light.each_ref().map(exact)).collect();
+    for pass in 0..PASSES {
+        let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
+            range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
+        });
+        lights = parts.concat();
+    }
+    let mut certificate = DenoiseCertificate::default();
+    let width = noisy.width().max(1) as usize;
+    for (index, (light, albedo)) in lights.iter().zip(&filter.guided.albedos).enumerate() {
+        // A picture of another size is not legal where it has no pixels.
+        let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
+        let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
+        certificate.pixels += 1;
+        let is_vague = |Interval { low, high }: &Interval| high - low > WIDEST * high.max(0.01);
+        match (0..3).find(|channel| !legal[*channel].contains(found[*channel].into())) {
+            Some(channel) => {
+                certificate.violation_count += 1;
+                if certificate.violations.len() < KEPT {
+                    let pixel = [(index % width) as u32, (index / width) as u32];
+                    let (found, legal) = (found[channel], legal[channel]);
+                    certificate.violations.push(DenoiseViolation { pixel, channel, found, legal });
+                }
+            }
+            None => certificate.undecided += u64::from(legal.iter().any(is_vague)),
+        }
+    }
+    Ok(certificate)
+}
+
+/// The product of light and albedo in f32; neither is negative.
+fn product(light: Interval, albedo: f64) -> Interval {
+    let Interval { low, high } = light;
+    Interval {
+        low: albedo * low - PAD * U * (albedo * low).abs() - FLUSH,
+        high: albedo * high + PAD * U * (albedo * high).abs() + FLUSH,
+    }
+}
+
+struct Filter {
+    guided: Guided,
+    size: [i64; 2],
+}
+
+impl Filter {
+    /// The light that a pass may give to a pixel.
+    fn filtered(&self, lights: &[Light], middle: usize, step: i64) -> Light {
+        let light = lights[middle];
+        let is_miss = self.guided.shapes[middle][..3].iter().all(|c| *c == 0.0);
+        let variance = light[3];
+        if is_miss && variance.high <= NO_NOISE {
+            return light;
+        }
+        let mean = self.mean(lights, middle, step);
+        if is_miss && variance.low <= NO_NOISE {
+            return std::array::from_fn(|i| mean[i].union(light[i]));
+        }
+        mean
+    }
+
+    fn mean(&self, lights: &[Light], middle: usize, step: i64) -> Light {
+        let [width, height] = self.size;
+        let at = [middle as i64 % width, middle as i64 / width];
+        let light = lights[middle];
+        let base: [f64; 3] = std::array::from_fn(|i| 0.5 * (light[i].low + light[i].high));
+        let mut sums = [Interval { low: 0.0, high: 0.0 }; 4];
+        let mut weights = Interval { low: 0.0, high: 0.0 };
+        let mut largest = [0.0_f64; 3];
+        for dy in -2..=2_i64 {
+            for dx in -2..=2_i64 {
+                let (x, y) = (at[0] + dx * step, at[1] + dy * step);
+                if !(0..width).contains(&x) || !(0..height).contains(&y) {
+                    continue;
+                }
+                let index = (y * width + x) as usize;
+                let other = lights[index];
+                let distance = step as f64 * ((dx * dx + dy * dy) as f64).sqrt();
+                let same = self.likeness(middle, index, distance.max(1.0));
+                let alike = if index == middle { ONE } else { alike(&light, &other) };
+                let spline = spline(dx) * spline(dy);
+                let relative = PAD * gamma(4);
+                let weight = Interval {
+                    low: spline * same.low * alike.low * (1.0 - relative) - FLUSH,
+                    high: spline * same.high * alike.high * (1.0 + relative) + FLUSH,
+                };
+                let weight = Interval { low: weight.low.max(0.0), ..weight };
+                for channel in 0..3 {
+                    let (low, high) =
+                        (other[channel].low - base[channel], other[channel].high - base[channel]);
+                    sums[channel].low += low * if low < 0.0 { weight.high } else { weight.low };
+                    sums[channel].high += high * if high > 0.0 { weight.high } else { weight.low };
+                    largest[channel] = largest[channel].max(other[channel].high.abs());
+                }
+                sums[3].low += weight.low * weight.low * other[3].low;
+                sums[3].high += weight.high * weight.high * other[3].high;
+                weights.low += weight.low;
+                weights.high += weight.high;
+            }
+        }
+        let rounding = PAD * gamma(OF_MEANS);
+        let [red, green, blue] = std::array::from_fn(|i| {
+            let Interval { low, high } = sums[i];
+            let low = low / if low < 0.0 { weights.low } else { weights.high };
+            let high = high / if high > 0.0 { weights.low } else { weights.high };
+            let error = rounding * largest[i] + FLUSH;
+            Interval { low: base[i] + low - error, high: base[i] + high + error }
+        });
+        let variance = Interval {
+            low: sums[3].low / (weights.high * weights.high) * (1.0 - rounding) - FLUSH,
+            high: sums[3].high / (weights.low * weights.low) * (1.0 + rounding) + FLUSH,
+        };
+        [red, green, blue, Interval { low: variance.low.max(0.0), ..variance }]
+    }
+
+    /// The similarity of two pixels in shape and albedo, which are known exactly.
+    fn likeness(&self, a: usize, b: usize, distance: f64) -> Interval {
+        let [shape, other] = [a, b].map(|index| self.guided.shapes[index].map(f64::from));
+        let products: [f64; 3] = std::array::from_fn(|i| shape[i] * other[i]);
+        let is_miss = |shape: [f64; 4]| shape[..3].iter().all(|c| *c == 0.0);
+        let error = PAD * gamma(3) * products.iter().map(|p| p.abs()).sum::<f64>() + 4.0 * FLUSH;
+        let cosine = products.iter().sum::<f64>();
+        // Squares are taken five times: 31 products. Below this, the power is flushed to zero.
+        let power = |cosine: f64, relative: f64| cosine.max(0.0).powi(32) * (1.0 + relative);
+        let relative = PAD * gamma(31);
+        let alike = match is_miss(shape) && is_miss(other) {
+            true => ONE,
+            false => {
+                // One difference, a product of constants and of a root, and a quotient.
+                let depth = (shape[3] - other[3]).abs()
+                    / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
+                let off = PAD * (gamma(6) + SQRT + DIVIDE);
+                let fall = |depth: f64| 1.0 / (1.0 + depth * depth);
+                let off_fall = PAD * (gamma(3) + DIVIDE);
+                Interval {
+                    low: power(cosine - error, -relative)
+                        * fall(depth * (1.0 + off) + FLUSH)
+                        * (1.0 - off_fall)
+                        - FLUSH,
+                    high: power(cosine + error, relative)
+                        * fall((depth * (1.0 - off) - FLUSH).max(0.0))
+                        * (1.0 + off_fall)
+                        + FLUSH,
+                }
+            }
+        };
+        let tints = [a, b].map(|index| self.guided.albedos[index].map(f64::from));
+        let tint: f64 = (0..3).map(|i| (tints[0][i] - tints[1][i]).powi(2)).sum();
+        let divisor = 1.0 + 400.0 * tint;
+        let off = PAD * (gamma(8) + DIVIDE);
+        Interval {
+            low: (alike.low / divisor * (1.0 - off) - FLUSH).max(0.0),
+            high: alike.high / divisor * (1.0 + off) + FLUSH,
+        }
+    }
+}
+
+const ONE: Interval = Interval { low: 1.0, high: 1.0 };
+
+/// The similarity of lights, relative to their noise.
+fn alike(light: &Light, other: &Light) -> Interval {
+    let mut change = Interval { low: 0.0, high: 0.0 };
+    let mut size = 0.0;
+    for (channel, weight) in LUMINANCE.into_iter().enumerate() {
+        let (a, b) = (light[channel], other[channel]);
+        change.low += weight * (b.low - a.high);
+        change.high += weight * (b.high - a.low);
+        size += weight * (a.low.abs().max(a.high.abs()) + b.low.abs().max(b.high.abs()));
+    }
+    // A difference, a constant that is rounded, a product, and a sum of three.
+    let error = PAD * gamma(6) * size + 4.0 * FLUSH;
+    let (low, high) = (change.low - error, change.high + error);
+    let least = if low > 0.0 { low } else { (-high).max(0.0) };
+    let most = high.max(-low);
+    let off = PAD * (gamma(6) + DIVIDE);
+    let noise = |a: f64, b: f64| 4.0 * (a + b) + NO_NOISE;
+    let least = least * least / noise(light[3].high, other[3].high) * (1.0 - off) - FLUSH;
+    let most = most * most / noise(light[3].low, other[3].low) * (1.0 + off) + FLUSH;
+    // WGSL: an exponential is within 3 + 2 |x| ULP.
+    let exp =
+        |x: f64, sign: f64| (-x).exp() * (1.0 + sign * PAD * U * (3.0 + 2.0 * x)) + sign * FLUSH;
+    Interval { low: exp(most, -1.0).max(0.0), high: exp(least.max(0.0), 1.0) }
+}
+
+/// The weight of a B3 spline at a distance from its centre, in steps.
+fn spline(distance: i64) -> f64 {
+    match distance.abs() {
+        0 => 0.375,
+        1 => 0.25,
+        _ => 0.0625,
+    }
+}

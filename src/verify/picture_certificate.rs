@@ -1,0 +1,330 @@
+//! The certificate that a picture carries in its file.
+//!
+//! It is a text of one key and value on each line, which any tool shows that shows texts of PNG files or attributes of
+//! OpenEXR files:
+//!
+//! | key | value |
+//! |---|---|
+//! | `pinhole-certificate` | version of this format, [`VERSION`] |
+//! | `version` | version of this crate |
+//! | `adapter` | the adapter that rendered, or `cpu` |
+//! | `argument` | an argument of `pinhole render` apart from the scene; one line for each |
+//! | `scene-sha256` | digest of the scene's data, [`scene_digest`] |
+//! | `samples-sha256` | digest of the picture's size and samples, [`samples_digest`] |
+//! | `samples-per-pixel` | number of samples of each pixel |
+//! | `judged-by` | `intervals` or `means` |
+//! | `outcome` | `proved` or `undecided` |
+//! | `proved`, `undecided` | numbers of pixels; of means, if these were judged |
+//! | `sha256` | digest of all lines before |
+//!
+//! A digest tells what has been changed by mistake. It is no signature: who changes a picture on purpose can also
+//! compute digests, but cannot make the check of its samples succeed.
+
+use std::fmt::Write;
+
+use sha2::{Digest, Sha256};
+
+use super::outcome::Outcome;
+use crate::scene::Scene;
+use crate::text::{one_line, shortened};
+
+/// The version of the format that this crate writes, and the only one that it reads.
+pub const VERSION: &str = "1";
+
+/// The first key.
+const FIRST: &str = "pinhole-certificate";
+
+/// The last key.
+const DIGEST: &str = "sha256";
+
+/// The number of bytes that are given to a digest at a time.
+const CHUNK: usize = 1 << 16;
+
+/// How a picture was judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JudgedBy {
+    /// Sample by sample, by intervals of what is legal: [`written`](super::written).
+    Intervals,
+    /// Region by region, by means of independent estimates: [`means`](super::means).
+    Means,
+}
+
+impl JudgedBy {
+    /// The name in certificates.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Intervals => "intervals",
+            Self::Means => "means",
+        }
+    }
+}
+
+/// The certificate that a picture carries in its file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureCertificate {
+    /// Version of the crate that wrote it.
+    pub version: String,
+    /// The adapter that rendered, or `cpu`.
+    pub adapter: String,
+    /// The arguments of `pinhole render` apart from the scene and what does not change the picture.
+    pub arguments: Vec<String>,
+    /// The digest of the scene's data.
+    pub scene: String,
+    /// The digest of the samples.
+    pub samples: String,
+    /// The number of samples of each pixel.
+    pub samples_per_pixel: u32,
+    /// How the picture was judged.
+    pub judged_by: JudgedBy,
+    /// What came out of it.
+    pub outcome: Outcome,
+    /// The numbers of pixels, or of means, that are proved and undecided.
+    pub counts: [u64; 2],
+}
+
+/// Why a text is not a certificate.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertificateError {
+    /// The certificate has another version of the format.
+    #[error(
+        "the picture's certificate has the version {}, and this program reads version {VERSION}; use the program that \
+         wrote it, or render the picture again",
+        shortened(found)
+    )]
+    Version {
+        /// The version that was found.
+        found: String,
+    },
+    /// The text is not what was written.
+    #[error(
+        "the picture's certificate was edited: its SHA-256 digest does not match; render the picture again with --certify"
+    )]
+    Edited,
+    /// A line is missing or not valid.
+    #[error(
+        "the picture's certificate has no valid line `{key}`; render the picture again with --certify"
+    )]
+    Line {
+        /// The key of the line.
+        key: &'static str,
+    },
+    /// An argument has a line break.
+    #[error(
+        "{found:?}: an argument with a line break cannot be part of a certificate; rename the file, or use a scene file"
+    )]
+    LineBreak {
+        /// The argument.
+        found: String,
+    },
+}
+
+impl PictureCertificate {
+    /// The text of the certificate, in ASCII.
+    ///
+    /// # Errors
+    /// Returns an error if an argument has a line break.
+    pub fn to_text(&self) -> Result<String, CertificateError> {
+        let mut text = format!("{FIRST} {VERSION}\n");
+        let mut line = |key: &str, value: &str| {
+            // What is not ASCII is written as in Rust's strings, because PNG and OpenEXR have Latin-1 alone.
+            let ascii: String = value
+                .chars()
+                .map(|c| {
+                    if c == '\\' || !c.is_ascii() {
+                        c.escape_default().to_string()
+                    } else {
+                        c.to_string()
+                    }
+                })
+                .collect();
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{key} {ascii}");
+        };
+        line("version", &one_line(&self.version));
+        line("adapter", &one_line(&self.adapter));
+        for argument in &self.arguments {
+            if argument.contains(['\n', '\r']) {
+                return Err(CertificateError::LineBreak { found: argument.clone() });
+            }
+            line("argument", argument);
+        }
+        line("scene-sha256", &self.scene);
+        line("samples-sha256", &self.samples);
+        line("samples-per-pixel", &self.samples_per_pixel.to_string());
+        line("judged-by", self.judged_by.name());
+        line("outcome", self.outcome.name());
+        line("proved", &self.counts[0].to_string());
+        line("undecided", &self.counts[1].to_string());
+        let digest = hex(&Sha256::digest(text.as_bytes()));
+        let _ = writeln!(text, "{DIGEST} {digest}");
+        Ok(text)
+    }
+
+    /// Reads the text of a certificate.
+    ///
+    /// # Errors
+    /// Returns an error if the text is of another version, was edited, or lacks a line.
+    pub fn from_text(text: &str) -> Result<Self, CertificateError> {
+        let missing = |key| CertificateError::Line { key };
+        let mut lines = text.lines().map(|line| line.split_once(' ').unwrap_or((line, "")));
+        match lines.next() {
+            Some((FIRST, VERSION)) => {}
+            Some((FIRST, other)) => {
+                return Err(CertificateError::Version { found: one_line(other) });
+            }
+            _ => return Err(missing(FIRST)),
+        }
+        let before = text.rfind(&format!("\n{DIGEST} ")).ok_or(missing(DIGEST))? + 1;
+        let digest = format!("{DIGEST} {}\n", hex(&Sha256::digest(&text.as_bytes()[..before])));
+        if text[before..] != digest {
+            return Err(CertificateError::Edited);
+        }
+        let lines: Vec<(&str, String)> =
+            lines.map(|(key, value)| (key, unescaped(value))).collect();
+        let all = |key: &'static str| {
+            lines.iter().filter(move |(found, _)| *found == key).map(|(_, value)| value.clone())
+        };
+        let one = |key| all(key).next().ok_or(missing(key));
+        let number = |key| one(key)?.parse::<u64>().map_err(|_| missing(key));
+        let judged_by = one("judged-by")?;
+        let outcome = one("outcome")?;
+        Ok(Self {
+            version: one("version")?,
+            adapter: one("adapter")?,
+            arguments: all("argument").collect(),
+            scene: one("scene-sha256")?,
+            samples: one("samples-sha256")?,
+            samples_per_pixel: u32::try_from(number("samples-per-pixel")?)
+                .map_err(|_| missing("samples-per-pixel"))?,
+            judged_by: [JudgedBy::Intervals, JudgedBy::Means]
+                .into_iter()
+                .find(|by| by.name() == judged_by)
+                .ok_or(missing("judged-by"))?,
+            outcome: [Outcome::Proved, Outcome::Undecided]
+                .into_iter()
+                .find(|known| known.name() == outcome)
+                .ok_or(missing("outcome"))?,
+            counts: [number("proved")?, number("undecided")?],
+        })
+    }
+}
+
+/// Reverses the escapes of [`PictureCertificate::to_text`]; what is no escape stays as it is.
+fn unescaped(text: &str) -> String {
+    let mut result = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('\\') {
+        result.push_str(before);
+        let code = after.strip_prefix("u{").and_then(|after| after.split_once('}'));
+        let escape = code.and_then(|(digits, after)| {
+            Some((char::from_u32(u32::from_str_radix(digits, 16).ok()?)?, after))
+        });
+        let (c, after) = match escape {
+            Some(escape) => escape,
+            None => ('\\', after.strip_prefix('\\').unwrap_or(after)),
+        };
+        result.push(c);
+        rest = after;
+    }
+    result + rest
+}
+
+/// The digest of a scene's data: origin, spheres, colours and surfaces, in hexadecimal digits.
+#[must_use]
+pub fn scene_digest(scene: &Scene) -> String {
+    let mut digest = Sha256::new();
+    let mut bytes = Vec::with_capacity(CHUNK + 64);
+    let mut add = |digest: &mut Sha256, part: &[u8]| {
+        bytes.extend_from_slice(part);
+        if bytes.len() >= CHUNK || part.is_empty() {
+            digest.update(&bytes);
+            bytes.clear();
+        }
+    };
+    for number in scene.origin().to_array() {
+        add(&mut digest, &number.to_le_bytes());
+    }
+    for (id, sphere) in (0..).zip(scene.spheres()) {
+        let color = scene.color(id).to_array();
+        for number in sphere.iter().chain(&color) {
+            add(&mut digest, &number.to_le_bytes());
+        }
+    }
+    let appearance = scene.appearance();
+    add(&mut digest, format!("{:?}", appearance.surfaces()).as_bytes());
+    for index in appearance.surface_indices().into_iter().flatten() {
+        add(&mut digest, &index.to_le_bytes());
+    }
+    add(&mut digest, &[]);
+    hex(&digest.finalize())
+}
+
+/// The digest of the samples of a picture: width and height in four bytes each, the lowest first, and the samples as
+/// they stand in the file.
+#[must_use]
+pub fn samples_digest(size: [u32; 2], samples: &[u8]) -> String {
+    let mut digest = Sha256::new();
+    size.iter().for_each(|side| digest.update(side.to_le_bytes()));
+    digest.update(samples);
+    hex(&digest.finalize())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    data_encoding::HEXLOWER.encode(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn certificate() -> PictureCertificate {
+        PictureCertificate {
+            version: "0.1.0".into(),
+            adapter: "a device".into(),
+            arguments: vec![
+                "--eye".into(),
+                "1,2,3".into(),
+                "grün \\u{41} \\.npy".into(),
+                String::new(),
+            ],
+            scene: "aa".into(),
+            samples: "bb".into(),
+            samples_per_pixel: 64,
+            judged_by: JudgedBy::Means,
+            outcome: Outcome::Undecided,
+            counts: [190, 2],
+        }
+    }
+
+    #[test]
+    fn a_certificate_is_read_as_it_was_written() {
+        let text = certificate().to_text().unwrap();
+        assert!(text.is_ascii(), "{text}");
+        assert_eq!(PictureCertificate::from_text(&text), Ok(certificate()));
+    }
+
+    #[test]
+    fn every_edit_is_noticed() {
+        let text = certificate().to_text().unwrap();
+        for index in 0..text.len() {
+            let mut edited = text.clone().into_bytes();
+            edited[index] ^= 1;
+            let edited = String::from_utf8(edited).unwrap();
+            assert!(PictureCertificate::from_text(&edited).is_err(), "{index}: {edited}");
+            assert!(PictureCertificate::from_text(&text[..index]).is_err(), "{index}");
+        }
+        assert_eq!(
+            PictureCertificate::from_text(&text.replace("certificate 1", "certificate 2")),
+            Err(CertificateError::Version { found: "2".into() })
+        );
+        assert_eq!(PictureCertificate::from_text(""), Err(CertificateError::Line { key: FIRST }));
+    }
+
+    #[test]
+    fn arguments_with_line_breaks_are_refused() {
+        let broken = PictureCertificate { arguments: vec!["a\nb".into()], ..certificate() };
+        assert!(matches!(broken.to_text(), Err(CertificateError::LineBreak { .. })));
+    }
+}

@@ -1,0 +1,191 @@
+//! Pictures as they stand in files: whether every sample is one that a conforming device may have led to.
+//!
+//! A file has no rays, depths or normals. So a pixel is judged against all rays together that a device may compute for
+//! it (`verify/camera/any.rs`), the spheres that these may hit, the normals that the kernel may find there, and the
+//! colours that follow. An interval of colours becomes an interval of samples, because exposure, tone curve and the
+//! transfer function of sRGB are computed by the host, in the same way everywhere. For most pixels of a picture with 8
+//! bits it holds one or two samples.
+//!
+//! This judges pictures of [`Integrator::Primary`](crate::Integrator::Primary). Pictures with light are estimates; they
+//! are judged by [`means`](super::means).
+
+mod color;
+mod samples;
+
+use std::fmt;
+
+pub use samples::{Samples, WrittenPicture};
+
+use color::PictureCheck;
+use samples::{LegalSample, Mapping};
+
+use super::certificate::{KEPT, Verdict};
+use super::checker::Checker;
+use super::hit::LegalHits;
+use super::outcome::Outcome;
+use crate::camera::View;
+use crate::parallel::{map_parts, ranges};
+use crate::render::PrimarySettings;
+
+/// The number of pixels that a thread takes at a time.
+const CHUNK: usize = 1 << 12;
+
+/// Names of the channels of a pixel.
+const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
+
+/// Why a picture cannot be judged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WrittenError {
+    /// The picture is not as large as the view.
+    #[error("the picture is {}x{} pixels, but the view is {}x{}", found[0], found[1], view[0], view[1])]
+    Size {
+        /// Width and height of the picture.
+        found: [u32; 2],
+        /// Width and height of the view.
+        view: [u32; 2],
+    },
+    /// There are too few or too many samples.
+    #[error("the picture has {found} samples; {expected} are expected")]
+    Count {
+        /// The number of samples.
+        found: usize,
+        /// The number of samples of such a picture.
+        expected: usize,
+    },
+}
+
+/// A pixel that no conforming device leads to.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct WrittenViolation {
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// The first channel that is not legal, from 0 for red to 3 for alpha.
+    pub channel: usize,
+    /// The sample.
+    pub found: f64,
+    /// The least and the greatest legal sample.
+    pub legal: [f64; 2],
+}
+
+impl fmt::Display for WrittenViolation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pixel: [i, j], channel, found, legal: [low, high] } = self;
+        let name = CHANNELS.get(*channel).copied().unwrap_or("a channel");
+        write!(f, "pixel ({i}, {j}): {name} is {found}, but ")?;
+        if low >= high {
+            write!(f, "{low} is expected")
+        } else {
+            write!(f, "{low} to {high} are legal")
+        }
+    }
+}
+
+/// Whether a picture in a file is one that a conforming device may have led to.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct WrittenCertificate {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The verdict about every pixel, row by row from the top.
+    pub verdicts: Vec<Verdict>,
+    /// The first violations, in the order of pixels.
+    pub violations: Vec<WrittenViolation>,
+}
+
+impl WrittenCertificate {
+    /// The number of pixels with a verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.verdicts.iter().filter(|of_pixel| **of_pixel == verdict).count()
+    }
+
+    /// The number of pixels for which several answers are legal, of which the picture shows one.
+    #[must_use]
+    pub fn undecided(&self) -> usize {
+        self.count(Verdict::Silhouette) + self.count(Verdict::Tie)
+    }
+
+    /// The outcome of the picture.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        let all = self.verdicts.len() as u64;
+        Outcome::of(!self.violations.is_empty(), self.undecided() as u64, all)
+    }
+}
+
+/// What was found about a range of pixels.
+#[derive(Default)]
+struct Part {
+    verdicts: Vec<Verdict>,
+    violations: Vec<WrittenViolation>,
+}
+
+impl Checker<'_> {
+    /// Judges every sample of a picture of primary rays, as it stands in its file.
+    ///
+    /// # Errors
+    /// Returns an error if the picture is not as large as the view, or has another number of samples.
+    pub fn certify_written(
+        &self,
+        view: &View<'_>,
+        primary: &PrimarySettings,
+        picture: &WrittenPicture<'_>,
+    ) -> Result<WrittenCertificate, WrittenError> {
+        let size = [view.film.width(), view.film.height()];
+        picture.check(size)?;
+        let check = PictureCheck::new(self, view, primary);
+        let mapping = Mapping::new(picture, primary);
+        let width = size[0] as usize;
+        let count = width * size[1] as usize;
+        let parts = map_parts(ranges(count, CHUNK), |range| {
+            let mut part = Part::default();
+            let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
+            for index in range {
+                let pixel = [(index % width) as u32, (index / width) as u32];
+                let verdict = check.legal(pixel, &mut hits, &mut colors);
+                let allowed: Vec<_> = colors.iter().map(|color| mapping.samples(color)).collect();
+                let found = picture.at(index, mapping.channels());
+                part.verdicts.push(match LegalSample::judge(&allowed, &found) {
+                    None => verdict,
+                    Some((channel, legal)) => {
+                        let found = found[channel];
+                        part.violations.push(WrittenViolation { pixel, channel, found, legal });
+                        Verdict::Violation
+                    }
+                });
+            }
+            part.violations.truncate(KEPT);
+            part
+        });
+        let mut certificate = WrittenCertificate {
+            size,
+            verdicts: Vec::with_capacity(count),
+            violations: Vec::new(),
+        };
+        for part in parts {
+            certificate.verdicts.extend(part.verdicts);
+            let room = KEPT.saturating_sub(certificate.violations.len());
+            certificate.violations.extend(part.violations.into_iter().take(room));
+        }
+        Ok(certificate)
+    }
+    /// Whether surfaces of several spheres coincide where the middle ray of each pixel meets them, so that rounding
+    /// decides which one is seen.
+    #[must_use]
+    pub fn ties(&self, view: &View<'_>) -> Vec<bool> {
+        let primary = PrimarySettings::default();
+        let check = PictureCheck::new(self, view, &primary);
+        let width = view.film.width() as usize;
+        let parts = map_parts(ranges(width * view.film.height() as usize, CHUNK), |range| {
+            let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
+            let is_tie = |index: usize| {
+                let pixel = [(index % width) as u32, (index / width) as u32];
+                check.legal(pixel, &mut hits, &mut colors) == Verdict::Tie
+            };
+            range.map(is_tie).collect::<Vec<bool>>()
+        });
+        parts.concat()
+    }
+}

@@ -1,0 +1,263 @@
+//! Pictures as they stand in files: those of a conforming device are never accused, and what is planted is found.
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::image::encoding::Bits;
+use pinhole::image::tone::ToneCurve;
+use pinhole::render::PrimarySettings;
+use pinhole::verify::written::{Samples, WrittenCertificate, WrittenError, WrittenPicture};
+use pinhole::verify::{Checker, Outcome, Verdict};
+use pinhole::write::png;
+use pinhole::{
+    Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Shading, Sphere,
+    View, cpu,
+};
+
+use crate::support::spheres;
+
+/// Every kind of encoding.
+fn encodings() -> Vec<Encoding> {
+    let plain = Encoding::default();
+    let exposed = |tone| plain.with_exposure(-0.7).unwrap().with_tone(tone);
+    vec![
+        plain,
+        plain.with_bits(Bits::Sixteen),
+        exposed(ToneCurve::None).with_bits(Bits::Sixteen),
+        exposed(ToneCurve::Filmic).with_bits(Bits::Sixteen),
+        exposed(ToneCurve::Agx),
+        exposed(ToneCurve::Agx).with_background(Some(LinearRgb::WHITE)),
+    ]
+}
+
+fn certified(
+    checker: &Checker<'_>,
+    view: &View<'_>,
+    primary: &PrimarySettings,
+    (encoding, bytes): (&Encoding, &[u8]),
+) -> WrittenCertificate {
+    let size = [view.film.width(), view.film.height()];
+    let picture = WrittenPicture { size, samples: Samples::Encoded(bytes), encoding };
+    checker.certify_written(view, primary, &picture).unwrap()
+}
+
+fn linear(image: &Image) -> Vec<[f32; 4]> {
+    image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect()
+}
+
+/// The picture that a device made, in light and in one of the encodings.
+pub(crate) fn assert_is_not_accused(name: &str, scene: &Scene, view: &View<'_>, image: &Image) {
+    let checker = Checker::new(scene).unwrap();
+    let primary = PrimarySettings::default();
+    let linear = linear(image);
+    let size = [image.width(), image.height()];
+    let plain = Encoding::default();
+    let picture = WrittenPicture { size, samples: Samples::Linear(&linear), encoding: &plain };
+    let found = checker.certify_written(view, &primary, &picture).unwrap();
+    assert_eq!(found.violations, [], "{name}, linear");
+    let encodings = encodings();
+    let encoding = &encodings[(image.color()[0][0].to_bits() as usize + name.len()) % 4];
+    let bytes = png::samples(image, encoding).unwrap();
+    let found = certified(&checker, view, &primary, (encoding, &bytes));
+    assert_eq!(found.violations, [], "{name}, {encoding:?}");
+}
+
+fn scene() -> Scene {
+    let colored = |(i, [x, y, z, r]): (usize, &[f32; 4])| {
+        let level = |k: usize| ((i * k) % 17 + 1) as f32 / 18.0;
+        let color = LinearRgb::new([level(3), level(5), level(7)]).unwrap();
+        Sphere::new([*x, *y, *z].map(f64::from), f64::from(*r), color)
+    };
+    let spheres = spheres::random(60, 1, |rng| 0.02 + 0.1 * rng.f32());
+    Scene::new(&spheres.iter().enumerate().map(colored).collect::<Vec<_>>()).unwrap()
+}
+
+fn camera(scene: &Scene) -> PinholeCamera {
+    let bounds = scene.bounds_to_frame();
+    let eye =
+        bounds.center() + pinhole::glam::DVec3::new(0.9, 0.5, 1.4) * bounds.size().max_element();
+    let pose = Pose::looking_at(eye, bounds.center(), [0.1, 1.0, 0.2]).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.7, 1.3).unwrap()
+}
+
+fn film() -> Film {
+    Film::new(78, 60).unwrap()
+}
+
+fn settings(shading: Shading, is_transparent: bool) -> RenderSettings {
+    let background = LinearRgb::new([0.2, 0.5, 0.9]).unwrap();
+    let integrator = Integrator::Primary(shading);
+    RenderSettings { integrator, background, is_transparent, ..RenderSettings::default() }
+}
+
+/// Bytes of the reference's picture, with what they are judged by.
+struct Made {
+    scene: Scene,
+    camera: PinholeCamera,
+    settings: RenderSettings,
+    encoding: Encoding,
+    image: Image,
+    bytes: Vec<u8>,
+}
+
+impl Made {
+    fn new(settings: RenderSettings, encoding: Encoding) -> Self {
+        let scene = scene();
+        let camera = camera(&scene);
+        let encoding = encoding
+            .with_transparent(settings.is_transparent)
+            .with_background(encoding.background().and(settings.visible_background()));
+        let layers = encoding.layers();
+        let image = cpu::render(&scene, &View::new(&camera, film()), &settings, layers).unwrap();
+        let bytes = png::samples(&image, &encoding).unwrap();
+        Self { scene, camera, settings, encoding, image, bytes }
+    }
+
+    fn plain() -> Self {
+        Self::new(settings(Shading::Headlight, false), Encoding::default())
+    }
+
+    /// Judges bytes, by a scene and a camera that may be others.
+    fn judge_by(&self, scene: &Scene, camera: &dyn Camera, bytes: &[u8]) -> WrittenCertificate {
+        let checker = Checker::new(scene).unwrap();
+        let primary = self.settings.primary().unwrap();
+        certified(&checker, &View::new(camera, film()), &primary, (&self.encoding, bytes))
+    }
+
+    fn judge(&self, bytes: &[u8]) -> WrittenCertificate {
+        self.judge_by(&self.scene, &self.camera, bytes)
+    }
+}
+
+#[test]
+fn the_references_picture_is_proved_in_every_encoding() {
+    for shading in [Shading::Headlight, Shading::Flat] {
+        for is_transparent in [false, true] {
+            for encoding in encodings() {
+                let made = Made::new(settings(shading, is_transparent), encoding);
+                let found = made.judge(&made.bytes);
+                let name = format!("{shading:?}, {is_transparent}, {encoding:?}");
+                assert_eq!(
+                    found.outcome(),
+                    Outcome::Proved,
+                    "{name}: {:?}",
+                    found.violations.first()
+                );
+                assert!(found.count(Verdict::Decided) > 4600, "{name}: {found:?}");
+            }
+        }
+    }
+}
+
+/// What a byte may be is narrow: nearly every byte that is two steps away is not legal.
+#[test]
+fn a_byte_two_steps_away_is_found() {
+    let made = Made::plain();
+    let mut brighter = made.bytes.clone();
+    brighter.iter_mut().for_each(|byte| *byte = byte.saturating_add(2));
+    let found = made.judge(&brighter);
+    assert!(found.count(Verdict::Violation) > 4200, "{}", found.count(Verdict::Violation));
+    let one = 3 * (78 * 30 + 39);
+    let mut spoilt = made.bytes.clone();
+    spoilt[one + 1] ^= 8;
+    let found = made.judge(&spoilt);
+    assert_eq!(found.violations.len(), 1);
+    let violation = &found.violations[0];
+    assert_eq!((violation.pixel, violation.channel), ([39, 30], 1));
+    assert!(violation.to_string().starts_with("pixel (39, 30): green is "), "{violation}");
+}
+
+/// Changes of bytes that a fault may make.
+#[test]
+fn pictures_that_are_changed_are_found() {
+    let made = Made::plain();
+    let moved: Vec<u8> =
+        made.bytes.iter().copied().cycle().skip(3).take(made.bytes.len()).collect();
+    let upside_down: Vec<u8> = made.bytes.chunks(3 * 78).rev().flatten().copied().collect();
+    let swapped: Vec<u8> = made.bytes.chunks(3).flat_map(|p| [p[2], p[1], p[0]]).collect();
+    let dithered: Vec<u8> =
+        made.bytes.iter().enumerate().map(|(i, b)| b.saturating_add(3 * (i % 2) as u8)).collect();
+    let mut band = made.bytes.clone();
+    band[3 * 78 * 20..3 * 78 * 21].fill(200);
+    for (name, bytes) in [
+        ("moved", moved),
+        ("upside down", upside_down),
+        ("swapped", swapped),
+        ("dithered", dithered),
+        ("band", band),
+    ] {
+        let found = made.judge(&bytes);
+        assert_eq!(found.outcome(), Outcome::Violated, "{name}");
+    }
+}
+
+/// Pictures of other scenes, cameras and settings than is said.
+#[test]
+fn pictures_of_something_else_are_found() {
+    let made = Made::plain();
+    let mut spheres = made.scene.spheres().to_vec();
+    let seen = 17;
+    spheres[seen][3] *= 1.02;
+    let array: Vec<Sphere> = (0..)
+        .zip(&spheres)
+        .map(|(id, [x, y, z, r])| {
+            let center =
+                made.scene.origin() + pinhole::glam::DVec3::from([*x, *y, *z].map(f64::from));
+            Sphere::new(center.to_array(), f64::from(*r), made.scene.color(id))
+        })
+        .collect();
+    let larger = Scene::new(&array).unwrap();
+    assert_eq!(made.judge_by(&larger, &made.camera, &made.bytes).outcome(), Outcome::Violated);
+
+    let bounds = made.scene.bounds_to_frame();
+    let pose = Pose::looking_along(bounds.center(), [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap();
+    let other = OrthographicCamera::new(pose, [1.3, 1.0]).unwrap();
+    assert_eq!(made.judge_by(&made.scene, &other, &made.bytes).outcome(), Outcome::Violated);
+
+    let flat = Made::new(settings(Shading::Flat, false), Encoding::default());
+    assert_eq!(flat.judge(&made.bytes).outcome(), Outcome::Violated);
+    let exposed =
+        Made { encoding: Encoding::default().with_exposure(0.05).unwrap(), ..Made::plain() };
+    assert_eq!(exposed.judge(&made.bytes).outcome(), Outcome::Violated);
+}
+
+#[test]
+fn pictures_of_another_size_are_refused() {
+    let made = Made::plain();
+    let checker = Checker::new(&made.scene).unwrap();
+    let view = View::new(&made.camera, film());
+    let primary = PrimarySettings::default();
+    let judged = |size, bytes| {
+        let samples = Samples::Encoded(bytes);
+        checker.certify_written(
+            &view,
+            &primary,
+            &WrittenPicture { size, samples, encoding: &made.encoding },
+        )
+    };
+    assert_eq!(
+        judged([60, 78], &made.bytes),
+        Err(WrittenError::Size { found: [60, 78], view: [78, 60] })
+    );
+    let found = made.bytes.len() - 1;
+    let expected = made.bytes.len();
+    assert_eq!(judged([78, 60], &made.bytes[1..]), Err(WrittenError::Count { found, expected }));
+}
+
+#[test]
+fn linear_light_is_judged_more_narrowly_than_bytes() {
+    let made = Made::new(settings(Shading::Headlight, false), Encoding::default());
+    let view = View::new(&made.camera, film());
+    let image = cpu::render(&made.scene, &view, &made.settings, LayerSet::COLOR).unwrap();
+    assert_eq!(image.color(), made.image.color());
+    let checker = Checker::new(&made.scene).unwrap();
+    let primary = made.settings.primary().unwrap();
+    let judged = |factor: f32| {
+        let mut pixels = linear(&image);
+        pixels.iter_mut().for_each(|pixel| (0..3).for_each(|i| pixel[i] *= factor));
+        let samples = Samples::Linear(&pixels);
+        let picture = WrittenPicture { size: [78, 60], samples, encoding: &made.encoding };
+        checker.certify_written(&view, &primary, &picture).unwrap()
+    };
+    assert_eq!(judged(1.0).outcome(), Outcome::Proved);
+    let found = judged(1.0 + 3e-5);
+    assert!(found.count(Verdict::Violation) > 3000, "{}", found.count(Verdict::Violation));
+}

@@ -1,0 +1,109 @@
+//! Pictures as they stand in files: those of this device are never accused, and faults of what renders them are found.
+
+use libtest_mimic::{Failed, Trial};
+use pinhole::gpu::Headless;
+use pinhole::image::encoding::Bits;
+use pinhole::verify::means::{Estimates, Means};
+use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
+use pinhole::verify::{Checker, Outcome};
+use pinhole::write::png;
+use pinhole::{Encoding, Image, LayerSet, cpu};
+
+use crate::faults::Fault;
+use crate::light::scenes::{self as light, LitView};
+use crate::planted::faulty;
+use crate::support::View;
+use crate::verify::RENDER_FAULTS;
+use crate::{faults, headless, scenes};
+
+/// Faults of layers that are not in the picture.
+const OF_LAYERS: [&str; 3] =
+    ["id_in_the_picture_off_by_one", "depth_from_the_box", "depth_not_along_the_ray"];
+
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (name, view) in scenes::all() {
+        trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
+    }
+    for (name, view) in light::all() {
+        trials.push(Trial::test(format!("written::means::{name}"), move || {
+            let means = means(headless()?, &view)?;
+            match means.count(Outcome::Violated) {
+                0 => Ok(()),
+                _ => Err(format!("{:?}", means.worst()).into()),
+            }
+        }));
+    }
+    for (name, view, replace) in RENDER_FAULTS {
+        let find = "return make_entry(pixel_in_tile);";
+        trials.push(Trial::test(format!("written::faults::render_{name}"), move || {
+            is_found(&faulty("primary/entry.wgsl#made", find, replace)?, &view())
+        }));
+    }
+    let of_color = |fault: &Fault| {
+        fault.file.starts_with("primary/shad")
+            && !fault.file.contains('#')
+            && !OF_LAYERS.contains(&fault.name)
+    };
+    for fault in faults::all().filter(of_color) {
+        trials.push(Trial::test(format!("written::faults::{}", fault.name), move || {
+            let Fault { file, find, replace, view, .. } = fault;
+            is_found(&faulty(file, find, replace)?, &view())
+        }));
+    }
+    trials
+}
+
+/// Judges samples of 16 bits, which are the narrowest.
+fn certified(view: &View, image: &Image) -> Result<WrittenCertificate, Failed> {
+    let View { scene, settings, .. } = view;
+    let size = [image.width(), image.height()];
+    let encoding = Encoding::default().with_bits(Bits::Sixteen);
+    let bytes = png::samples(image, &encoding)?;
+    let picture = WrittenPicture { size, samples: Samples::Encoded(&bytes), encoding: &encoding };
+    let primary = settings.primary().ok_or("not of primary rays")?;
+    Ok(Checker::new(scene)?.certify_written(&view.seen(), &primary, &picture)?)
+}
+
+fn render(device: &Headless, view: &View) -> Result<Image, Failed> {
+    Ok(device.render(&view.scene, &view.seen(), &view.settings, LayerSet::COLOR)?)
+}
+
+fn legal(view: &View) -> Result<(), Failed> {
+    let found = certified(view, &render(headless()?, view)?)?;
+    match found.violations.first() {
+        None => Ok(()),
+        Some(first) => Err(format!("{} violations: {first}", found.violations.len()).into()),
+    }
+}
+
+fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
+    let found = certified(view, &render(device, view)?)?;
+    match found.outcome() {
+        Outcome::Violated => Ok(()),
+        outcome => Err(format!("the fault was not found: {outcome}").into()),
+    }
+}
+
+/// Compares with the reference, which has another seed.
+fn means(device: &Headless, view: &LitView) -> Result<Means, Failed> {
+    let LitView { scene, settings, .. } = view;
+    let mut settings = settings.clone();
+    settings.sampling.samples = settings.sampling.samples.min(64);
+    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
+    settings.sampling.seed += 1;
+    let expected = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
+    let wide = |image: &Image| -> Vec<[f64; 3]> {
+        image.color().iter().map(|rgb| rgb.map(f64::from)).collect()
+    };
+    let ties = Checker::new(scene)?.ties(&view.seen());
+    let estimates = Estimates {
+        size: [found.width(), found.height()],
+        samples: settings.sampling.samples,
+        reach: 0,
+        found: &wide(&found),
+        expected: &wide(&expected),
+        ties: &ties,
+    };
+    Ok(estimates.compare())
+}
