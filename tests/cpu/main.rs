@@ -32,6 +32,7 @@ mod comparator;
 mod conformance;
 mod environment;
 mod environment_files;
+mod film_parts;
 mod framing;
 mod fuzz;
 mod generate;

@@ -18,6 +18,7 @@ mod device;
 mod device_shape;
 mod embedding;
 mod faults;
+mod film_parts;
 mod host;
 mod lens;
 mod light;
@@ -50,6 +51,7 @@ fn main() {
             parts::trials(),
             paths::trials(),
             embedding::trials(),
+            film_parts::trials(),
             host::trials(),
             device::trials(),
             device_shape::trials(),
